@@ -1,0 +1,40 @@
+// Every compile-time capacity of the real-time core, with its reason and what happens when it overflows.
+// Overflow never crashes and never reaches the heap: it sets the status bit named here and degrades deterministically.
+#pragma once
+
+#include <cstdint>
+
+namespace palpate {
+
+// Convex pieces of one tool. A hand has 15 contact parts and a palm. Refused when the scene is baked.
+inline constexpr std::int32_t kMaxPieces = 20;
+// Sample points spread over the tool's pieces: each is one closest-point query in the worst tick. Refused at bake.
+inline constexpr std::int32_t kMaxToolPoints = 128;
+// Tool points in contact at once. Overflow: the deepest are kept (ties by index), Status::kContactsDropped.
+inline constexpr std::int32_t kMaxContacts = 64;
+// Contact regions at once: 15 finger parts and a palm. Overflow: the deepest are kept, Status::kRegionsDropped.
+inline constexpr std::int32_t kMaxRegions = 16;
+// Skeleton anchors of one body. Refused at bake (the baker keeps the most persistent).
+inline constexpr std::int32_t kMaxAnchors = 32;
+// Depth of the hierarchy's traversal stack: a 4-wide tree over 4 million leaves needs 3 * log4(4e6) = 33 entries.
+// The loader refuses a deeper tree; Status::kTraversalTruncated if it is met all the same.
+inline constexpr std::int32_t kMaxTraversalStack = 64;
+// Support-callback budget of one ccdGJKIntersect call. Sane inputs need at most 54 (measured on libccd 2.1);
+// past the budget the answer is "inconclusive": the last contact is kept, Status::kOverlapInconclusive.
+inline constexpr std::int32_t kGjkSupportBudget = 128;
+inline constexpr std::int32_t kGjkMaxIterations = 60;
+// Iterations of our own GJK distance routine; convex pairs here converge in fewer than 20.
+inline constexpr std::int32_t kClosestPointIterations = 32;
+// Newton iterations of the coupled region solve: residual below 7e-14 m after 5 (2000 random 15-region problems).
+inline constexpr std::int32_t kCoupledNewtonIterations = 5;
+// Newton iterations of the inverse cubic law: relative error below 7e-16 after 5.
+inline constexpr std::int32_t kInverseLawIterations = 5;
+// A lost region keeps its identity this long and this close, so a bounce does not lose its friction history.
+inline constexpr std::int32_t kRegionMemoryTicks = 50;
+inline constexpr double kRegionMemoryDistance_m = 2e-3;
+// Ticks kept whole by the black box and by the "worst ticks" list.
+inline constexpr std::int32_t kWorstTicksKept = 16;
+// Length of the scene name stored in an image, with its terminating zero.
+inline constexpr std::int32_t kNameBytes = 64;
+
+}  // namespace palpate

@@ -1,0 +1,160 @@
+// Model: the immutable scene, a set of typed views into one image file. Two tables describe everything in it; the
+// writer, the loader, the validator, the dump and the documentation are all generated from them (docs/image_format.md).
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "rt_core/base.h"
+#include "rt_core/limits.h"
+#include "rt_core/vec.h"
+
+namespace palpate {
+
+enum class ContactWeight : std::int32_t { kWinkler = 0, kArea = 1, kPaper = 2 };  // A_i/A_ref · A_i/ΣA · 1/n
+enum class FrictionLaw : std::int32_t { kNone = 0, kReturnMap = 1, kPaper = 2, kMindlin = 3 };
+enum class TangentialLaw : std::int32_t { kSeparable = 0, kRadial = 1 };
+enum class SkeletonLaw : std::int32_t { kNone = 0, kStiffness = 1, kPaper = 2 };
+enum class ShapeLaw : std::int32_t { kRbf = 0, kDisplacementAngle = 1 };
+enum class NeighbourhoodLaw : std::int32_t { kNone = 0, kLog = 1, kLogC1 = 2, kPunch = 3 };
+enum class CouplingLaw : std::int32_t { kNone = 0, kCoupled = 1, kTemporal = 2 };
+
+// X(type, name, unit, lowest, highest, meaning). All are finite; the loader checks every range.
+#define PALPATE_MODEL_PARAMS(X)                                                                        \
+  X(std::int32_t, contact_weight, "-", 0, 2, "how sample forces are weighted (ContactWeight)")         \
+  X(std::int32_t, friction_law, "-", 0, 3, "FrictionLaw")                                              \
+  X(std::int32_t, tangential_law, "-", 0, 1, "TangentialLaw")                                          \
+  X(std::int32_t, skeleton_law, "-", 0, 2, "SkeletonLaw")                                              \
+  X(std::int32_t, shape_law, "-", 0, 1, "ShapeLaw: how anchor displacements spread over the surface")  \
+  X(std::int32_t, neighbourhood_law, "-", 0, 3, "NeighbourhoodLaw: dent around a contact")             \
+  X(std::int32_t, coupling_law, "-", 0, 2, "CouplingLaw: how regions influence one another")           \
+  X(std::int32_t, rbf_tail, "-", 0, 1, "0 constant tail, 1 linear tail of the surface interpolation")  \
+  X(std::int32_t, silence_hold_ticks, "ticks", 1, 5, "ticks the last sample is held")                  \
+  X(std::int32_t, silence_passive_ticks, "ticks", 1, 20, "ticks after which force ramps to zero")      \
+  X(std::int32_t, silence_fault_ticks, "ticks", 2, 1000, "ticks of silence that latch a fault")        \
+  X(std::int32_t, reserved, "-", 0, 0, "keeps the doubles aligned")                                    \
+  X(double, period_s, "s", 1e-5, 1e-1, "tick period")                                                  \
+  X(double, k1_N_per_m, "N/m", 0, 1e9, "linear coefficient of the contact law, per unit weight")       \
+  X(double, k3_N_per_m3, "N/m3", 0, 1e15, "cubic coefficient of the contact law, per unit weight")     \
+  X(double, max_depth_m, "m", 1e-6, 1, "depth beyond which the law continues by its tangent")          \
+  X(double, friction_k_N, "N^(1-beta)", 0, 1e6, "K of the static limit K F^beta")                      \
+  X(double, friction_beta, "-", 0.5, 1, "exponent of the static limit")                                \
+  X(double, friction_mu_dynamic, "-", 0, 10, "sliding coefficient")                                    \
+  X(double, cluster_distance_m, "m", 1e-6, 1, "contact points nearer than this are one region")        \
+  X(double, youngs_modulus_Pa, "Pa", 1, 1e13, "E")                                                     \
+  X(double, poisson_ratio, "-", -0.999, 0.5, "nu")                                                     \
+  X(double, density_kg_per_m3, "kg/m3", 1, 1e5, "rho")                                                 \
+  X(double, far_field_radius_m, "m", 1e-6, 1, "core radius of the far-field kernel between regions")   \
+  X(double, neighbourhood_radius_m, "m", 1e-6, 1, "R of the local dent")                               \
+  X(double, surface_size_m, "m", 1e-6, 100, "largest extent of the body; scale of tolerances")         \
+  X(double, coupling_N_per_m, "N/m", 1, 1e6, "translational stiffness of the virtual coupling")        \
+  X(double, coupling_Nm_per_rad, "N*m/rad", 1e-6, 1e4, "rotational stiffness of the virtual coupling") \
+  X(double, force_max_N, "N", 0, 1000, "magnitude limit of the rendered force")                        \
+  X(double, torque_max_Nm, "N*m", 0, 100, "magnitude limit of the rendered torque")                    \
+  X(double, force_rate_max_N_per_s, "N/s", 1, 1e7, "fault limiter of the force change")                \
+  X(double, ramp_in_s, "s", 0, 10, "force ramp after arming")                                          \
+  X(double, ramp_out_s, "s", 1e-3, 1, "force ramp to zero after a fault")                              \
+  X(double, speed_max_m_per_s, "m/s", 0.01, 100, "a device sample that implies a faster motion is rejected")
+
+struct ModelParams {
+#define PALPATE_FIELD(type, name, unit, lowest, highest, meaning) type name;
+  PALPATE_MODEL_PARAMS(PALPATE_FIELD)
+#undef PALPATE_FIELD
+};
+
+// Element types of the image arrays. All trivially copyable, without padding.
+struct Triangle {
+  std::int32_t vertex[3];    // counter-clockwise seen from outside
+  std::int32_t adjacent[3];  // triangle across edge (vertex[k], vertex[(k+1)%3])
+};
+// Node of a 4-wide hierarchy over the triangles. Bounds are single precision, rounded outward.
+struct BvhNode {
+  float lower_m[3][4];
+  float upper_m[3][4];
+  std::int32_t child[4];  // >= 0: inner node; -1: empty; otherwise leaf: first triangle = ~child (triangles are sorted)
+  std::int32_t count[4];  // triangles in a leaf (1..4), 0 for inner nodes
+};
+enum class PieceShape : std::int32_t { kSphere = 0, kCapsule = 1, kCylinder = 2, kCone = 3, kBox = 4, kHull = 5 };
+// Convex piece of the tool: a core shape (tool frame) rounded by a margin, as in "sphere = point + radius".
+struct ToolPiece {
+  Pose pose_tool;           // piece frame in the tool frame; axis of revolution = piece z
+  double half_extent_m[3];  // core: capsule (-, -, half length); cylinder, cone (radius, radius, half length); box half
+                            // sides
+  double margin_m;          // rounding radius added to the core
+  double bounding_radius_m;               // of core and margin, about pose_tool.position_m
+  std::int32_t shape;                     // PieceShape
+  std::int32_t first_point, point_count;  // its tool points
+  std::int32_t first_hull, hull_count;    // its hull vertices (kHull only)
+  std::int32_t part;                      // label for telemetry: finger part, mallet head...
+};
+// Point of a piece's core: the centre of a small sphere of radius margin_m that carries a share of the contact.
+struct ToolPoint {
+  Vec3 position_tool_m;
+  double margin_m;
+  double area_m2;  // surface area it stands for
+  double weight;   // area_m2 / reference area: multiplies the contact law in the Winkler weighting
+  std::int32_t piece;
+  std::int32_t reserved;
+};
+// Curvature-extremal point of the body with its straight beam's section.
+struct Anchor {
+  Vec3 position_m;
+  Vec3 normal;
+  double section_area_m2;
+  double section_inertia_m4;
+  double section_radius_m;
+  double release_length_m;
+  std::int32_t fixed;  // 1: clamped to the world, never moves
+  std::int32_t reserved;
+};
+// Which three anchors span the patch a surface vertex lies in, and with which weights.
+struct PatchWeight {
+  std::int32_t anchor[3];
+  std::int32_t reserved;
+  double weight[3];
+};
+
+// X(element type, name, number of elements, frame, meaning). Sizes are fields of ModelSizes.
+#define PALPATE_MODEL_ARRAYS(X)                                                                        \
+  X(Vec3, vertex_m, n_vertex, "world", "rest surface vertices")                                        \
+  X(Vec3, vertex_normal, n_vertex, "world", "outward angle-weighted unit normals")                     \
+  X(Triangle, triangle, n_triangle, "-", "rest surface triangles, sorted by hierarchy leaf")           \
+  X(BvhNode, bvh, n_bvh, "world", "4-wide hierarchy; node 0 is the root, children after their parent") \
+  X(Anchor, anchor, n_anchor, "world", "skeleton anchors")                                             \
+  X(double, rbf_inverse, n_rbf2, "-", "inverse of the bordered RBF matrix, row-major, n_rbf x n_rbf")  \
+  X(PatchWeight, patch, n_patch, "-", "patch of each vertex (displacement-angle interpolation only)")  \
+  X(ToolPiece, piece, n_piece, "tool", "convex pieces of the tool")                                    \
+  X(ToolPoint, tool_point, n_tool_point, "tool", "sample points of the tool")                          \
+  X(Vec3, hull_vertex_m, n_hull, "piece", "vertices of hull pieces")
+
+// X(name, lowest, highest)
+#define PALPATE_MODEL_SIZES(X)       \
+  X(n_vertex, 4, 1 << 26)            \
+  X(n_triangle, 4, 1 << 26)          \
+  X(n_bvh, 1, 1 << 26)               \
+  X(n_anchor, 0, kMaxAnchors)        \
+  X(n_rbf, 0, kMaxAnchors + 4)       \
+  X(n_rbf2, 0, 1 << 12)              \
+  X(n_patch, 0, 1 << 26)             \
+  X(n_piece, 1, kMaxPieces)          \
+  X(n_tool_point, 1, kMaxToolPoints) \
+  X(n_hull, 0, 1 << 16)
+
+struct ModelSizes {
+#define PALPATE_FIELD(name, lowest, highest) std::int64_t name;
+  PALPATE_MODEL_SIZES(PALPATE_FIELD)
+#undef PALPATE_FIELD
+};
+
+// Read-only views; valid while the image bytes they point into live. Copy freely.
+struct Model {
+  ModelParams params{};
+  ModelSizes sizes{};
+  std::uint64_t scene_hash = 0;  // checksum of the whole image: what a recording names as its scene
+  const char* name = "";         // zero-terminated, inside the image
+#define PALPATE_FIELD(type, name, count, frame, meaning) std::span<const type> name;
+  PALPATE_MODEL_ARRAYS(PALPATE_FIELD)
+#undef PALPATE_FIELD
+};
+
+}  // namespace palpate

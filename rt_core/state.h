@@ -1,0 +1,125 @@
+// State: all that survives a tick. Scratch: thrown away after it. Both have fixed capacity and are trivially copyable,
+// so snapshot, restore, replay and rollback are a copy. Arrays are grouped by the stage that writes them.
+#pragma once
+
+#include <cstdint>
+#include <type_traits>
+
+#include "rt_core/io.h"
+#include "rt_core/limits.h"
+#include "rt_core/model.h"
+
+namespace palpate {
+
+enum class FrictionMode : std::int32_t { kFree = 0, kStick = 1, kSlip = 2 };
+
+// Per-tool-point contact memory. Written by collide.
+struct PointState {
+  Vec3 closest_w;    // on the rest surface
+  Vec3 normal_w;     // outward unit normal there (pseudo-normal on edges and vertices)
+  double gap_m = 0;  // signed: distance of the core point from the surface minus its margin; < 0 is penetration
+  double gap_bound_m =
+      0;  // lower bound of gap_m when the query was skipped (the point cannot have reached the surface)
+  std::int32_t triangle = -1;  // last closest triangle: warm start
+  std::int32_t region = -1;    // slot in State::region, or -1. Written by regions.
+};
+
+// A contact region: a cluster of tool points with an identity that lasts.
+struct Region {
+  // regions
+  std::uint32_t id = 0;         // unique since reset; 0: slot empty
+  std::uint32_t born_tick = 0;  // temporal order (ties by id)
+  std::int32_t lost_ticks = 0;  // 0 while in contact; otherwise ticks since the last contact
+  std::int32_t point_count = 0;
+  double area_m2 = 0;  // of the contacting tool points
+  double depth_max_m = 0;
+  // force
+  Vec3 centre_w;                  // centre of pressure, projected to the rest surface: the equivalent contact point
+  Vec3 normal_w;                  // unit, of the resultant normal force
+  double normal_force_N = 0;      // >= 0, along normal_w, on the tool
+  Vec3 friction_force_w;          // on the tool
+  Wrench wrench_w;                // of this region on the tool, about the tool's origin
+  double depth_equivalent_m = 0;  // inverse law of |normal force|
+  double far_field_m = 0;         // how far the other regions (and its own far field) move the surface inward here
+  double energy_J = 0;
+  double tangent_N_per_m = 0;  // normal stiffness
+  // friction memory
+  Vec3 stretch_w;                   // tangential elastic stretch: material point minus origin of deformation
+  double tangential_k_N_per_m = 0;  // Mindlin variant: stiffness of the last tick
+  FrictionMode friction = FrictionMode::kFree;
+  std::int32_t reserved = 0;
+  Vec3 origin_w;  // origin of the deformation p_o on the rest surface
+};
+
+struct AnchorState {
+  Vec3 displacement_w;   // sum over regions
+  double stress_Pa = 0;  // extreme-fibre stress at the anchor, largest over regions
+  double axial_stress_Pa = 0;
+  double shear_stress_Pa = 0;
+};
+
+struct SafetyState {
+  Mode mode = Mode::kIdle;
+  std::uint32_t fault = 0;
+  std::uint32_t last_commands = 0;
+  std::int32_t ramp_ticks = 0;
+  double ramp = 0;
+  double ramp_from = 0;
+  Wrench last_device_w;
+};
+
+// Largest number of each pool's entries used since reset.
+struct HighWater {
+  std::int32_t contacts = 0, regions = 0, traversal_stack = 0, gjk_support_calls = 0;
+};
+
+struct State {
+  std::uint64_t tick = 0;
+  // sense
+  Pose device_w, device_previous_w;
+  Pose tool_w, tool_previous_w;       // pose at which this and the last tick's contact was evaluated
+  double contact_stiffness[36] = {};  // 6x6 tangent (force, torque about the tool origin) of the last tick, row-major
+  std::int32_t started = 0;
+  std::uint32_t next_region_id = 1;
+  PointState point[kMaxToolPoints];
+  Region region[kMaxRegions];
+  AnchorState anchor[kMaxAnchors];
+  Vec3 anchor_by_region[kMaxRegions][kMaxAnchors];  // displacement of each anchor by each region
+  SafetyState safety;
+  HighWater high_water;
+};
+
+// One tool point in contact. Written by collide, completed by regions and force.
+struct Contact {
+  std::int32_t point = 0;   // index of the tool point
+  std::int32_t region = 0;  // slot in State::region
+  Vec3 position_w;          // where the force acts: the surface point
+  Vec3 normal_w;
+  double depth_m = 0;  // on the rest surface, > 0
+  double weight = 0;   // of the contact law
+  double force_N = 0;  // normal force on the tool
+};
+
+struct Scratch {
+  std::uint32_t status = 0;
+  std::int32_t contact_count = 0;
+  Contact contact[kMaxContacts];
+  Wrench contact_wrench_w;  // sum over regions, on the tool, about the tool's origin
+  double energy_J = 0;
+  double residual_m = 0;
+  double matrix[4][kMaxRegions * kMaxRegions];  // coupled solve
+  double vector[8][kMaxRegions];
+};
+
+static_assert(std::is_trivially_copyable_v<State> && std::is_trivially_copyable_v<Scratch>);
+static_assert(sizeof(State) < 256 * 1024, "State must stay below 256 KiB");
+
+// Resets to the state before the first tick.
+void reset(State& state) PALPATE_RT;
+// Canonical hash of everything in `state` that can influence a later tick, field by field, never padding. `field`-wise
+// so that a replay can name the first difference: see `first_difference`.
+std::uint64_t hash_state(const Model& model, const State& state) PALPATE_RT;
+// Name of the first field (in hash order) whose hash differs, or nullptr; host use.
+const char* first_difference(const Model& model, const State& a, const State& b) noexcept;
+
+}  // namespace palpate

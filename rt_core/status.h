@@ -1,0 +1,71 @@
+// Status bits (a tick degraded something, and says what to change) and fault bits (latched; the output is made safe).
+// One table each: names, meanings and remedies are generated from it for the host and for docs.
+#pragma once
+
+#include <cstdint>
+
+namespace palpate {
+
+// X(name, bit, what was degraded, remedy)
+#define PALPATE_STATUS_BITS(X)                                                                                       \
+  X(kContactsDropped, 0, "more tool points in contact than kMaxContacts; the deepest are kept",                      \
+    "use fewer tool points (tool.piece.points) or raise kMaxContacts")                                               \
+  X(kRegionsDropped, 1, "more contact regions than kMaxRegions; the deepest are kept",                               \
+    "raise contact.cluster_distance_mm so that near contacts merge, or raise kMaxRegions")                           \
+  X(kTraversalTruncated, 2, "the surface hierarchy is deeper than kMaxTraversalStack; a closer point may be missed", \
+    "bake the mesh again")                                                                                           \
+  X(kOverlapInconclusive, 3, "the overlap test ran out of its support budget; the last contact is kept",             \
+    "simplify the tool piece (hull with fewer vertices)")                                                            \
+  X(kDepthBeyondRange, 4, "penetration beyond the law's stated range; the law is extended by its tangent",           \
+    "raise contact.max_depth_mm or press less deeply")                                                               \
+  X(kForceClamped, 5, "the commanded force or torque was scaled to the device limit",                                \
+    "soften the object or raise device.force_max_N within the device's data sheet")                                  \
+  X(kRateLimited, 6, "the force change per tick exceeded the fault limiter",                                         \
+    "look for a jump in the device position; raise device.force_rate_max_N_per_s")                                   \
+  X(kInputHeld, 7, "no fresh device sample this tick; the last one is held", "see docs/realtime.md, missed samples") \
+  X(kInputRejected, 8, "a device sample was not finite or jumped further than the device can move",                  \
+    "check encoder and bus")                                                                                         \
+  X(kCouplingSingular, 9, "a small linear system was singular; the step was skipped", "report this scene")           \
+  X(kSkeletonDegenerate, 10, "the beam skeleton had no usable stiffness; anchors keep still",                        \
+    "add anchors (body.min_anchors)")                                                                                \
+  X(kRamping, 11, "force is ramping in after start or out after a fault", "none: wait")                              \
+  X(kNotConverged, 12, "a fixed-iteration solve ended above its tolerance; the residual is in telemetry",            \
+    "report this scene")
+
+// X(name, bit, cause, remedy)
+#define PALPATE_FAULT_BITS(X)                                                                                       \
+  X(kNotFinite, 0, "the force computed was not a finite number", "replay the recording; report it")                 \
+  X(kDeviceSilent, 1, "the device sent nothing for the silence limit", "check cable, power and bus")                \
+  X(kOverrun, 2, "too many consecutive ticks missed their deadline", "run palpate latency; reduce the load")        \
+  X(kDeviceReported, 3, "the device reported an error or its emergency stop", "release the stop; clear the device") \
+  X(kBusOff, 4, "the bus controller went bus-off", "check wiring and termination; restart the interface")           \
+  X(kImageInvalid, 5, "the scene image failed its checks", "bake the scene again")                                  \
+  X(kCommandInvalid, 6, "the host's command region failed its checks", "restart the host")                          \
+  X(kForbiddenCall, 7, "the real-time thread attempted a forbidden system call", "report it")                       \
+  X(kHostSilent, 8, "the host's heartbeat stopped while it was required", "restart the host")                       \
+  X(kStateCorrupt, 9, "the state failed its finite check", "replay the recording; report it")
+
+namespace Status {
+#define PALPATE_BIT(name, bit, what, remedy) inline constexpr std::uint32_t name = 1u << bit;
+PALPATE_STATUS_BITS(PALPATE_BIT)
+}  // namespace Status
+namespace Fault {
+PALPATE_FAULT_BITS(PALPATE_BIT)
+#undef PALPATE_BIT
+}  // namespace Fault
+
+// What the output stage is doing. Leaves kFault only by an operator's reset command.
+enum class Mode : std::int32_t {
+  kIdle = 0,     // zero force, waiting to be armed
+  kForce = 1,    // rendering (ramping in at first)
+  kHold = 2,     // one tick without a fresh sample: the last force is kept
+  kPassive = 3,  // a few ticks without a sample: force decays, damped
+  kRamp = 4,     // force ramps to zero
+  kFault = 5,    // latched, zero force
+};
+
+// Stages of one tick, in order; the index of StageTimes.
+enum class Stage : std::int32_t { kSense = 0, kCollide, kRegions, kForce, kDeform, kSafety, kPublish };
+inline constexpr std::int32_t kStageCount = 7;
+
+}  // namespace palpate
