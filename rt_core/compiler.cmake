@@ -1,4 +1,14 @@
 # Compiler settings shared by every target: warnings are errors, the instruction set is pinned, floating point is IEEE.
+if(NOT CMAKE_SYSTEM_NAME STREQUAL "Linux" OR NOT CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")
+  message(FATAL_ERROR "Palpate runs on Linux on x86-64 processors; this is ${CMAKE_SYSTEM_NAME} on ${CMAKE_SYSTEM_PROCESSOR}.")
+endif()
+include(CheckCXXCompilerFlag)
+check_cxx_compiler_flag(-march=x86-64-v3 PALPATE_COMPILER_KNOWS_V3)
+if(NOT PALPATE_COMPILER_KNOWS_V3)
+  message(FATAL_ERROR "This compiler (${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}) does not know "
+    "-march=x86-64-v3. Use g++ 11 or newer, or clang 12 or newer: cmake -DCMAKE_CXX_COMPILER=g++ ...")
+endif()
+
 add_library(palpate_compiler INTERFACE)
 target_include_directories(palpate_compiler INTERFACE ${CMAKE_SOURCE_DIR})
 target_compile_options(palpate_compiler INTERFACE
@@ -8,4 +18,22 @@ target_compile_options(palpate_compiler INTERFACE
   -Wall -Wextra -Wpedantic -Werror -Wconversion -Wdouble-promotion -Wshadow -Wvla -Wold-style-cast)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   target_compile_options(palpate_compiler INTERFACE -Wno-attributes)
+endif()
+
+# Run-time checks. The first finding ends the program, so that a test cannot pass over it.
+if(PALPATE_SANITIZE STREQUAL "address")
+  set(palpate_sanitize_flags -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+elseif(PALPATE_SANITIZE STREQUAL "thread")
+  set(palpate_sanitize_flags -fsanitize=thread -fno-omit-frame-pointer)
+elseif(PALPATE_SANITIZE STREQUAL "realtime")
+  if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang" OR CMAKE_CXX_COMPILER_VERSION VERSION_LESS 20)
+    message(FATAL_ERROR "PALPATE_SANITIZE=realtime needs clang 20 or newer: cmake --preset rtsan")
+  endif()
+  set(palpate_sanitize_flags -fsanitize=realtime -fno-omit-frame-pointer)
+elseif(PALPATE_SANITIZE)
+  message(FATAL_ERROR "PALPATE_SANITIZE=${PALPATE_SANITIZE}: allowed are address, thread, realtime, or nothing.")
+endif()
+if(palpate_sanitize_flags)
+  target_compile_options(palpate_compiler INTERFACE ${palpate_sanitize_flags})
+  target_link_options(palpate_compiler INTERFACE ${palpate_sanitize_flags})
 endif()

@@ -52,6 +52,11 @@ struct ImageResult {
 std::uint64_t image_layout_hash() noexcept;
 // Checksum of an image's bytes (see ImageHeader::checksum). `bytes` holds at least a header.
 std::uint64_t image_checksum(std::span<const std::byte> bytes) noexcept;
+// Byte offsets of the fixed sections after the header.
+struct ImageSections {
+  std::size_t sizes, params, arrays;
+};
+ImageSections image_sections() noexcept;
 // Byte offset of each array for the given sizes, in table order, after the params; the last entry is the total size.
 // Returns false when a size is out of range or the sum overflows.
 inline constexpr std::size_t kArrayCount = 10;

@@ -71,8 +71,8 @@ struct Triangle {
 struct BvhNode {
   float lower_m[3][4];
   float upper_m[3][4];
-  std::int32_t child[4];  // >= 0: inner node; -1: empty; otherwise leaf: first triangle = ~child (triangles are sorted)
-  std::int32_t count[4];  // triangles in a leaf (1..4), 0 for inner nodes
+  std::int32_t child[4];  // count 0: inner node (>= 0) or empty (-1); count > 0: leaf, first triangle = ~child
+  std::int32_t count[4];  // triangles in a leaf (1..4; they are contiguous), 0 for inner nodes and empty slots
 };
 enum class PieceShape : std::int32_t { kSphere = 0, kCapsule = 1, kCylinder = 2, kCone = 3, kBox = 4, kHull = 5 };
 // Convex piece of the tool: a core shape (tool frame) rounded by a margin, as in "sphere = point + radius".

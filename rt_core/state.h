@@ -62,10 +62,11 @@ struct SafetyState {
   Mode mode = Mode::kIdle;
   std::uint32_t fault = 0;
   std::uint32_t last_commands = 0;
-  std::int32_t ramp_ticks = 0;
-  double ramp = 0;
-  double ramp_from = 0;
-  Wrench last_device_w;
+  double ramp = 0;            // 0..1 gain of the output
+  std::int32_t stopping = 0;  // the operator asked to stop: ramp to zero, then kIdle
+  Pose tool_corrected_w;      // the virtual tool after the coupling's corrector: where the next prediction starts
+  Wrench last_good_w;         // last finite, clamped wrench before the gain
+  Wrench last_device_w;       // last output
 };
 
 // Largest number of each pool's entries used since reset.
@@ -80,6 +81,7 @@ struct State {
   Pose tool_w, tool_previous_w;       // pose at which this and the last tick's contact was evaluated
   double contact_stiffness[36] = {};  // 6x6 tangent (force, torque about the tool origin) of the last tick, row-major
   std::int32_t started = 0;
+  std::int32_t rejected_ticks = 0;  // consecutive samples found implausible
   std::uint32_t next_region_id = 1;
   PointState point[kMaxToolPoints];
   Region region[kMaxRegions];

@@ -1,0 +1,45 @@
+// In-place Cholesky factorisation of small symmetric positive definite systems. Own code rather than Eigen's because
+// Eigen 3.4's blocked solvers reach its allocating stack-buffer path, which the non-blocking analysis refuses.
+#pragma once
+
+#include <cstdint>
+
+#include "rt_core/vec.h"
+
+namespace palpate {
+
+// Replaces the lower triangle of the row-major n x n matrix `a` by its Cholesky factor. Returns false, with `a`
+// spoiled, when a pivot is not clearly positive (or is NaN). Bound: n^3/6 multiply-adds.
+inline bool cholesky_factor(Real* a, std::int32_t n) PALPATE_RT {
+  for (std::int32_t j = 0; j < n; ++j) {
+    Real diagonal = a[j * n + j];
+    const Real scale = diagonal;
+    for (std::int32_t k = 0; k < j; ++k) diagonal -= a[j * n + k] * a[j * n + k];
+    if (!(diagonal > 1e-14 * scale && diagonal < kHuge * kHuge)) return false;
+    const Real pivot = square_root(diagonal);
+    a[j * n + j] = pivot;
+    const Real inverse = 1.0 / pivot;
+    for (std::int32_t i = j + 1; i < n; ++i) {
+      Real sum = a[i * n + j];
+      for (std::int32_t k = 0; k < j; ++k) sum -= a[i * n + k] * a[j * n + k];
+      a[i * n + j] = sum * inverse;
+    }
+  }
+  return true;
+}
+
+// Solves (L L^T) x = b in place, with L from cholesky_factor.
+inline void cholesky_solve(const Real* factor, Real* b, std::int32_t n) PALPATE_RT {
+  for (std::int32_t i = 0; i < n; ++i) {
+    Real sum = b[i];
+    for (std::int32_t k = 0; k < i; ++k) sum -= factor[i * n + k] * b[k];
+    b[i] = sum / factor[i * n + i];
+  }
+  for (std::int32_t i = n - 1; i >= 0; --i) {
+    Real sum = b[i];
+    for (std::int32_t k = i + 1; k < n; ++k) sum -= factor[k * n + i] * b[k];
+    b[i] = sum / factor[i * n + i];
+  }
+}
+
+}  // namespace palpate

@@ -1,0 +1,36 @@
+// The virtual coupling: a 6-DOF spring between the device handle and the virtual tool, never stiffer than the device
+// admits, so that however stiff the object is, the hand feels at most the coupling (Colgate, Stanley & Brown 1995).
+// The tool is massless; its equilibrium is tracked by a predictor (how far the tool follows the handle, with the last
+// contact tangent) and one Newton correction per tick with the contact evaluated at the predicted pose. For a linear
+// contact that is exact within the tick; for the cubic law it is Newton's method spread over ticks.
+#pragma once
+
+#include "rt_core/model.h"
+#include "rt_core/state.h"
+
+namespace palpate {
+
+// Small rigid motion: translation of the tool origin (m) and rotation vector (rad), world axes.
+struct Twist {
+  Vec3 translation_m;
+  Vec3 rotation_rad;
+};
+
+// Motion that carries `from` onto `to`. Valid for rotations well below a radian.
+Twist twist_between(const Pose& from, const Pose& to) PALPATE_RT;
+// `pose` moved by `twist`; its rotation is renormalised.
+Pose moved(const Pose& pose, const Twist& twist) PALPATE_RT;
+
+// Tool motion that follows a handle motion: (K_contact + K_coupling)^-1 K_coupling * handle. `contact_stiffness` is the
+// 6x6 tangent of State. Returns false, with `tool` equal to `handle`, when the system is singular.
+bool follow(const Model& model, const double (&contact_stiffness)[36], const Twist& handle, Twist& tool) PALPATE_RT;
+
+// Newton correction of the tool pose: (K_contact + K_coupling)^-1 (contact wrench + coupling wrench). Returns false,
+// with `correction` zero, when the system is singular.
+bool correct(const Model& model, const double (&contact_stiffness)[36], const Wrench& contact_w,
+             const Wrench& coupling_on_tool_w, Twist& correction) PALPATE_RT;
+
+// Wrench of the coupling spring on the handle, about the handle's origin: pulls the handle towards the tool.
+Wrench coupling_wrench(const Model& model, const Pose& device_w, const Pose& tool_w) PALPATE_RT;
+
+}  // namespace palpate

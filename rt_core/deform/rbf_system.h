@@ -1,0 +1,25 @@
+// The linear system of the surface interpolation, inverted once when a scene is baked. Host code; no heap.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "rt_core/limits.h"
+#include "rt_core/vec.h"
+
+namespace palpate {
+
+inline constexpr std::int32_t kMaxRbf = kMaxAnchors + 4;
+
+// Polynomial terms beside the radial functions: 1 (constant tail, tail = 0) or 4 (linear tail, tail = 1).
+inline constexpr std::int32_t rbf_tail_size(std::int32_t tail) PALPATE_RT { return tail == 1 ? 4 : 1; }
+
+// Inverts M = [Phi P; P^T 0], Phi_ij = |x_i - x_j| in metres, P = [1] or [1 x y z] (the biharmonic interpolant of
+// Cui & Xiao 2008). Writes the n x n inverse, n = anchors.size() + rbf_tail_size(tail), row-major, symmetric, into
+// `inverse`, which must hold at least n * n values: ModelSizes::n_rbf = n, Model::rbf_inverse = inverse.
+// Returns false, leaving `inverse` unspecified, when there is no anchor or more than kMaxAnchors, when `inverse` is too
+// small, when a coordinate is not finite, or when the system is singular: two anchors closer than about 1e-9 of their
+// extent, or a linear tail whose anchors are (within about 1e-9 of their extent) coplanar. A constant tail then works.
+bool invert_rbf_system(std::span<const Vec3> anchors, int tail, std::span<double> inverse) noexcept;
+
+}  // namespace palpate

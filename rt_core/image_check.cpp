@@ -1,0 +1,165 @@
+#include "rt_core/image_check.h"
+
+namespace palpate {
+
+namespace {
+
+using std::int32_t;
+using std::int64_t;
+
+bool in_range(int64_t index, std::size_t size) noexcept { return index >= 0 && index < static_cast<int64_t>(size); }
+bool is_unit(Vec3 v) noexcept { return squared_norm(v) > 0.99 && squared_norm(v) < 1.01; }
+bool is_unit(Quat q) noexcept {
+  const Real s = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
+  return s > 0.99 && s < 1.01;
+}
+
+ImageResult broken(const char* field, std::size_t index) noexcept {
+  return {ImageError::kCrossReference, field, static_cast<int64_t>(index)};
+}
+ImageResult not_finite(const char* field, std::size_t index) noexcept {
+  return {ImageError::kNotFinite, field, static_cast<int64_t>(index)};
+}
+
+ImageResult check_surface(const Model& model) noexcept {
+  if (model.vertex_m.size() != model.vertex_normal.size()) return broken("vertex_normal", 0);
+  for (std::size_t i = 0; i < model.vertex_m.size(); ++i) {
+    if (!is_finite(model.vertex_m[i])) return not_finite("vertex_m", i);
+    if (!is_unit(model.vertex_normal[i])) return not_finite("vertex_normal", i);
+  }
+  for (std::size_t i = 0; i < model.triangle.size(); ++i) {
+    const Triangle& t = model.triangle[i];
+    for (int k = 0; k < 3; ++k) {
+      if (!in_range(t.vertex[k], model.vertex_m.size())) return broken("triangle.vertex", i);
+      if (!in_range(t.adjacent[k], model.triangle.size())) return broken("triangle.adjacent", i);
+    }
+  }
+  return {};
+}
+
+// One child slot of a node: kinds are told apart by count (see BvhNode). Adds the triangles of a leaf to `covered`.
+ImageResult check_child(const Model& model, std::size_t i, int k, int64_t& covered) noexcept {
+  const BvhNode& node = model.bvh[i];
+  const int32_t child = node.child[k];
+  if (node.count[k] == 0 && child < 0) return {};  // empty
+  if (node.count[k] == 0) {
+    if (child <= static_cast<int64_t>(i) || !in_range(child, model.bvh.size())) return broken("bvh.child", i);
+  } else {
+    const int64_t first = ~child;
+    if (child >= 0 || node.count[k] < 0 || node.count[k] > 4) return broken("bvh.count", i);
+    if (!in_range(first, model.triangle.size()) || !in_range(first + node.count[k] - 1, model.triangle.size()))
+      return broken("bvh.child", i);
+    covered += node.count[k];
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    const double lower = static_cast<double>(node.lower_m[axis][k]);
+    const double upper = static_cast<double>(node.upper_m[axis][k]);
+    if (!is_finite(lower) || !is_finite(upper) || !(lower <= upper)) return not_finite("bvh.bounds", i);
+  }
+  return {};
+}
+
+// Walks the tree as a traversal would, so that a tree too deep for the tick's stack, or one whose nodes are shared or
+// unreachable, is refused here.
+ImageResult check_reachability(const Model& model) noexcept {
+  int32_t stack[kMaxTraversalStack];
+  int32_t top = 0;
+  std::size_t visited = 0;
+  stack[top++] = 0;
+  while (top > 0) {  // bound: one visit per node, else refused
+    const auto i = static_cast<std::size_t>(stack[--top]);
+    if (++visited > model.bvh.size()) return broken("bvh.shared_node", i);
+    for (int k = 0; k < 4; ++k) {
+      if (model.bvh[i].child[k] < 0) continue;
+      if (top == kMaxTraversalStack) return broken("bvh.depth", i);
+      stack[top++] = model.bvh[i].child[k];
+    }
+  }
+  return visited == model.bvh.size() ? ImageResult{} : broken("bvh.unreachable_node", visited);
+}
+
+ImageResult check_hierarchy(const Model& model) noexcept {
+  int64_t covered = 0;
+  for (std::size_t i = 0; i < model.bvh.size(); ++i) {
+    for (int k = 0; k < 4; ++k) {
+      const ImageResult result = check_child(model, i, k, covered);
+      if (result.error != ImageError::kNone) return result;
+    }
+  }
+  if (covered != static_cast<int64_t>(model.triangle.size())) return broken("bvh.coverage", model.bvh.size() - 1);
+  return check_reachability(model);
+}
+
+ImageResult check_skeleton(const Model& model) noexcept {
+  for (std::size_t i = 0; i < model.anchor.size(); ++i) {
+    const Anchor& a = model.anchor[i];
+    if (!is_finite(a.position_m) || !is_unit(a.normal)) return not_finite("anchor", i);
+    const double sizes[] = {a.section_area_m2, a.section_inertia_m4, a.section_radius_m, a.release_length_m};
+    for (const double size : sizes)
+      if (!(size > 0 && size < kHuge)) return not_finite("anchor.section", i);
+    if (a.fixed != 0 && a.fixed != 1) return broken("anchor.fixed", i);
+  }
+  const int64_t n_anchor = model.sizes.n_anchor;
+  const int64_t tail = model.params.rbf_tail == 1 ? 4 : 1;
+  if (model.sizes.n_rbf != (n_anchor == 0 ? 0 : n_anchor + tail)) return broken("n_rbf", 0);
+  if (model.sizes.n_rbf2 != model.sizes.n_rbf * model.sizes.n_rbf) return broken("n_rbf2", 0);
+  for (std::size_t i = 0; i < model.rbf_inverse.size(); ++i)
+    if (!is_finite(model.rbf_inverse[i])) return not_finite("rbf_inverse", i);
+  if (model.sizes.n_patch != 0 && model.sizes.n_patch != model.sizes.n_vertex) return broken("n_patch", 0);
+  if (static_cast<ShapeLaw>(model.params.shape_law) == ShapeLaw::kDisplacementAngle && n_anchor > 0 &&
+      model.sizes.n_patch == 0)
+    return broken("n_patch", 0);
+  for (std::size_t i = 0; i < model.patch.size(); ++i)
+    for (int k = 0; k < 3; ++k) {
+      if (!in_range(model.patch[i].anchor[k], model.anchor.size())) return broken("patch.anchor", i);
+      if (!is_finite(model.patch[i].weight[k])) return not_finite("patch.weight", i);
+    }
+  return {};
+}
+
+ImageResult check_piece(const Model& model, std::size_t i) noexcept {
+  const ToolPiece& p = model.piece[i];
+  if (!is_finite(p.pose_tool) || !is_unit(p.pose_tool.orientation)) return not_finite("piece.pose_tool", i);
+  for (const double extent : p.half_extent_m)
+    if (!(extent >= 0 && extent < kHuge)) return not_finite("piece.half_extent_m", i);
+  if (!(p.margin_m >= 0 && p.margin_m < kHuge)) return not_finite("piece.margin_m", i);
+  if (!(p.bounding_radius_m > 0 && p.bounding_radius_m < kHuge)) return not_finite("piece.bounding_radius_m", i);
+  if (p.shape < 0 || p.shape > static_cast<int32_t>(PieceShape::kHull)) return broken("piece.shape", i);
+  const int64_t last_point = int64_t{p.first_point} + p.point_count;
+  if (p.first_point < 0 || p.point_count < 0 || last_point > model.sizes.n_tool_point)
+    return broken("piece.first_point", i);
+  const int64_t last_hull = int64_t{p.first_hull} + p.hull_count;
+  if (p.first_hull < 0 || p.hull_count < 0 || last_hull > model.sizes.n_hull) return broken("piece.first_hull", i);
+  if (p.shape == static_cast<int32_t>(PieceShape::kHull) && p.hull_count < 1) return broken("piece.hull_count", i);
+  for (int64_t k = p.first_point; k < last_point; ++k)
+    if (model.tool_point[static_cast<std::size_t>(k)].piece != static_cast<int32_t>(i))
+      return broken("piece.first_point", i);
+  return {};
+}
+
+ImageResult check_tool(const Model& model) noexcept {
+  for (std::size_t i = 0; i < model.tool_point.size(); ++i) {
+    const ToolPoint& p = model.tool_point[i];
+    if (!is_finite(p.position_tool_m)) return not_finite("tool_point.position_tool_m", i);
+    const double sizes[] = {p.margin_m, p.area_m2, p.weight};
+    for (const double size : sizes)
+      if (!(size >= 0 && size < kHuge)) return not_finite("tool_point", i);
+    if (!in_range(p.piece, model.piece.size())) return broken("tool_point.piece", i);
+  }
+  for (std::size_t i = 0; i < model.hull_vertex_m.size(); ++i)
+    if (!is_finite(model.hull_vertex_m[i])) return not_finite("hull_vertex_m", i);
+  for (std::size_t i = 0; i < model.piece.size(); ++i)
+    if (const ImageResult result = check_piece(model, i); result.error != ImageError::kNone) return result;
+  return {};
+}
+
+}  // namespace
+
+ImageResult check_arrays(const Model& model) noexcept {
+  if (const ImageResult result = check_surface(model); result.error != ImageError::kNone) return result;
+  if (const ImageResult result = check_hierarchy(model); result.error != ImageError::kNone) return result;
+  if (const ImageResult result = check_skeleton(model); result.error != ImageError::kNone) return result;
+  return check_tool(model);
+}
+
+}  // namespace palpate

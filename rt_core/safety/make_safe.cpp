@@ -1,0 +1,107 @@
+// The last stage of every tick, in every mode, for every model:
+//   virtual coupling -> finite? -> magnitude -> mode gain -> rate.
+#include "rt_core/coupling/virtual_coupling.h"
+#include "rt_core/safety/mode_machine.h"
+#include "rt_core/stages.h"
+
+namespace palpate {
+
+namespace {
+
+bool is_finite_wrench(const Wrench& w) PALPATE_RT { return is_finite(w.force_N) && is_finite(w.torque_Nm); }
+
+// Scales v so that its length is at most `limit`; the direction is kept. Returns whether it had to.
+bool clamp_length(Vec3& v, double limit) PALPATE_RT {
+  const double length = norm(v);
+  if (length <= limit) return false;
+  v = (limit / length) * v;
+  return true;
+}
+
+// Moves the tool to its corrected pose and returns the wrench the coupling exerts on the handle there.
+Wrench couple(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
+  const Wrench on_handle = coupling_wrench(model, state.device_w, state.tool_w);
+  const Wrench on_tool{-on_handle.force_N, -on_handle.torque_Nm};
+  Twist correction;
+  if (!correct(model, state.contact_stiffness, scratch.contact_wrench_w, on_tool, correction))
+    scratch.status |= Status::kCouplingSingular;
+  state.safety.tool_corrected_w = moved(state.tool_w, correction);
+  return coupling_wrench(model, state.device_w, state.safety.tool_corrected_w);
+}
+
+// After a non-finite number anywhere: drop contact memory and start again from the handle's pose.
+void restart_contact(State& state) PALPATE_RT {
+  state.tool_w = state.tool_previous_w = state.safety.tool_corrected_w = state.device_w;
+  for (double& k : state.contact_stiffness) k = 0;
+  for (PointState& point : state.point) point = PointState{};  // bound: kMaxToolPoints
+  for (Region& region : state.region) region = Region{};       // bound: kMaxRegions
+  for (AnchorState& anchor : state.anchor) anchor = AnchorState{};
+}
+
+Wrench limited(const Model& model, Wrench wrench, Scratch& scratch) PALPATE_RT {
+  const bool force = clamp_length(wrench.force_N, model.params.force_max_N);
+  const bool torque = clamp_length(wrench.torque_Nm, model.params.torque_max_Nm);
+  if (force || torque) scratch.status |= Status::kForceClamped;
+  return wrench;
+}
+
+// A fault limiter, set far above what contact does: a slow rate limit inside the loop would destabilise it.
+Wrench rate_limited(const Model& model, const Wrench& last, const Wrench& wanted, Scratch& scratch) PALPATE_RT {
+  const double step_N = model.params.force_rate_max_N_per_s * model.params.period_s;
+  Vec3 force_step = wanted.force_N - last.force_N;
+  Vec3 torque_step = wanted.torque_Nm - last.torque_Nm;
+  // Torque may change by the same fraction of its own limit as force does.
+  const double step_Nm =
+      model.params.force_max_N > 0 ? step_N / model.params.force_max_N * model.params.torque_max_Nm : 0;
+  const bool force = clamp_length(force_step, step_N);
+  const bool torque = clamp_length(torque_step, step_Nm);
+  if (force || torque) scratch.status |= Status::kRateLimited;
+  return {last.force_N + force_step, last.torque_Nm + torque_step};
+}
+
+std::uint32_t late_ticks_of(const State& state, const Input& input) PALPATE_RT {
+  const auto rejected = static_cast<std::uint32_t>(state.rejected_ticks);
+  const std::uint32_t late = input.stale_ticks > input.overrun_ticks ? input.stale_ticks : input.overrun_ticks;
+  return late > rejected ? late : rejected;
+}
+
+}  // namespace
+
+void make_safe(const Model& model, State& state, Scratch& scratch, const Input& input, Output& output) PALPATE_RT {
+  SafetyState& safety = state.safety;
+  const bool driven = input.drive == Drive::kTool;
+  Wrench wrench = scratch.contact_wrench_w;
+  if (!driven && is_finite_wrench(wrench)) wrench = couple(model, state, scratch);
+  if (driven) safety.tool_corrected_w = state.tool_w;
+
+  std::uint32_t faults = 0;
+  if (!is_finite_wrench(wrench)) faults |= Fault::kNotFinite;
+  if (!is_finite(safety.tool_corrected_w)) faults |= Fault::kStateCorrupt;
+  if (faults != 0) {
+    restart_contact(state);
+    scratch.contact_wrench_w = {};
+    scratch.energy_J = 0;
+    wrench = safety.last_good_w;  // ramped out below
+  }
+  safety.last_good_w = limited(model, wrench, scratch);
+
+  if (driven) {  // no device, no hand: nothing to ramp
+    safety.fault |= faults;
+    safety.mode = safety.fault == 0 ? Mode::kForce : Mode::kFault;
+    safety.ramp = safety.fault == 0 ? 1 : 0;
+    safety.last_device_w = {safety.ramp * safety.last_good_w.force_N, safety.ramp * safety.last_good_w.torque_Nm};
+  } else {
+    advance_mode(model, input, faults, late_ticks_of(state, input), safety);
+    const Wrench scaled{safety.ramp * safety.last_good_w.force_N, safety.ramp * safety.last_good_w.torque_Nm};
+    safety.last_device_w = rate_limited(model, safety.last_device_w, scaled, scratch);
+    if (safety.ramp < 1 && safety.mode != Mode::kIdle) scratch.status |= Status::kRamping;
+  }
+
+  output.device_w = safety.last_device_w;
+  output.ramp = safety.ramp;
+  output.fault = safety.fault;
+  output.mode = safety.mode;
+  output.reserved = 0;
+}
+
+}  // namespace palpate

@@ -1,0 +1,153 @@
+// The loader ladder: every rung fires, every flipped bit and every truncation is refused, and a refused image leaves
+// the model untouched.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "tests/support/tiny_image.h"
+
+namespace palpate::test {
+namespace {
+
+ImageResult open(ImageBytes& image) {
+  Model model;
+  return open_image(image.bytes(), model);
+}
+
+TEST(Image, TinySceneOpens) {
+  ImageBytes image = tiny_image();
+  Model model;
+  const ImageResult result = open_image(image.bytes(), model);
+  ASSERT_EQ(result.error, ImageError::kNone) << describe(result.error) << ": " << result.field;
+  EXPECT_STREQ(model.name, "tiny");
+  EXPECT_EQ(model.triangle.size(), 4u);
+  EXPECT_EQ(model.scene_hash, image.header().checksum);
+  EXPECT_DOUBLE_EQ(model.params.k3_N_per_m3, 3e8);
+}
+
+TEST(Image, EveryFlippedBitIsRefused) {
+  ImageBytes image = tiny_image();
+  for (std::size_t byte = 0; byte < image.bytes().size(); ++byte) {
+    for (int bit = 0; bit < 8; ++bit) {
+      image.bytes()[byte] ^= std::byte(1 << bit);
+      Model model;
+      const ImageResult result = open_image(image.bytes(), model);
+      EXPECT_NE(result.error, ImageError::kNone) << "byte " << byte << " bit " << bit;
+      EXPECT_EQ(model.scene_hash, 0u);
+      EXPECT_NE(result.field[0], '\0');
+      image.bytes()[byte] ^= std::byte(1 << bit);
+    }
+  }
+  EXPECT_EQ(open(image).error, ImageError::kNone);
+}
+
+TEST(Image, EveryTruncationIsRefused) {
+  ImageBytes image = tiny_image();
+  for (std::size_t length = 0; length < image.bytes().size(); ++length) {
+    Model model;
+    EXPECT_NE(open_image(image.bytes().first(length), model).error, ImageError::kNone) << length;
+  }
+}
+
+TEST(Image, MisalignedBytesAreRefused) {
+  ImageBytes image = tiny_image();
+  Model model;
+  EXPECT_EQ(open_image(image.bytes().subspan(8), model).error, ImageError::kMisaligned);
+}
+
+struct Damage {
+  const char* what;
+  ImageError error;
+  const char* field;
+  std::function<void(ImageBytes&)> apply;
+};
+
+const double kNan = std::numeric_limits<double>::quiet_NaN();
+const double kInfinity = std::numeric_limits<double>::infinity();
+
+// Each damage is sealed with a fitting checksum: the rung itself must catch it.
+const Damage kDamages[] = {
+    {"magic", ImageError::kMagic, "magic", [](ImageBytes& i) { i.header().magic += 1; }},
+    {"version", ImageError::kVersion, "version", [](ImageBytes& i) { i.header().version += 1; }},
+    {"real size", ImageError::kRealSize, "real_bytes", [](ImageBytes& i) { i.header().real_bytes = 4; }},
+    {"layout", ImageError::kLayout, "layout_hash", [](ImageBytes& i) { i.header().layout_hash ^= 1; }},
+    {"total", ImageError::kTotalSize, "total_bytes", [](ImageBytes& i) { i.header().total_bytes += 64; }},
+    {"name", ImageError::kName, "name", [](ImageBytes& i) { std::memset(i.header().name, 'x', kNameBytes); }},
+    {"negative size", ImageError::kSizeRange, "n_vertex", [](ImageBytes& i) { i.sizes().n_vertex = -4; }},
+    {"huge size", ImageError::kSizeRange, "n_bvh", [](ImageBytes& i) { i.sizes().n_bvh = INT64_MAX; }},
+    {"sizes do not add up", ImageError::kArrayBounds, "arrays", [](ImageBytes& i) { i.sizes().n_hull = 100; }},
+    {"vertex not finite", ImageError::kNotFinite, "vertex_m",
+     [](ImageBytes& i) { i.array<Vec3>(kVertex)[2].y = kNan; }},
+    {"normal not unit", ImageError::kNotFinite, "vertex_normal", [](ImageBytes& i) { i.array<Vec3>(kNormal)[1] = {}; }},
+    {"vertex index", ImageError::kCrossReference, "triangle.vertex",
+     [](ImageBytes& i) { i.array<Triangle>(kTriangle)[3].vertex[1] = 4; }},
+    {"adjacent index", ImageError::kCrossReference, "triangle.adjacent",
+     [](ImageBytes& i) { i.array<Triangle>(kTriangle)[0].adjacent[2] = -1; }},
+    {"cyclic tree", ImageError::kCrossReference, "bvh.child",
+     [](ImageBytes& i) { i.array<BvhNode>(kBvh)->child[1] = 0; }},
+    {"leaf too large", ImageError::kCrossReference, "bvh.count",
+     [](ImageBytes& i) { i.array<BvhNode>(kBvh)->count[0] = 5; }},
+    {"leaf outside", ImageError::kCrossReference, "bvh.child",
+     [](ImageBytes& i) { i.array<BvhNode>(kBvh)->child[0] = ~1; }},
+    {"triangle not covered", ImageError::kCrossReference, "bvh.coverage",
+     [](ImageBytes& i) { i.array<BvhNode>(kBvh)->count[0] = 3; }},
+    {"bounds inverted", ImageError::kNotFinite, "bvh.bounds",
+     [](ImageBytes& i) { i.array<BvhNode>(kBvh)->lower_m[1][0] = 1.0f; }},
+    {"bounds not finite", ImageError::kNotFinite, "bvh.bounds",
+     [](ImageBytes& i) { i.array<BvhNode>(kBvh)->upper_m[2][0] = std::numeric_limits<float>::quiet_NaN(); }},
+    {"anchor section", ImageError::kNotFinite, "anchor.section",
+     [](ImageBytes& i) { i.array<Anchor>(kAnchor)->section_area_m2 = 0; }},
+    {"anchor flag", ImageError::kCrossReference, "anchor.fixed",
+     [](ImageBytes& i) { i.array<Anchor>(kAnchor)->fixed = 7; }},
+    {"rbf not finite", ImageError::kNotFinite, "rbf_inverse",
+     [](ImageBytes& i) { i.array<double>(kRbf)[3] = kInfinity; }},
+    {"rbf tail", ImageError::kCrossReference, "n_rbf", [](ImageBytes& i) { i.params().rbf_tail = 1; }},
+    {"patches missing", ImageError::kCrossReference, "n_patch", [](ImageBytes& i) { i.params().shape_law = 1; }},
+    {"piece shape", ImageError::kCrossReference, "piece.shape",
+     [](ImageBytes& i) { i.array<ToolPiece>(kPiece)->shape = 6; }},
+    {"hull without vertices", ImageError::kCrossReference, "piece.hull_count",
+     [](ImageBytes& i) { i.array<ToolPiece>(kPiece)->shape = 5; }},
+    {"piece orientation", ImageError::kNotFinite, "piece.pose_tool",
+     [](ImageBytes& i) { i.array<ToolPiece>(kPiece)->pose_tool.orientation.w = 2; }},
+    {"piece margin", ImageError::kNotFinite, "piece.margin_m",
+     [](ImageBytes& i) { i.array<ToolPiece>(kPiece)->margin_m = -1; }},
+    {"piece points", ImageError::kCrossReference, "piece.first_point",
+     [](ImageBytes& i) { i.array<ToolPiece>(kPiece)->point_count = INT32_MAX; }},
+    {"tool point piece", ImageError::kCrossReference, "tool_point.piece",
+     [](ImageBytes& i) { i.array<ToolPoint>(kToolPoint)->piece = 1; }},
+    {"tool point weight", ImageError::kNotFinite, "tool_point",
+     [](ImageBytes& i) { i.array<ToolPoint>(kToolPoint)->weight = kNan; }},
+    {"tool point place", ImageError::kNotFinite, "tool_point.position_tool_m",
+     [](ImageBytes& i) { i.array<ToolPoint>(kToolPoint)->position_tool_m.x = 1e13; }},
+};
+
+TEST(Image, EachRungNamesItsField) {
+  for (const Damage& damage : kDamages) {
+    ImageBytes image = tiny_image();
+    damage.apply(image);
+    image.seal();
+    const ImageResult result = open(image);
+    EXPECT_EQ(result.error, damage.error) << damage.what << ": " << describe(result.error);
+    EXPECT_STREQ(result.field, damage.field) << damage.what;
+  }
+}
+
+TEST(Image, EveryParameterIsRangeChecked) {
+#define PALPATE_FIELD(type, name, unit, lowest, highest, meaning)                                            \
+  for (const double value : {static_cast<double>(lowest) - 1.0, static_cast<double>(highest) + 1.0, kNan}) { \
+    if (std::isnan(value) && std::is_integral_v<type>) continue;                                             \
+    ImageBytes image = tiny_image();                                                                         \
+    image.params().name = static_cast<type>(value);                                                          \
+    image.seal();                                                                                            \
+    const ImageResult result = open(image);                                                                  \
+    EXPECT_EQ(result.error, ImageError::kParamRange) << #name << " = " << value;                             \
+    EXPECT_STREQ(result.field, #name);                                                                       \
+  }
+  PALPATE_MODEL_PARAMS(PALPATE_FIELD)
+#undef PALPATE_FIELD
+}
+
+}  // namespace
+}  // namespace palpate::test

@@ -1,0 +1,172 @@
+// Sense and safety around a contact that is a linear spring wall, so that the coupled equilibrium is known exactly.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "rt_core/coupling/virtual_coupling.h"
+#include "rt_core/tick.h"
+#include "tests/support/tiny_image.h"
+
+namespace palpate::test {
+namespace {
+
+// A wall at z = 0 of stiffness k: what collide .. deform would leave behind.
+struct Wall {
+  double k_N_per_m;
+  void operator()(State& state, Scratch& scratch) const {
+    const double depth_m = -state.tool_w.position_m.z;
+    for (double& entry : state.contact_stiffness) entry = 0;
+    if (!(depth_m > 0)) return;
+    scratch.contact_wrench_w.force_N = {0, 0, k_N_per_m * depth_m};
+    state.contact_stiffness[14] = k_N_per_m;
+  }
+};
+
+struct Rig {
+  Model model;
+  State state;
+  Scratch scratch;
+  Input input;
+  Output output;
+
+  Rig() {
+    model.params = tiny_params();
+    reset(state);
+  }
+  template <class Contact>
+  void step(const Contact& contact) {
+    sense(model, state, scratch, input);
+    contact(state, scratch);
+    make_safe(model, state, scratch, input, output);
+    input.commands = 0;
+  }
+  template <class Contact>
+  void arm(const Contact& contact) {
+    step(contact);
+    input.commands = Command::kArm;
+    for (int i = 0; i < 300; ++i) step(contact);
+  }
+};
+
+TEST(VirtualCoupling, HandFeelsTheSpringsInSeriesExactly) {
+  for (const double wall : {100.0, 1500.0, 17000.0, 1e6}) {
+    Rig rig;
+    rig.input.pose_w.position_m = {0, 0, 1e-3};
+    rig.arm(Wall{wall});
+    EXPECT_EQ(norm(rig.output.device_w.force_N), 0) << "no contact, no force";
+    const double kc = rig.model.params.coupling_N_per_m;
+    double felt = 0;
+    for (int i = 1; i <= 4000; ++i) {
+      rig.input.pose_w.position_m.z = 1e-3 - 1e-6 * i;  // 1 mm/s
+      rig.step(Wall{wall});
+      const double depth = -rig.input.pose_w.position_m.z;
+      felt = rig.output.device_w.force_N.z;
+      // Exact but for the tick in which the surface is crossed.
+      if (depth > 2e-6) {
+        ASSERT_NEAR(felt, depth * wall * kc / (wall + kc), 1e-9 * (1 + felt)) << wall;
+      }
+    }
+    EXPECT_GT(felt, 0.2);
+    EXPECT_LE(felt, 3e-3 * kc) << "never stiffer than the coupling";
+  }
+}
+
+TEST(VirtualCoupling, RotationIsCoupledToo) {
+  Rig rig;
+  rig.arm([](State&, Scratch&) {});
+  rig.input.pose_w.orientation = small_rotation({0.02, -0.01, 0.03});
+  rig.step([](State& state, Scratch& scratch) {
+    // A torsional spring of 2 N·m/rad about x towards the identity.
+    for (double& entry : state.contact_stiffness) entry = 0;
+    state.contact_stiffness[21] = 2;
+    scratch.contact_wrench_w.torque_Nm = {-2 * small_rotation_vector(state.tool_w.orientation).x, 0, 0};
+  });
+  // In series: 0.5 and 2 N·m/rad over 0.02 rad. The first tick predicts with no contact known, then corrects.
+  EXPECT_NEAR(rig.output.device_w.torque_Nm.x, -0.02 * (0.5 * 2 / 2.5), 2e-6);
+  EXPECT_NEAR(rig.output.device_w.torque_Nm.y, 0, 2e-6);
+}
+
+TEST(VirtualCoupling, PressDriveBypassesCouplingAndRamp) {
+  Rig rig;
+  rig.input.drive = Drive::kTool;
+  rig.input.pose_w.position_m = {0, 0, -2e-3};
+  rig.step(Wall{1000});
+  EXPECT_DOUBLE_EQ(rig.output.device_w.force_N.z, 2.0);
+  EXPECT_EQ(rig.output.mode, Mode::kForce);
+}
+
+TEST(Sense, ImplausibleAndNonFinitePosesAreHeldAndReported) {
+  Rig rig;
+  rig.arm(Wall{1000});
+  const Pose held = rig.state.device_w;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const Vec3 bad : {Vec3{nan, 0, 0}, Vec3{0, infinity, 0}, Vec3{0.1, 0, 0}}) {
+    rig.input.pose_w.position_m = bad;
+    rig.step(Wall{1000});
+    EXPECT_TRUE(rig.scratch.status & Status::kInputRejected);
+    EXPECT_EQ(rig.state.device_w, held);
+    EXPECT_NE(rig.output.mode, Mode::kForce);
+    rig.input.pose_w.position_m = held.position_m;
+    rig.step(Wall{1000});
+    EXPECT_FALSE(rig.scratch.status & Status::kInputRejected);
+    EXPECT_EQ(rig.output.mode, Mode::kForce);
+  }
+}
+
+TEST(Sense, APersistentJumpEndsInAFault) {
+  Rig rig;
+  rig.arm(Wall{1000});
+  rig.input.pose_w.position_m = {1, 0, 0};  // 1 m at 2 m/s would need 500 ticks
+  for (int i = 0; i < 30; ++i) rig.step(Wall{1000});
+  EXPECT_EQ(rig.output.mode, Mode::kFault);
+  EXPECT_EQ(norm(rig.output.device_w.force_N), 0);
+}
+
+TEST(Safety, NonFiniteContactRampsTheLastGoodForceOutAndLatches) {
+  Rig rig;
+  rig.input.pose_w.position_m = {0, 0, -3e-3};
+  rig.arm(Wall{2000});
+  double last = rig.output.device_w.force_N.z;
+  ASSERT_GT(last, 1);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  int ticks = 0;
+  do {
+    rig.step([nan](State&, Scratch& scratch) { scratch.contact_wrench_w.force_N = {nan, 0, 0}; });
+    EXPECT_TRUE(is_finite(rig.output.device_w.force_N));
+    EXPECT_LE(rig.output.device_w.force_N.z, last);
+    last = rig.output.device_w.force_N.z;
+  } while (rig.output.mode == Mode::kRamp && ++ticks < 100);
+  EXPECT_EQ(rig.output.mode, Mode::kFault);
+  EXPECT_TRUE(rig.output.fault & Fault::kNotFinite);
+  EXPECT_EQ(last, 0);
+}
+
+TEST(Safety, MagnitudeIsClampedWithItsDirectionKept) {
+  Rig rig;
+  rig.input.pose_w.position_m = {0, 0, -0.05};
+  rig.arm([](State&, Scratch& scratch) { scratch.contact_wrench_w = {{300, 0, 400}, {0, 3, 4}}; });
+  EXPECT_TRUE(rig.scratch.status & Status::kForceClamped);
+  EXPECT_LE(norm(rig.output.device_w.force_N), rig.model.params.force_max_N * (1 + 1e-12));
+  EXPECT_LE(norm(rig.output.device_w.torque_Nm), rig.model.params.torque_max_Nm * (1 + 1e-12));
+  EXPECT_GT(rig.output.device_w.force_N.x, 0);
+}
+
+TEST(Safety, NoForceStepExceedsTheRateLimit) {
+  Rig rig;
+  rig.model.params.force_rate_max_N_per_s = 1000;  // 1 N per tick
+  rig.arm(Wall{2000});
+  Vec3 last = rig.output.device_w.force_N;
+  bool limited = false;
+  for (int i = 0; i < 200; ++i) {
+    rig.step([i](State&, Scratch& scratch) { scratch.contact_wrench_w.force_N = {0, 0, i % 20 < 10 ? 500.0 : 0.0}; });
+    EXPECT_LE(norm(rig.output.device_w.force_N - last), 1.0 + 1e-9);
+    limited |= (rig.scratch.status & Status::kRateLimited) != 0;
+    last = rig.output.device_w.force_N;
+  }
+  EXPECT_TRUE(limited);
+}
+
+}  // namespace
+}  // namespace palpate::test
