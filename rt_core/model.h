@@ -67,10 +67,14 @@ struct Triangle {
   std::int32_t vertex[3];    // counter-clockwise seen from outside
   std::int32_t adjacent[3];  // triangle across edge (vertex[k], vertex[(k+1)%3])
 };
-// Node of a 4-wide hierarchy over the triangles. Bounds are single precision, rounded outward.
+// Node of a 4-wide hierarchy over the triangles. Bounds are single precision, rounded outward. The normal cone of a child
+// (axis, tangent of its half-angle) holds the normals of all its triangles and of their neighbours across edges and
+// vertices; a zero axis means "no cone": the child is then never skipped by direction.
 struct BvhNode {
   float lower_m[3][4];
   float upper_m[3][4];
+  float cone_axis[3][4];
+  float cone_tangent[4];
   std::int32_t child[4];  // count 0: inner node (>= 0) or empty (-1); count > 0: leaf, first triangle = ~child
   std::int32_t count[4];  // triangles in a leaf (1..4; they are contiguous), 0 for inner nodes and empty slots
 };

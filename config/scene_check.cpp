@@ -1,0 +1,199 @@
+// Rules between keys: what one key's value allows or forbids for another.
+#include <algorithm>
+
+#include "config/config_error.h"
+#include "config/scene.h"
+#include "config/schema.h"
+
+namespace palpate {
+
+namespace {
+
+[[noreturn]] void fail(const SceneDesc& scene, const std::string& key, const std::string& what) {
+  throw ConfigError(scene.source.where(key) + ": " + what);
+}
+
+// Refuses the keys of `all` that are present in the file but not in `used`: they would have no effect.
+void check_effect(const SceneDesc& scene, const std::string& table, std::initializer_list<const char*> all,
+                  std::initializer_list<const char*> used, const std::string& because) {
+  for (const char* key : all) {
+    const bool is_used = std::any_of(used.begin(), used.end(), [&](const char* u) { return std::string(u) == key; });
+    if (!is_used && scene.source.has(table + "." + key))
+      fail(scene, table + "." + key, "has no effect " + because + "; remove it");
+  }
+}
+
+void check_body_keys(const SceneDesc& scene) {
+  const auto only = [&](std::initializer_list<const char*> used, const char* shape) {
+    check_effect(scene, "body",
+                 {"half_axes_mm", "radius_mm", "height_mm", "size_mm", "width_mm", "profile_mm", "mesh", "scale",
+                  "fix_orientation", "triangles"},
+                 used, std::string("with shape = \"") + shape + "\"");
+  };
+  switch (scene.body.shape) {
+    case BodyShape::kEllipsoid:
+      return only({"half_axes_mm", "triangles"}, "ellipsoid");
+    case BodyShape::kSphere:
+      return only({"radius_mm", "triangles"}, "sphere");
+    case BodyShape::kCylinder:
+      return only({"radius_mm", "height_mm", "triangles"}, "cylinder");
+    case BodyShape::kBox:
+      return only({"size_mm", "triangles"}, "box");
+    case BodyShape::kRevolution:
+      return only({"profile_mm", "triangles"}, "revolution");
+    case BodyShape::kHeart:
+      return only({"width_mm", "triangles"}, "heart");
+    case BodyShape::kMesh:
+      return only({"mesh", "scale", "fix_orientation"}, "mesh");
+  }
+}
+
+void check_profile(const SceneDesc& scene) {
+  const std::vector<ProfilePoint>& p = scene.body.profile;
+  const std::string key = "body.profile_mm";
+  if (p.size() < 2) fail(scene, key, std::to_string(p.size()) + " points; allowed at least 2, from bottom to top");
+  double widest = 0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const std::string point = "point " + std::to_string(i);
+    if (p[i].radius_m < 0) fail(scene, key, point + " has a negative radius; allowed 0 or more");
+    if (p[i].radius_m == 0 && i > 0 && i + 1 < p.size())
+      fail(scene, key, point + " touches the axis; only the first and last point may have radius 0");
+    if (i > 0 && p[i].radius_m == p[i - 1].radius_m && p[i].height_m == p[i - 1].height_m)
+      fail(scene, key, point + " repeats the one before; remove it");
+    widest = std::max(widest, p[i].radius_m);
+  }
+  if (!(widest >= 0.5e-3)) fail(scene, key, "the largest radius is below 0.5 mm; check the unit (mm)");
+  if (!(p.back().height_m > p.front().height_m))
+    fail(scene, key, "runs from top to bottom; list the points from bottom to top");
+}
+
+void check_body(const SceneDesc& scene) {
+  check_body_keys(scene);
+  if (scene.body.shape == BodyShape::kMesh && scene.body.mesh.empty())
+    fail(scene, "body.mesh", "missing; shape = \"mesh\" needs the path of an .obj, .stl or .ply file");
+  if (scene.body.shape == BodyShape::kRevolution) check_profile(scene);
+  const double nu = scene.material.poisson_ratio;
+  if (nu > 0.5 && !(scene.material.legacy_paper_material && nu == 1.0))
+    fail(scene, "body.material.poisson_ratio",
+         number_text(nu) +
+             " is thermodynamically impossible; allowed -0.999 to 0.5. For the printed 1.0 of Cui & Xiao 2008 set "
+             "body.material.legacy_paper_material = true");
+  if (scene.skeleton.anchors_min > scene.skeleton.anchors_max)
+    fail(scene, "skeleton.anchors_min", std::to_string(scene.skeleton.anchors_min) +
+                                            " is larger than skeleton.anchors_max = " +
+                                            std::to_string(scene.skeleton.anchors_max) + "; lower it");
+}
+
+void check_contact(const SceneDesc& scene) {
+  const auto unused_table = [&](const char* name, ContactLaw law, const char* law_name) {
+    if (scene.contact.law != law && scene.source.has(std::string("contact.") + name))
+      fail(scene, std::string("contact.") + name,
+           std::string("has no effect unless contact.law = \"") + law_name + "\"; set it or remove the table");
+  };
+  unused_table("duffing", ContactLaw::kDuffing, "duffing");
+  unused_table("cubic", ContactLaw::kCubic, "cubic");
+  unused_table("hertz", ContactLaw::kHertz, "hertz");
+  if (scene.contact.law == ContactLaw::kCubic && !(scene.cubic.k1_N_per_m > 0 || scene.cubic.k3_N_per_m3 > 0))
+    fail(scene, "contact.cubic", "k1_N_per_m and k3_N_per_m3 are both 0: no force; set at least one");
+  if (scene.contact.law == ContactLaw::kDuffing && !(scene.duffing.omega0 > 0 || scene.duffing.beta0sq_eps > 0))
+    fail(scene, "contact.duffing", "omega0 and beta0sq_eps are both 0: no force; set at least one");
+  if (!is_auto(scene.friction.mu_ref) && !is_auto(scene.friction.k))
+    fail(scene, "friction.k", "both k and mu_ref are given, and each determines the other; keep one");
+}
+
+// Which dimensions each piece shape needs.
+struct Needs {
+  bool radius, length, size, vertices;
+};
+Needs needs_of(PieceShape shape) {
+  switch (shape) {
+    case PieceShape::kSphere:
+      return {true, false, false, false};
+    case PieceShape::kCapsule:
+    case PieceShape::kCylinder:
+    case PieceShape::kCone:
+      return {true, true, false, false};
+    case PieceShape::kBox:
+      return {false, false, true, false};
+    case PieceShape::kHull:
+      return {false, false, false, true};
+  }
+  return {};
+}
+
+void check_piece_keys(const SceneDesc& scene, const PieceDesc& piece, const std::string& label) {
+  const Needs needs = needs_of(piece.shape);
+  const auto check = [&](bool needed, bool given, const char* key) {
+    if (needed && !given) fail(scene, label + "." + key, "missing; this shape needs it");
+    if (!needed && given) fail(scene, label + "." + key, "has no effect for this shape; remove it");
+  };
+  check(needs.radius, !is_auto(piece.radius_m), "radius_mm");
+  check(needs.length, !is_auto(piece.length_m), "length_mm");
+  check(needs.size, !is_auto(piece.size_m.x), "size_mm");
+  check(needs.vertices, !piece.vertices_m.empty(), "vertices_mm");
+  const bool round = piece.shape == PieceShape::kSphere || piece.shape == PieceShape::kCapsule;
+  check(false, round && !is_auto(piece.margin_m), "margin_mm");
+}
+
+void check_piece_sizes(const SceneDesc& scene, const PieceDesc& piece, const std::string& label) {
+  double smallest_half = kHuge;
+  if (piece.shape == PieceShape::kCapsule && piece.length_m < 2 * piece.radius_m)
+    fail(scene, label + ".length_mm", "shorter than twice the radius; a capsule's length includes its round ends");
+  if (piece.shape == PieceShape::kCylinder) smallest_half = std::min(piece.radius_m, 0.5 * piece.length_m);
+  if (piece.shape == PieceShape::kBox) smallest_half = 0.5 * std::min({piece.size_m.x, piece.size_m.y, piece.size_m.z});
+  if (!is_auto(piece.margin_m) && !(piece.margin_m <= smallest_half))
+    fail(scene, label + ".margin_mm",
+         "larger than half the smallest side; allowed up to " + number_text(1e3 * smallest_half) + " mm");
+  if (piece.shape == PieceShape::kHull && piece.vertices_m.size() > 64)
+    fail(scene, label + ".vertices_mm", std::to_string(piece.vertices_m.size()) + " corners; allowed 1 to 64");
+  if (piece.shape == PieceShape::kBox && piece.points > 0 && piece.points < 8)
+    fail(scene, label + ".points", std::to_string(piece.points) + "; a box needs its 8 corners: allowed 0 or 8 to 128");
+  const bool has_ends = piece.shape == PieceShape::kCapsule || piece.shape == PieceShape::kCylinder ||
+                        piece.shape == PieceShape::kCone;
+  if (piece.touches != TouchingEnd::kAll && !has_ends)
+    fail(scene, label + ".touches", "this shape has no end face; remove it");
+}
+
+void check_tool(const SceneDesc& scene) {
+  const auto count = static_cast<std::int32_t>(scene.piece.size());
+  if (count < 1 || count > kMaxPieces)
+    fail(scene, "tool.piece",
+         std::to_string(count) + " pieces; allowed 1 to " + std::to_string(kMaxPieces) + ": write [[tool.piece]]");
+  std::int32_t points = 0;
+  for (std::int32_t i = 0; i < count; ++i) {
+    const std::string label = "tool.piece[" + std::to_string(i) + "]";
+    const PieceDesc& piece = scene.piece[static_cast<std::size_t>(i)];
+    check_piece_keys(scene, piece, label);
+    check_piece_sizes(scene, piece, label);
+    points += piece.points;
+  }
+  if (points < 1 || points > kMaxToolPoints)
+    fail(scene, "tool.piece",
+         std::to_string(points) + " tool points in all; allowed 1 to " + std::to_string(kMaxToolPoints) +
+             ": change the pieces' points");
+}
+
+void check_device_and_path(const SceneDesc& scene) {
+  const DeviceDesc& d = scene.device;
+  if (!(d.silence_hold_ticks <= d.silence_passive_ticks && d.silence_passive_ticks < d.silence_fault_ticks))
+    fail(scene, "device.silence_fault_ticks", "must be above silence_passive_ticks, and that not below "
+                                              "silence_hold_ticks");
+  for (std::size_t i = 0; i < scene.path.point.size(); ++i) {
+    const std::string key = "path.point[" + std::to_string(i) + "].time_s";
+    const double time = scene.path.point[i].time_s;
+    if (i == 0 && time != 0) fail(scene, key, "the first point must be at time 0");
+    if (i > 0 && !(time > scene.path.point[i - 1].time_s))
+      fail(scene, key, number_text(time) + " is not later than the point before; times must increase");
+  }
+}
+
+}  // namespace
+
+void check_scene(const SceneDesc& scene) {
+  check_body(scene);
+  check_contact(scene);
+  check_tool(scene);
+  check_device_and_path(scene);
+}
+
+}  // namespace palpate

@@ -1,0 +1,264 @@
+#include "config/schema.h"
+
+namespace palpate {
+
+namespace {
+
+template <class C, class T>
+C class_of(T C::*);
+template <class C, class T>
+T type_of(T C::*);
+
+template <auto member>
+void* field(void* table) {
+  return &(static_cast<decltype(class_of(member))*>(table)->*member);
+}
+template <auto member>
+void set(void* table, std::int32_t value) {
+  static_cast<decltype(class_of(member))*>(table)->*member = static_cast<decltype(type_of(member))>(value);
+}
+template <auto member>
+std::int32_t get(const void* table) {
+  return static_cast<std::int32_t>(static_cast<const decltype(class_of(member))*>(table)->*member);
+}
+
+template <auto member>
+constexpr KeySpec number(const char* key, double lowest, double highest, double scale, const char* meaning,
+                         bool required = false) {
+  return {key, KeyKind::kNumber, lowest, highest, scale, required, "", meaning, field<member>, nullptr, nullptr};
+}
+template <auto member>
+constexpr KeySpec number_or_auto(const char* key, double lowest, double highest, double scale, const char* meaning) {
+  return {key, KeyKind::kNumberOrAuto, lowest, highest, scale, false, "", meaning, field<member>, nullptr, nullptr};
+}
+template <auto member>
+constexpr KeySpec integer(const char* key, double lowest, double highest, const char* meaning) {
+  return {key, KeyKind::kInteger, lowest, highest, 1, false, "", meaning, field<member>, nullptr, nullptr};
+}
+template <auto member>
+constexpr KeySpec boolean(const char* key, const char* meaning) {
+  return {key, KeyKind::kBool, 0, 1, 1, false, "", meaning, field<member>, nullptr, nullptr};
+}
+// For text, `highest` is the greatest length.
+template <auto member>
+constexpr KeySpec text(const char* key, double longest, const char* meaning, bool required = false) {
+  return {key, KeyKind::kText, 1, longest, 1, required, "", meaning, field<member>, nullptr, nullptr};
+}
+template <auto member>
+constexpr KeySpec choice(const char* key, const char* choices, const char* meaning, bool required = false) {
+  return {key, KeyKind::kChoice, 0, 0, 1, required, choices, meaning, nullptr, set<member>, get<member>};
+}
+template <auto member>
+constexpr KeySpec list(KeyKind kind, const char* key, double lowest, double highest, double scale,
+                       const char* meaning) {
+  return {key, kind, lowest, highest, scale, false, "", meaning, field<member>, nullptr, nullptr};
+}
+
+constexpr double kMilli = 1e-3;
+constexpr double kMilliSquared = 1e-6;
+constexpr double kDegree = 3.14159265358979323846 / 180.0;
+constexpr KeyKind kVec3 = KeyKind::kVec3;
+
+const KeySpec kTop[] = {
+    text<&SceneDesc::name>("name", kNameBytes - 1, "name stored in the image and shown everywhere", true),
+};
+
+const KeySpec kBody[] = {
+    choice<&BodyDesc::shape>("shape", "ellipsoid|sphere|cylinder|box|revolution|heart|mesh", "kind of surface", true),
+    list<&BodyDesc::half_axes_m>(kVec3, "half_axes_mm", 1, 5000, kMilli, "ellipsoid: half axes along x, y, z"),
+    number<&BodyDesc::radius_m>("radius_mm", 1, 5000, kMilli, "sphere, cylinder: radius"),
+    number<&BodyDesc::height_m>("height_mm", 1, 10000, kMilli, "cylinder: height along y"),
+    list<&BodyDesc::size_m>(kVec3, "size_mm", 1, 10000, kMilli, "box: sides along x, y, z"),
+    number<&BodyDesc::width_m>("width_mm", 1, 10000, kMilli, "heart: width along x; it is about as high"),
+    list<&BodyDesc::profile>(KeyKind::kPairs, "profile_mm", -10000, 10000, kMilli,
+                             "revolution: points [radius, height] from bottom to top; turns above 35 degrees stay "
+                             "sharp, the rest is smoothed; open ends are closed by discs"),
+    text<&BodyDesc::mesh>("mesh", 4096, "mesh: file (.obj, .stl, .ply), relative to the scene file; y is up"),
+    number<&BodyDesc::scale>("scale", 1e-9, 1e6, 1, "mesh: metres per unit of the file"),
+    boolean<&BodyDesc::fix_orientation>("fix_orientation", "mesh: turn triangles that face inwards"),
+    integer<&BodyDesc::triangles>("triangles", kFewestTriangles, kMostTriangles,
+                                  "all but mesh: about this many triangles; the tick's cost hardly depends on it"),
+};
+const KeySpec kMaterial[] = {
+    number<&MaterialDesc::youngs_modulus_Pa>("youngs_modulus_Pa", 1, 1e13, 1, "Young's modulus E"),
+    number<&MaterialDesc::poisson_ratio>("poisson_ratio", -0.999, 1, 1,
+                                         "Poisson's ratio nu; at most 0.5 (larger is thermodynamically impossible)"),
+    number<&MaterialDesc::density_kg_per_m3>("density_kg_per_m3", 1, 1e5, 1, "density rho"),
+    boolean<&MaterialDesc::legacy_paper_material>(
+        "legacy_paper_material", "accept the nu = 1.0 printed by Cui & Xiao 2008 and use 0.47 instead, with a warning"),
+};
+const KeySpec kFixed[] = {
+    number<&FixedDesc::base_height_m>("base_height_mm", 0, 10000, kMilli,
+                                      "everything of the body up to this height above its lowest point is clamped"),
+};
+const KeySpec kSkeleton[] = {
+    choice<&SkeletonDesc::law>("law", "none|stiffness|paper",
+                               "beam skeleton: stiffness = sum of beam stiffnesses; paper = the ratios of Luo & Xiao "
+                               "2006, eqs. 6-8"),
+    choice<&SkeletonDesc::anchors>("anchors", "auto|mesh",
+                                   "auto: exact curvature-extremal points of the shape, from the mesh where the shape "
+                                   "is a mesh or a heart; mesh: always from the mesh"),
+    integer<&SkeletonDesc::anchors_min>("anchors_min", 0, kMaxAnchors, "add extreme points until there are this many"),
+    integer<&SkeletonDesc::anchors_max>("anchors_max", 1, kMaxAnchors, "keep the most persistent"),
+    number_or_auto<&SkeletonDesc::section_radius_m>(
+        "section_radius_mm", 0.01, 5000, kMilli,
+        "radius of the beams' circular section; auto: the beams share the body's volume, S = V / sum of lengths"),
+};
+const KeySpec kContact[] = {
+    choice<&ContactDesc::law>("law", "duffing|cubic|hertz",
+                              "force per unit weight f = k1 D + k3 D^3: from Duffing parameters, given directly, or "
+                              "fitted to Hertz' contact"),
+    choice<&ContactDesc::weight>("weight", "winkler|area|paper",
+                                 "weight of a tool point: area / reference area (force continuous as points enter and "
+                                 "leave), share of the area in contact, or 1/n"),
+    number_or_auto<&ContactDesc::reference_area_m2>(
+        "reference_area_mm2", 1e-3, 1e8, kMilliSquared,
+        "winkler: contact area over which the law holds as stated; auto: mean area of a tool point"),
+    number<&ContactDesc::max_depth_m>("max_depth_mm", 0.001, 1000, kMilli,
+                                      "deepest penetration of the law; beyond it the law continues by its tangent"),
+    number_or_auto<&ContactDesc::cluster_distance_m>(
+        "cluster_distance_mm", 0.001, 1000, kMilli,
+        "contact points nearer than this are one region; auto: twice the spacing of the tool points"),
+};
+const KeySpec kDuffing[] = {
+    number<&DuffingDesc::mass_kg>("mass_kg", 1e-6, 1e6, 1, "m; with the two below in mm and N: k1 = m omega0^2 N/mm"),
+    number<&DuffingDesc::omega0>("omega0", 0, 1e3, 1, "omega0 of Luo & Xiao 2006"),
+    number<&DuffingDesc::beta0sq_eps>("beta0sq_eps", 0, 1e6, 1, "beta0^2 epsilon; k3 = coefficient m beta0^2 eps N/mm^3"),
+    choice<&DuffingDesc::coefficient>("coefficient", "static|paper",
+                                      "static: 1, the equilibrium under a constant force; paper: 3/4, the mean over an "
+                                      "oscillation (Luo & Xiao 2006, eq. 3)"),
+};
+const KeySpec kCubic[] = {
+    number<&CubicDesc::k1_N_per_m>("k1_N_per_m", 0, 1e9, 1, "linear coefficient"),
+    number<&CubicDesc::k3_N_per_m3>("k3_N_per_m3", 0, 1e15, 1, "cubic coefficient"),
+};
+const KeySpec kHertz[] = {
+    number<&HertzDesc::tool_radius_m>("tool_radius_mm", 0.01, 1e4, kMilli, "radius of the spherical tool"),
+    number<&HertzDesc::fit_depth_m>("fit_depth_mm", 0.001, 1000, kMilli,
+                                    "depth at which value and slope match; within 6.8 % of Hertz up to 1.25 times it"),
+};
+const KeySpec kFriction[] = {
+    choice<&FrictionDesc::law>("law", "none|return_map|paper|mindlin", "friction law"),
+    choice<&FrictionDesc::tangential>("tangential", "separable|radial",
+                                      "sticking force from each depth component by itself, or from the whole depth"),
+    number_or_auto<&FrictionDesc::mu_ref>("mu_ref", 0, 100, 1,
+                                          "static friction coefficient at the reference force, K = mu_ref F_ref^(1 - "
+                                          "beta); auto: 0.5; not with k"),
+    number<&FrictionDesc::reference_force_N>("reference_force_N", 1e-3, 1e4, 1, "F_ref"),
+    number_or_auto<&FrictionDesc::k>("k", 0, 1e6, 1, "K of the static limit K F^beta, in N^(1 - beta); not with mu_ref"),
+    number<&FrictionDesc::beta>("beta", 0.5, 1, 1, "exponent of the static limit; 2/3 for truly elastic contact"),
+    number_or_auto<&FrictionDesc::mu_dynamic>("mu_dynamic", 0, 10, 1,
+                                              "sliding coefficient; auto: 0.8 of the static one at F_ref"),
+};
+const KeySpec kShape[] = {
+    choice<&ShapeDesc::interpolation>("interpolation", "rbf|displacement_angle",
+                                      "how anchor displacements spread over the surface"),
+    choice<&ShapeDesc::tail>("tail", "constant|linear", "polynomial of the rbf; linear needs 4 anchors not in a plane"),
+    choice<&ShapeDesc::neighbourhood>("neighbourhood", "none|log|log_c1|punch", "dent around a contact"),
+    number<&ShapeDesc::radius_m>("radius_mm", 0.001, 1000, kMilli, "radius R of the dent"),
+};
+const KeySpec kCoupling[] = {
+    choice<&CouplingDesc::law>("law", "none|coupled|temporal",
+                               "how contact regions influence one another: not; by a conservative far field; in the "
+                               "order they appeared (Luo & Xiao 2006)"),
+    number_or_auto<&CouplingDesc::radius_m>("radius_mm", 0.001, 1000, kMilli,
+                                            "core radius of the far field; auto: sqrt(reference area / pi)"),
+};
+const KeySpec kPiece[] = {
+    choice<&PieceDesc::shape>("shape", "sphere|capsule|cylinder|cone|box|hull",
+                              "convex piece; its axis is its z axis; a cone's apex is at +z", true),
+    choice<&PieceDesc::touches>("touches", "all|plus_z|minus_z",
+                                "part that carries tool points: all of it, or only the end face (with its rounding) at "
+                                "the +z or -z end; spheres, boxes and hulls: all"),
+    list<&PieceDesc::position_m>(kVec3, "position_mm", -1e4, 1e4, kMilli, "centre in the tool frame"),
+    list<&PieceDesc::rotation_rad>(kVec3, "rotation_deg", -360, 360, kDegree, "rotation vector (axis times angle)"),
+    number_or_auto<&PieceDesc::radius_m>("radius_mm", 0.01, 5000, kMilli,
+                                         "sphere, capsule, cylinder: outer radius; cone: base radius of the core"),
+    number_or_auto<&PieceDesc::length_m>("length_mm", 0.01, 10000, kMilli,
+                                         "capsule, cylinder: overall length; cone: height of the core"),
+    list<&PieceDesc::size_m>(kVec3, "size_mm", 0.01, 10000, kMilli, "box: outer sides"),
+    list<&PieceDesc::vertices_m>(KeyKind::kPoints, "vertices_mm", -1e4, 1e4, kMilli, "hull: corners of the core"),
+    number_or_auto<&PieceDesc::margin_m>(
+        "margin_mm", 0.01, 5000, kMilli,
+        "rounding radius: part of the outer size of cylinders and boxes, added to cones and hulls; contact is exact "
+        "while penetration stays below it; auto: a third of the smallest half size (cone, hull: 2 mm)"),
+    integer<&PieceDesc::points>("points", 0, kMaxToolPoints,
+                                "most tool points to spread; each costs about 800 instructions a tick; sphere: 1; box: 8 or more; "
+                                "0: never touches"),
+    integer<&PieceDesc::part>("part", 0, 1 << 20, "label in recordings"),
+};
+const KeySpec kDevice[] = {
+    text<&DeviceDesc::name>("name", 63, "name of the device"),
+    number<&DeviceDesc::period_s>("period_ms", 0.01, 100, kMilli, "tick period T"),
+    number<&DeviceDesc::mass_kg>("mass_kg", 1e-3, 100, 1, "moving mass at the handle"),
+    number<&DeviceDesc::inertia_kg_m2>("inertia_kg_m2", 1e-8, 10, 1, "moving inertia at the handle"),
+    number<&DeviceDesc::damping_Ns_per_m>("damping_Ns_per_m", 0, 1000, 1, "physical damping b"),
+    number<&DeviceDesc::damping_Nms_per_rad>("damping_Nms_per_rad", 0, 10, 1, "physical rotational damping"),
+    number<&DeviceDesc::friction_N>("friction_N", 0, 100, 1, "Coulomb friction f_c"),
+    number<&DeviceDesc::friction_Nm>("friction_Nm", 0, 10, 1, "rotational Coulomb friction"),
+    number<&DeviceDesc::encoder_step_m>("encoder_step_mm", 0, 10, kMilli, "position resolution Delta"),
+    number<&DeviceDesc::encoder_step_rad>("encoder_step_rad", 0, 1, 1, "angular resolution"),
+    number<&DeviceDesc::delay_s>("delay_ms", 0, 100, kMilli, "delay tau from sample to force, beyond the tick"),
+    number<&DeviceDesc::force_max_N>("force_max_N", 0.01, 1000, 1, "largest force commanded"),
+    number<&DeviceDesc::torque_max_Nm>("torque_max_Nm", 0, 100, 1, "largest torque commanded"),
+    number<&DeviceDesc::force_rate_max_N_per_s>("force_rate_max_N_per_s", 1, 1e7, 1, "fault limiter of the force change"),
+    number_or_auto<&DeviceDesc::coupling_N_per_m>(
+        "coupling_N_per_m", 1, 1e6, 1,
+        "virtual coupling; auto: 0.8 of what the device admits, min(2b / (T + 2 tau), 2 f_c / Delta)"),
+    number_or_auto<&DeviceDesc::coupling_Nm_per_rad>("coupling_Nm_per_rad", 1e-6, 1e4, 1,
+                                                     "rotational virtual coupling; auto: by the same rule"),
+    number<&DeviceDesc::ramp_in_s>("ramp_in_s", 0, 10, 1, "force ramp after arming"),
+    number<&DeviceDesc::ramp_out_s>("ramp_out_s", 1e-3, 1, 1, "force ramp to zero after a fault"),
+    integer<&DeviceDesc::silence_hold_ticks>("silence_hold_ticks", 1, 5, "missed samples during which force is held"),
+    integer<&DeviceDesc::silence_passive_ticks>("silence_passive_ticks", 1, 20,
+                                                "missed samples after which force ramps to zero"),
+    integer<&DeviceDesc::silence_fault_ticks>("silence_fault_ticks", 2, 1000, "missed samples that latch a fault"),
+    number<&DeviceDesc::speed_max_m_per_s>("speed_max_m_per_s", 0.01, 100, 1,
+                                           "a sample that implies a faster motion is rejected"),
+};
+const KeySpec kPath[] = {
+    number<&PathDesc::hand_stiffness_N_per_m>("hand_stiffness_N_per_m", 1, 1e5, 1, "impedance of the simulated hand"),
+    number<&PathDesc::hand_damping_Ns_per_m>("hand_damping_Ns_per_m", 0, 1e4, 1, "damping of the simulated hand"),
+    number<&PathDesc::hand_stiffness_Nm_per_rad>("hand_stiffness_Nm_per_rad", 1e-4, 1e3, 1, "rotational stiffness"),
+    number<&PathDesc::hand_damping_Nms_per_rad>("hand_damping_Nms_per_rad", 0, 100, 1, "rotational damping"),
+};
+const KeySpec kPathPoint[] = {
+    number<&PathPoint::time_s>("time_s", 0, 1e5, 1, "time from the start; increasing, the first is 0", true),
+    list<&PathPoint::position_m>(kVec3, "position_mm", -1e4, 1e4, kMilli, "where the hand wants the tool frame, world"),
+    list<&PathPoint::rotation_rad>(kVec3, "rotation_deg", -360, 360, kDegree, "rotation vector of the tool frame"),
+};
+
+template <auto member>
+void* open(SceneDesc& scene) {
+  return &(scene.*member);
+}
+void* open_top(SceneDesc& scene) { return &scene; }
+void* open_piece(SceneDesc& scene) { return &scene.piece.emplace_back(); }
+void* open_point(SceneDesc& scene) { return &scene.path.point.emplace_back(); }
+
+const TableSpec kTables[] = {
+    {"", false, "Top level.", kTop, open_top},
+    {"body", false, "The elastic object.", kBody, open<&SceneDesc::body>},
+    {"body.material", false, "Homogeneous, isotropic.", kMaterial, open<&SceneDesc::material>},
+    {"body.fixed", false, "What is clamped to the world.", kFixed, open<&SceneDesc::fixed>},
+    {"skeleton", false, "Beams from each contact region to the anchors.", kSkeleton, open<&SceneDesc::skeleton>},
+    {"contact", false, "The contact law.", kContact, open<&SceneDesc::contact>},
+    {"contact.duffing", false, "With law = \"duffing\".", kDuffing, open<&SceneDesc::duffing>},
+    {"contact.cubic", false, "With law = \"cubic\".", kCubic, open<&SceneDesc::cubic>},
+    {"contact.hertz", false, "With law = \"hertz\".", kHertz, open<&SceneDesc::hertz>},
+    {"friction", false, "Friction per contact region.", kFriction, open<&SceneDesc::friction>},
+    {"shape", false, "How the deformed surface is drawn. No effect on forces.", kShape, open<&SceneDesc::shape>},
+    {"coupling", false, "Several contact regions at once.", kCoupling, open<&SceneDesc::coupling>},
+    {"tool.piece", true, "The rigid tool: convex pieces, at least one with points.", kPiece, open_piece},
+    {"device", false, "The haptic device: what it admits and where it must be stopped.", kDevice,
+     open<&SceneDesc::device>},
+    {"path", false, "What the simulated hand does in the demonstration. Not stored in the image.", kPath,
+     open<&SceneDesc::path>},
+    {"path.point", true, "Points of the path, joined smoothly in time.", kPathPoint, open_point},
+};
+
+}  // namespace
+
+std::span<const TableSpec> scene_schema() { return kTables; }
+
+}  // namespace palpate

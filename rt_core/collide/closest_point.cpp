@@ -1,0 +1,166 @@
+#include "rt_core/collide/closest_point.h"
+
+#include "rt_core/collide/node_test.h"
+
+namespace palpate {
+
+namespace {
+
+constexpr double kUnlimited_m = 1e9;
+
+// Nearest triangle so far; starts as "nothing within the search radius".
+struct Best {
+  double distance2 = 0;
+  std::int32_t triangle = INT32_MAX;
+  TrianglePoint at;
+  // Single-precision bound no admissible box may exceed: 2^-20 covers the rounding of box_distance2 and of this
+  // conversion, the constant (0.1 nm squared) the rounding of the exact distances themselves for bodies up to 100 m.
+  float bound() const PALPATE_RT { return static_cast<float>(distance2 * (1 + 0x1p-20) + 1e-20); }
+};
+
+void consider(const Model& model, Vec3 p, std::int32_t index, Best& best) PALPATE_RT {
+  const Triangle& t = model.triangle[static_cast<std::size_t>(index)];
+  const TrianglePoint at = closest_on_triangle(p, model.vertex_m[static_cast<std::size_t>(t.vertex[0])],
+                                               model.vertex_m[static_cast<std::size_t>(t.vertex[1])],
+                                               model.vertex_m[static_cast<std::size_t>(t.vertex[2])]);
+  const double distance2 = squared_norm(p - at.point);
+  if (distance2 < best.distance2 || (distance2 == best.distance2 && index < best.triangle)) {
+    best.distance2 = distance2;
+    best.triangle = index;
+    best.at = at;
+  }
+}
+
+struct Pending {
+  float distance2;
+  std::int32_t node;
+};
+
+// Depth-first descent, nearest child first, over a bounded stack.
+class Descent {
+ public:
+  Descent(const Model& model, Vec3 p, Best& best) PALPATE_RT : model_(model), p_(p), query_(node_query(p)), best_(best) {}
+
+  void run(SurfacePoint& result) PALPATE_RT {
+    Pending next{0, 0};
+    std::int32_t opened = 0;
+    do {  // bound: kMaxQueryNodes
+      if (opened == kMaxQueryNodes) {
+        overflow_distance2_ = min_of(overflow_distance2_, static_cast<double>(next.distance2));
+        break;
+      }
+      next = open(model_.bvh[static_cast<std::size_t>(next.node)]);
+      opened += 1;
+    } while (next.node >= 0 || pop(next));
+    for (std::int32_t i = 0; i < top_; ++i) {  // bound: kMaxTraversalStack; empty unless capped
+      overflow_distance2_ = min_of(overflow_distance2_, static_cast<double>(stack_[i].distance2));
+    }
+    result.nodes = opened;
+    result.stack_high_water = high_water_;
+    result.truncated = overflow_distance2_ < best_.distance2;
+    result.lower_bound_m = square_root(min_of(overflow_distance2_ * (1 - 0x1p-20), best_.distance2));
+  }
+
+ private:
+  // Tests a node's children: leaves are measured at once, inner nodes pushed, the nearest of them returned.
+  Pending open(const BvhNode& node) PALPATE_RT {
+    const Float4 distance2 = box_distance2(node, query_);
+    float bound = best_.bound();
+    Mask4 admitted = distance2 <= splat4(bound);
+    const int admitted_count = -(admitted[0] + admitted[1] + admitted[2] + admitted[3]);
+    if (admitted_count > 1) admitted &= ~cone_excludes(node, query_);
+    Pending nearest{0, -1};
+    for (int k = 0; k < 4; ++k) {  // bound: 4
+      if (admitted[k] == 0) continue;
+      if (node.child[k] < 0) {
+        measure_leaf(~node.child[k], node.count[k]);
+      } else if (nearest.node < 0) {
+        nearest = {distance2[k], node.child[k]};
+      } else if (distance2[k] < nearest.distance2) {
+        push(nearest);
+        nearest = {distance2[k], node.child[k]};
+      } else {
+        push({distance2[k], node.child[k]});
+      }
+    }
+    return nearest;
+  }
+
+  void measure_leaf(std::int32_t first, std::int32_t count) PALPATE_RT {
+    for (std::int32_t i = 0; i < count; ++i) consider(model_, p_, first + i, best_);  // bound: 4
+  }
+
+  void push(Pending entry) PALPATE_RT {
+    if (top_ == kMaxTraversalStack) {
+      overflow_distance2_ = min_of(overflow_distance2_, static_cast<double>(entry.distance2));
+      return;
+    }
+    stack_[top_++] = entry;
+    high_water_ = top_ > high_water_ ? top_ : high_water_;
+  }
+
+  bool pop(Pending& next) PALPATE_RT {
+    const float bound = best_.bound();
+    while (top_ > 0) {  // bound: kMaxTraversalStack
+      next = stack_[--top_];
+      if (next.distance2 <= bound) return true;
+    }
+    return false;
+  }
+
+  const Model& model_;
+  const Vec3 p_;
+  const NodeQuery query_;
+  Best& best_;
+  Pending stack_[kMaxTraversalStack];
+  std::int32_t top_ = 0, high_water_ = 0;
+  double overflow_distance2_ = 1e300;  // nearest box given up because of a cap
+};
+
+Vec3 face_normal(const Model& model, std::int32_t triangle) PALPATE_RT {
+  const Triangle& t = model.triangle[static_cast<std::size_t>(triangle)];
+  const Vec3 a = model.vertex_m[static_cast<std::size_t>(t.vertex[0])];
+  const Vec3 b = model.vertex_m[static_cast<std::size_t>(t.vertex[1])];
+  const Vec3 c = model.vertex_m[static_cast<std::size_t>(t.vertex[2])];
+  return cross(b - a, c - a);
+}
+
+}  // namespace
+
+Vec3 pseudo_normal(const Model& model, std::int32_t triangle, Feature feature) PALPATE_RT {
+  const Triangle& t = model.triangle[static_cast<std::size_t>(triangle)];
+  const Vec3 face = face_normal(model, triangle);
+  if (feature == Feature::kFace) return face;
+  const auto code = static_cast<std::size_t>(feature);
+  if (feature >= Feature::kVertex0) return model.vertex_normal[static_cast<std::size_t>(t.vertex[code - 4])];
+  const std::int32_t other = t.adjacent[code - 1];
+  const Vec3 unit = unit_or(face, {});
+  return other < 0 ? unit : unit + unit_or(face_normal(model, other), {});
+}
+
+SurfacePoint closest_surface_point(const Model& model, Vec3 p, double search_radius_m,
+                                   std::int32_t warm_triangle) PALPATE_RT {
+  SurfacePoint result;
+  if (!is_finite(p)) return result;
+  Best best;
+  const double radius = search_radius_m < kUnlimited_m ? max_of(search_radius_m, 0.0) : 2 * kHuge;
+  best.distance2 = radius * radius;
+  const auto triangles = static_cast<std::int32_t>(model.triangle.size());
+  if (warm_triangle >= 0 && warm_triangle < triangles) consider(model, p, warm_triangle, best);
+  Descent(model, p, best).run(result);
+  if (best.triangle == INT32_MAX) return result;
+
+  result.found = true;
+  result.triangle = best.triangle;
+  result.feature = best.at.feature;
+  result.closest_w = best.at.point;
+  const Vec3 offset = p - best.at.point;
+  const double distance = square_root(best.distance2);
+  const Vec3 pseudo = pseudo_normal(model, best.triangle, best.at.feature);
+  const double side = dot(offset, pseudo) < 0 ? -1.0 : 1.0;
+  result.signed_distance_m = side * distance;
+  result.normal_w = distance > kDirectionFloor_m ? (side / distance) * offset : unit_or(pseudo, {0, 0, 1});
+  return result;
+}
+
+}  // namespace palpate

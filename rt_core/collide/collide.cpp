@@ -1,0 +1,173 @@
+// Stage collide: which tool points touch the rest surface, where and how deeply. Reads the tool's poses; writes
+// state.point (but region), scratch.contact. Bound: n_tool_point queries. Status: kContactsDropped, kTraversalTruncated.
+#include "rt_core/collide/closest_point.h"
+#include "rt_core/deform/surface.h"
+#include "rt_core/stages.h"
+
+namespace palpate {
+
+namespace {
+
+// A point whose gap is below this is measured every tick, so that its first contact starts warm; a point farther off is
+// measured again only once it has moved far enough to come this close.
+constexpr double kSearchMargin_m = 1e-3;
+
+// A pose as a matrix: half the work of a quaternion per point.
+struct RigidMap {
+  Vec3 column[3];
+  Vec3 translation;
+  explicit RigidMap(const Pose& pose) PALPATE_RT
+      : column{rotate(pose.orientation, {1, 0, 0}), rotate(pose.orientation, {0, 1, 0}),
+               rotate(pose.orientation, {0, 0, 1})},
+        translation(pose.position_m) {}
+  Vec3 operator()(Vec3 p) const PALPATE_RT {
+    return translation + (p.x * column[0] + p.y * column[1] + p.z * column[2]);
+  }
+};
+
+struct Box {
+  Vec3 lower, upper;
+};
+
+Box root_box(const Model& model) PALPATE_RT {
+  Box box{{kHuge, kHuge, kHuge}, {-kHuge, -kHuge, -kHuge}};
+  const BvhNode& root = model.bvh[0];
+  for (int k = 0; k < 4; ++k) {  // bound: 4
+    if (root.child[k] < 0 && root.count[k] == 0) continue;
+    const auto low = [&](int axis) PALPATE_RT { return static_cast<Real>(root.lower_m[axis][k]); };
+    const auto high = [&](int axis) PALPATE_RT { return static_cast<Real>(root.upper_m[axis][k]); };
+    box.lower = {min_of(box.lower.x, low(0)), min_of(box.lower.y, low(1)), min_of(box.lower.z, low(2))};
+    box.upper = {max_of(box.upper.x, high(0)), max_of(box.upper.y, high(1)), max_of(box.upper.z, high(2))};
+  }
+  return box;
+}
+
+Real distance_to(const Box& box, Vec3 p) PALPATE_RT {
+  return norm({max_of(max_of(box.lower.x - p.x, p.x - box.upper.x), 0.0),
+               max_of(max_of(box.lower.y - p.y, p.y - box.upper.y), 0.0),
+               max_of(max_of(box.lower.z - p.z, p.z - box.upper.z), 0.0)});
+}
+
+// The last surface measurement does not hold: measure at the next opportunity.
+void forget(PointState& point) PALPATE_RT {
+  point.gap_m = 0;
+  point.gap_bound_m = 0;
+}
+
+// Not measured: the gap is only known to be at least `gap_m`.
+void skip(PointState& point, Real gap_m) PALPATE_RT {
+  point.gap_m = gap_m;
+  point.gap_bound_m = gap_m;
+}
+
+// A truncated search may have ended on a far part of the surface and got the side wrong. Signed distance changes by at
+// most the distance moved, so a point that was farther than that from the surface is still on its side.
+Real side_checked(Real signed_distance_m, const PointState& last, Real margin_m, Real moved_m) PALPATE_RT {
+  const Real before = last.gap_m + margin_m;
+  if (before > moved_m) return abs_of(signed_distance_m);
+  return before < -moved_m ? -abs_of(signed_distance_m) : signed_distance_m;
+}
+
+class Collider {
+ public:
+  Collider(const Model& model, State& state, Scratch& scratch) PALPATE_RT : model_(model),
+                                                                            state_(state),
+                                                                            scratch_(scratch),
+                                                                            now_(state.tool_w),
+                                                                            before_(state.tool_previous_w),
+                                                                            root_(root_box(model)) {
+    const bool temporal = static_cast<CouplingLaw>(model.params.coupling_law) == CouplingLaw::kTemporal;
+    reach_m_ = kSearchMargin_m + (temporal ? max_of(displacement_bound(model, state), 0.0) : 0.0);
+  }
+
+  void visit(const ToolPiece& piece) PALPATE_RT {
+    const Real gap = distance_to(root_, now_(piece.pose_tool.position_m)) - piece.bounding_radius_m;
+    const std::int32_t end = piece.first_point + piece.point_count;
+    for (std::int32_t i = piece.first_point; i < end; ++i) {  // bound: kMaxToolPoints over all pieces
+      if (gap > reach_m_) {
+        skip(state_.point[i], gap);
+      } else {
+        visit(i);
+      }
+    }
+  }
+
+ private:
+  void visit(std::int32_t index) PALPATE_RT {
+    const ToolPoint& tool_point = model_.tool_point[static_cast<std::size_t>(index)];
+    PointState& point = state_.point[index];
+    const Vec3 p = now_(tool_point.position_tool_m);
+    const Real moved = norm(p - before_(tool_point.position_tool_m));
+    // Written so that a NaN in any term measures the point.
+    if (point.gap_bound_m - moved > reach_m_) return skip(point, point.gap_bound_m - moved);
+    measure(index, p, moved);
+  }
+
+  void measure(std::int32_t index, Vec3 p, Real moved) PALPATE_RT {
+    const ToolPoint& tool_point = model_.tool_point[static_cast<std::size_t>(index)];
+    PointState& point = state_.point[index];
+    const SurfacePoint surface = closest_surface_point(model_, p, kHuge, point.triangle);
+    if (surface.stack_high_water > state_.high_water.traversal_stack) {
+      state_.high_water.traversal_stack = surface.stack_high_water;
+    }
+    if (!surface.found) return forget(point);
+    const Real signed_distance =
+        surface.truncated ? side_checked(surface.signed_distance_m, point, tool_point.margin_m, moved)
+                          : surface.signed_distance_m;
+    if (surface.truncated) scratch_.status |= Status::kTraversalTruncated;
+    const bool flipped = (signed_distance < 0) != (surface.signed_distance_m < 0);
+    point.closest_w = surface.closest_w;
+    point.normal_w = flipped ? -surface.normal_w : surface.normal_w;
+    point.triangle = surface.triangle;
+    point.gap_m = signed_distance - tool_point.margin_m;
+    point.gap_bound_m = signed_distance < 0 ? point.gap_m : surface.lower_bound_m - tool_point.margin_m;
+    if (point.gap_m < 0) keep(index, point, tool_point);
+  }
+
+  // Appends a contact; when the pool is full the shallowest goes (ties: the higher index). Order stays by index.
+  void keep(std::int32_t index, const PointState& point, const ToolPoint& tool_point) PALPATE_RT {
+    if (scratch_.contact_count == kMaxContacts) {
+      scratch_.status |= Status::kContactsDropped;
+      std::int32_t shallowest = 0;
+      for (std::int32_t i = 1; i < kMaxContacts; ++i) {  // bound: kMaxContacts
+        if (scratch_.contact[i].depth_m <= scratch_.contact[shallowest].depth_m) shallowest = i;
+      }
+      if (!(-point.gap_m > scratch_.contact[shallowest].depth_m)) return;
+      for (std::int32_t i = shallowest; i + 1 < kMaxContacts; ++i) {  // bound: kMaxContacts
+        scratch_.contact[i] = scratch_.contact[i + 1];
+      }
+      scratch_.contact_count -= 1;
+    }
+    Contact& contact = scratch_.contact[scratch_.contact_count++];
+    contact = Contact{};
+    contact.point = index;
+    contact.region = -1;
+    contact.position_w = point.closest_w;
+    contact.normal_w = point.normal_w;
+    contact.depth_m = -point.gap_m;
+    contact.weight = tool_point.weight;
+  }
+
+  const Model& model_;
+  State& state_;
+  Scratch& scratch_;
+  const RigidMap now_, before_;
+  const Box root_;
+  Real reach_m_ = 0;
+};
+
+}  // namespace
+
+void collide(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
+  scratch.contact_count = 0;
+  if (!is_finite(state.tool_w)) {
+    for (PointState& point : state.point) forget(point);  // bound: kMaxToolPoints
+    return;
+  }
+  Collider collider(model, state, scratch);
+  for (const ToolPiece& piece : model.piece) collider.visit(piece);  // bound: kMaxPieces
+  HighWater& high_water = state.high_water;
+  if (scratch.contact_count > high_water.contacts) high_water.contacts = scratch.contact_count;
+}
+
+}  // namespace palpate

@@ -1,0 +1,162 @@
+#include "rt_core/deform/surface.h"
+
+#include "rt_core/deform/displacement_angle.h"
+
+namespace palpate {
+namespace {
+
+bool uses_angles(const Model& model) PALPATE_RT {
+  return model.params.shape_law == static_cast<std::int32_t>(ShapeLaw::kDisplacementAngle);
+}
+
+// The patch of a vertex, or nullptr where the displacement-angle law cannot be used.
+const PatchWeight* patch_of(const Model& model, std::int32_t vertex) PALPATE_RT {
+  if (!uses_angles(model) || vertex < 0) return nullptr;
+  const auto at = static_cast<std::size_t>(vertex);
+  return at < model.patch.size() && at < model.vertex_normal.size() ? &model.patch[at] : nullptr;
+}
+
+// Area for which the contact law holds per unit weight: the same for every tool point by construction of the weights.
+Real reference_area_m2(const Model& model) PALPATE_RT {
+  if (model.tool_point.empty() || !(model.tool_point[0].weight > 0)) return 0;
+  return model.tool_point[0].area_m2 / model.tool_point[0].weight;
+}
+
+Vec3 dent_of(const Model& model, const Region& region) PALPATE_RT {
+  const Vec3 force = region.normal_force_N * region.normal_w + region.friction_force_w;
+  const Real omega = region_size_factor(region.area_m2, reference_area_m2(model));
+  const Vec3 dent = (-omega * region.depth_equivalent_m) * unit_or(force, region.normal_w);
+  return is_finite(dent) ? dent : Vec3{};
+}
+
+// Adds the contact point as an interpolation node that moves by d_c: u += psi(x) (d_c - u(p)), spread over coefficients.
+void add_contact_node(const Model& model, const Vec3 (&own)[kMaxRbf], ShapeRegion& r, ShapeField& field) PALPATE_RT {
+  make_rbf_contact(model, r.contact_w, r.node);
+  const auto n = static_cast<std::int32_t>(model.sizes.n_rbf);
+  if (r.node.at_anchor >= 0) {
+    // The contact is that anchor: it moves by d_c instead.
+    const Vec3 change = r.dent_w - r.anchor_displacement_w[r.node.at_anchor];
+    r.anchor_displacement_w[r.node.at_anchor] = r.dent_w;
+    const double* row = model.rbf_inverse.data() + r.node.at_anchor * n;  // the inverse is symmetric
+    for (std::int32_t k = 0; k < n; ++k) field.coefficient_w[k] += row[k] * change;
+    return;
+  }
+  RbfVector g{};
+  rbf_terms(model, r.contact_w, g);
+  r.node_coefficient_w = r.node.inverse_s * (r.dent_w - rbf_value(model, g, own));
+  for (std::int32_t k = 0; k < n; ++k) field.coefficient_w[k] -= r.node.q[k] * r.node_coefficient_w;
+}
+
+void prepare_region(const Model& model, const State& state, std::int32_t slot, ShapeField& field) PALPATE_RT {
+  const Region& region = state.region[slot];
+  ShapeRegion& r = field.region[field.count++];
+  r = {};
+  r.slot = slot;
+  r.contact_w = region.centre_w;
+  r.dent_w = dent_of(model, region);
+  r.local_amplitude_w = r.dent_w;
+  const Real reach_m = model.params.neighbourhood_radius_m;
+  r.local = make_neighbourhood(static_cast<NeighbourhoodLaw>(model.params.neighbourhood_law),
+                               contact_radius_m(region.area_m2, reach_m), reach_m);
+  const auto anchors = static_cast<std::int32_t>(model.sizes.n_anchor);
+  for (std::int32_t i = 0; i < anchors && i < kMaxAnchors; ++i) {
+    r.anchor_displacement_w[i] = state.anchor_by_region[slot][i];
+  }
+  if (!field.interpolated) return;
+
+  Vec3 own[kMaxRbf];
+  rbf_coefficients(model, r.anchor_displacement_w, own);
+  for (std::int32_t k = 0; k < static_cast<std::int32_t>(model.sizes.n_rbf); ++k) field.coefficient_w[k] += own[k];
+  if (r.local.law == NeighbourhoodLaw::kNone) {
+    add_contact_node(model, own, r, field);
+  } else {
+    RbfVector g{};
+    rbf_terms(model, r.contact_w, g);
+    r.local_amplitude_w = r.dent_w - rbf_value(model, g, own);
+  }
+}
+
+// One region by displacement angles. The global value at the contact point is not a vertex's, so the blend runs towards
+// d_c from the value at x: u + (d_c - u) g, equally exact at the contact and equally zero beyond the reach.
+Vec3 displacement_by_patch(const Model& model, const ShapeRegion& r, const PatchWeight& patch, const RbfVector& g,
+                           Vec3 x, Vec3 normal) PALPATE_RT {
+  PatchCorner corner[3];
+  for (std::int32_t k = 0; k < 3; ++k) {
+    const std::int32_t a = patch.anchor[k];
+    if (a < 0 || a >= kMaxAnchors || static_cast<std::size_t>(a) >= model.anchor.size()) continue;  // weight 0
+    corner[k] = {r.anchor_displacement_w[a], model.anchor[static_cast<std::size_t>(a)].normal, patch.weight[k]};
+  }
+  const Vec3 global = displacement_by_angle(corner, normal);
+  const Real blend = r.local.law == NeighbourhoodLaw::kNone ? rbf_contact_weight(model, r.node, g, x)
+                                                            : neighbourhood_blend(r.local, norm(x - r.contact_w));
+  return global + blend * (r.dent_w - global);
+}
+
+}  // namespace
+
+void prepare_shape(const Model& model, const State& state, ShapeField& field) PALPATE_RT {
+  field.count = 0;
+  field.interpolated = rbf_available(model);
+  for (Vec3& c : field.coefficient_w) c = {};
+  for (std::int32_t slot = 0; slot < kMaxRegions; ++slot) {
+    const Region& region = state.region[slot];
+    if (region.id != 0 && region.lost_ticks == 0) prepare_region(model, state, slot, field);
+  }
+}
+
+Vec3 displacement_at(const Model& model, const ShapeField& field, Vec3 rest_point_w, std::int32_t vertex) PALPATE_RT {
+  if (field.count == 0) return {};
+  RbfVector g{};
+  if (field.interpolated) rbf_terms(model, rest_point_w, g);
+  Vec3 sum;
+  if (const PatchWeight* patch = patch_of(model, vertex)) {
+    const Vec3 normal = model.vertex_normal[static_cast<std::size_t>(vertex)];
+    for (std::int32_t i = 0; i < field.count; ++i) {  // <= kMaxRegions
+      sum += displacement_by_patch(model, field.region[i], *patch, g, rest_point_w, normal);
+    }
+    return sum;
+  }
+  if (field.interpolated) sum = rbf_value(model, g, field.coefficient_w);
+  for (std::int32_t i = 0; i < field.count; ++i) {
+    const ShapeRegion& r = field.region[i];
+    const Real distance_m = norm(rest_point_w - r.contact_w);
+    sum += distance_m * r.node_coefficient_w + neighbourhood_blend(r.local, distance_m) * r.local_amplitude_w;
+  }
+  return sum;
+}
+
+double displacement_bound(const Model& model, const State& state) PALPATE_RT {
+  ShapeField field;
+  prepare_shape(model, state, field);
+  const auto anchors = static_cast<std::int32_t>(field.interpolated ? model.sizes.n_anchor : 0);
+  Vec3 centre;
+  for (std::int32_t i = 0; i < anchors; ++i) centre += model.anchor[static_cast<std::size_t>(i)].position_m;
+  if (anchors > 0) centre = (1.0 / anchors) * centre;
+
+  Real bound = 0;
+  for (std::int32_t i = 0; i < anchors; ++i) {
+    bound += norm(field.coefficient_w[i]) * norm(model.anchor[static_cast<std::size_t>(i)].position_m - centre);
+  }
+  Vec3 tail = field.coefficient_w[anchors];
+  if (field.interpolated && model.params.rbf_tail == 1) {
+    const Vec3* gradient = &field.coefficient_w[anchors + 1];
+    tail += centre.x * gradient[0] + centre.y * gradient[1] + centre.z * gradient[2];
+    const Real steepest = norm(gradient[0]) + norm(gradient[1]) + norm(gradient[2]);
+    bound += steepest * square_root(3.0) * model.params.surface_size_m;
+  }
+  bound += norm(tail);
+
+  const bool angles = uses_angles(model);
+  Real largest_sum = 0;  // the displacement-angle law never exceeds its corners
+  for (std::int32_t i = 0; i < field.count; ++i) {
+    const ShapeRegion& r = field.region[i];
+    bound += norm(r.node_coefficient_w) * norm(r.contact_w - centre);
+    Real largest = 0;
+    for (const Vec3& d : r.anchor_displacement_w) largest = max_of(largest, norm(d));
+    // Its contact blend psi may leave [0, 1] where the interpolation overshoots; the RBF bound above covers psi's size.
+    largest_sum += largest;
+  }
+  return angles ? max_of(bound, largest_sum) : bound;
+}
+
+}  // namespace palpate

@@ -1,0 +1,77 @@
+// `palpate replay`: runs a recording again and says whether every bit came out the same.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+
+#include "sim_host/build_id.h"
+#include "sim_host/cli.h"
+#include "sim_host/image_file.h"
+#include "sim_host/record_csv.h"
+#include "sim_host/replay.h"
+
+namespace palpate {
+
+namespace {
+
+struct ReplayOptions {
+  std::string recording, image, dump;
+};
+
+int report(const ReplayResult& result) {
+  if (result.differs) {
+    fmt::print("differs at tick {}, stage {}, field {}\n  recorded {}\n  replayed {}\n  {} ticks before it are identical\n",
+               result.tick, result.stage, result.field, result.recorded, result.replayed, result.ticks);
+  } else if (!result.damage.empty()) {
+    fmt::print("damaged recording: {}\n  {} ticks before that are identical\n", result.damage, result.ticks);
+  } else if (result.lost > 0) {
+    fmt::print("incomplete recording: {} records are missing after tick {}; {} ticks before that are identical\n",
+               result.lost, result.ticks, result.ticks);
+  } else {
+    fmt::print("identical: {} ticks\n", result.ticks);
+  }
+  return result.identical() ? kExitOk : kExitFailed;
+}
+
+int run_replay(const ReplayOptions& options) {
+  const MappedFile file(options.recording);
+  RecordingReader recording(file.bytes());
+  const RecordingHeader& header = recording.header();
+  const ImageFile image(options.image.empty() ? header.image_path : options.image);
+  if (std::strcmp(header.build_id, kBuildId) != 0) {
+    fmt::print("recorded by another build, verifying all the same\n  recorded {}\n  this one {}\n", header.build_id,
+               kBuildId);
+  }
+  std::unique_ptr<RecordCsv> csv;
+  if (!options.dump.empty()) csv = std::make_unique<RecordCsv>(options.dump);
+  return report(replay(recording, image.model(), [&](const TickRecord& recorded, const TickRecord&) {
+    if (csv) csv->add(recorded);
+  }));
+}
+
+}  // namespace
+
+void add_replay_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<ReplayOptions>();
+  CLI::App* command = app.add_subcommand("replay", "Run a recording again and compare every tick, bit for bit");
+  command->add_option("RECORDING", options->recording, "file written by `palpate run --record`")->required();
+  command->add_option("--image", options->image, "scene image, when it is no longer where the recording says");
+  command->add_option("--dump", options->dump, "write one row per recorded tick to this CSV file");
+  command->footer(
+      "Prints `identical: N ticks` and exits with 0, or names the first tick, stage and field that differ and exits\n"
+      "with 1. A damaged or incomplete recording is verified as far as it goes, and exits with 1.\n"
+      "Examples:\n"
+      "  palpate replay run.plr\n"
+      "  palpate replay run.plr --image mallet.pal --dump run.csv");
+  command->callback([options, &exit_code] {
+    try {
+      exit_code = run_replay(*options);
+    } catch (const std::exception& error) {
+      throw std::runtime_error(options->recording + ": " + error.what());
+    }
+  });
+}
+
+}  // namespace palpate

@@ -1,0 +1,36 @@
+// A picture of the deformed body with the tool, for documents and reports: colour by displacement, translucent tool,
+// contact forces as arrows, the rest shape as a dashed outline, anchors as dots.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "rt_core/model.h"
+#include "rt_core/state.h"
+#include "sim_host/deformed_surface.h"
+#include "sim_host/mesh_raster.h"
+
+namespace palpate {
+
+struct PictureOptions {
+  int width = 1200, height = 900;
+  int supersampling = 2;           // samples per pixel and axis, 1..4
+  std::optional<Camera> camera;    // otherwise `default_camera`
+  std::string title;               // otherwise the scene's name
+  double displacement_max_m = 0;   // top of the colour scale; 0: the largest displacement, rounded up
+  double force_max_N = 0;          // force of the longest arrow; 0: the largest region's
+};
+
+// Sees the whole body, slightly from above, from the side on which the contacts are.
+Camera default_camera(const Model& model, const State& state);
+Canvas render_scene(const Model& model, const State& state, const DeformedSurface& surface,
+                    const PictureOptions& options = {});
+// Writes render_scene of the scene's own shape models as PNG.
+void save_picture(const std::string& path, const Model& model, const State& state, const PictureOptions& options = {});
+
+// Colour map of displacement, t in 0..1: light sand to dark violet, lightness falling evenly.
+Colour displacement_colour(double t);
+// Surface of a tool piece in the world.
+RenderMesh piece_mesh(const Model& model, const ToolPiece& piece, const Pose& tool_w);
+
+}  // namespace palpate

@@ -1,0 +1,70 @@
+// What a picture is made of: camera, colour map and the meshes of tool pieces.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "sim_host/picture.h"
+
+namespace palpate {
+
+Camera default_camera(const Model& model, const State& state) {
+  Vec3 low = model.vertex_m[0], high = low;
+  for (const Vec3 v : model.vertex_m) {
+    low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
+    high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
+  }
+  const Vec3 centre = 0.5 * (low + high);
+  const double radius = 0.5 * norm(high - low);
+  Vec3 side;
+  for (const Region& region : state.region) {
+    if (region.id != 0 && region.lost_ticks == 0) side += region.normal_force_N * region.normal_w;
+  }
+  side = unit_or(side, {0, 0, 1});
+  double azimuth = -1.0;  // radians from x: from the front, a little from the right
+  if (std::hypot(side.x, side.y) > 0.4) azimuth = std::atan2(side.y, side.x) - 0.7;
+  constexpr double kElevation = 0.42, kFov = 0.5;
+  const Vec3 direction{std::cos(kElevation) * std::cos(azimuth), std::cos(kElevation) * std::sin(azimuth),
+                       std::sin(kElevation)};
+  Camera camera;
+  camera.target_m = centre + Vec3{0, 0, 0.22 * radius};  // room for the tool above
+  camera.eye_m = camera.target_m + (1.55 * radius / std::tan(0.5 * kFov)) * direction;
+  camera.vertical_fov_rad = kFov;
+  return camera;
+}
+
+Colour displacement_colour(double t) {
+  static constexpr std::array kStops{colour(0xf3ece0), colour(0xf5cfa5), colour(0xf1a06c), colour(0xe36a4e),
+                                     colour(0xbb3a5b), colour(0x7c2269), colour(0x3a1555)};
+  const double place = std::clamp(t, 0.0, 1.0) * (kStops.size() - 1);
+  const auto k = std::min(static_cast<std::size_t>(place), kStops.size() - 2);
+  return mix(kStops[k], kStops[k + 1], static_cast<float>(place - static_cast<double>(k)));
+}
+
+RenderMesh piece_mesh(const Model& model, const ToolPiece& piece, const Pose& tool_w) {
+  const Pose pose = tool_w * piece.pose_tool;
+  const double* half = piece.half_extent_m;
+  const double r = half[0], h = half[2];
+  switch (static_cast<PieceShape>(piece.shape)) {
+    case PieceShape::kSphere: return sphere_mesh(pose, piece.margin_m);
+    case PieceShape::kCapsule: return revolved_mesh(pose, std::array<Point2, 2>{{{0, -h}, {0, h}}}, piece.margin_m);
+    case PieceShape::kCylinder:
+      return revolved_mesh(pose, std::array<Point2, 4>{{{0, -h}, {r, -h}, {r, h}, {0, h}}}, piece.margin_m);
+    case PieceShape::kCone:
+      return revolved_mesh(pose, std::array<Point2, 3>{{{0, -h}, {r, -h}, {0, h}}}, piece.margin_m);
+    case PieceShape::kBox: {
+      std::array<Vec3, 8> corners;
+      for (unsigned k = 0; k < 8; ++k) {
+        corners[k] = {(k & 1) ? half[0] : -half[0], (k & 2) ? half[1] : -half[1], (k & 4) ? h : -h};
+      }
+      return hull_mesh(pose, corners, piece.margin_m);
+    }
+    case PieceShape::kHull:
+      return hull_mesh(pose,
+                       model.hull_vertex_m.subspan(static_cast<std::size_t>(piece.first_hull),
+                                                   static_cast<std::size_t>(piece.hull_count)),
+                       piece.margin_m);
+  }
+  return {};
+}
+
+}  // namespace palpate

@@ -1,0 +1,60 @@
+#!/usr/bin/env bash
+# Gate on instruction counts, which are the same on every run: the worst tick of each scene against its budget, and the
+# same ellipsoid meshed three ways. Usage:
+#   tick_instructions.sh scenes PROGRAM IMAGE_DIR
+#   tick_instructions.sh meshes PROGRAM PALPATE SCENE.toml
+set -euo pipefail
+usage="usage: tick_instructions.sh scenes PROGRAM IMAGE_DIR | meshes PROGRAM PALPATE SCENE.toml"
+mode=${1:?$usage} program=${2:?$usage}
+here=$(cd "$(dirname "$0")" && pwd)
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+command -v valgrind >/dev/null || { echo "valgrind is missing: apt-get install valgrind"; exit 1; }
+
+# Scene and the most instructions its worst tick may take.
+budgets='ellipsoid_mallet 30000
+heart_compass 60000'
+# Largest ratio between the meshes: cost may grow with the hierarchy's depth only.
+mesh_ratio_percent=130
+
+# count IMAGE: prints the stage table and sets worst, mean.
+count() {
+  valgrind --tool=callgrind --quiet --collect-atstart=no --combine-dumps=yes --compress-strings=no --compress-pos=no \
+    --callgrind-out-file="$work/counts" "$program" "$1" >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
+  awk -f "$here/worst_tick.awk" "$work/counts" >"$work/table" || { cat "$work/table"; exit 1; }
+  grep -v '^summary ' "$work/table"
+  read -r _ worst mean ticks in_contact < <(grep '^summary ' "$work/table")
+  [ "$in_contact" -gt $((ticks / 2)) ] || { echo "only $in_contact of $ticks ticks touch the body: this proves nothing"; exit 1; }
+}
+
+status=0
+if [ "$mode" = scenes ]; then
+  images=${3:?$usage}
+  while read -r scene budget; do
+    echo "== $scene"
+    count "$images/$scene.pal"
+    if [ "$worst" -le "$budget" ]; then verdict=ok; else verdict="OVER BUDGET" status=1; fi
+    echo "worst tick $worst of $budget instructions: $verdict"
+  done <<<"$budgets"
+elif [ "$mode" = meshes ]; then
+  palpate=${3:?$usage} scene=${4:?$usage}
+  grep -qE '^triangles *=' "$scene" || { echo "$scene has no key 'triangles' to vary"; exit 1; }
+  least_worst=0 least_mean=0 most_worst=0 most_mean=0
+  for triangles in 3000 30000 1000000; do
+    sed -E "s/^triangles *=.*/triangles = $triangles/" "$scene" >"$work/scene.toml"
+    "$palpate" bake "$work/scene.toml" -o "$work/scene.pal" >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
+    echo "== $triangles triangles"
+    count "$work/scene.pal"
+    [ "$least_worst" -ne 0 ] && [ "$least_worst" -le "$worst" ] || least_worst=$worst
+    [ "$least_mean" -ne 0 ] && [ "$least_mean" -le "$mean" ] || least_mean=$mean
+    [ "$most_worst" -ge "$worst" ] || most_worst=$worst
+    [ "$most_mean" -ge "$mean" ] || most_mean=$mean
+  done
+  ratio_worst=$((100 * most_worst / least_worst)) ratio_mean=$((100 * most_mean / least_mean))
+  [ "$ratio_worst" -le "$mesh_ratio_percent" ] && [ "$ratio_mean" -le "$mesh_ratio_percent" ] || status=1
+  echo "largest over smallest: worst tick $ratio_worst %, mean in contact $ratio_mean % (at most $mesh_ratio_percent %)"
+else
+  echo "$usage"
+  exit 2
+fi
+exit "$status"

@@ -1,0 +1,43 @@
+# Reads a combined callgrind file with one part per tick (see tick_instructions.cpp) and prints, per stage, the
+# instructions in the worst tick, the most in any tick, and the mean over ticks in contact; then one line
+# "summary WORST MEAN_IN_CONTACT TICKS TICKS_IN_CONTACT" for the script.
+function finish(    stage) {
+  if (!open_part) return
+  ticks++
+  if (contacts > 0) { in_contact++; contact_sum += total }
+  if (total > worst) {
+    worst = total; worst_label = label
+    for (stage in cost) worst_cost[stage] = cost[stage]
+  }
+  for (stage in cost) {
+    if (!(stage in seen)) { seen[stage] = 1; order[++stages] = stage }
+    if (cost[stage] > most[stage]) most[stage] = cost[stage]
+    if (contacts > 0) sum[stage] += cost[stage]
+  }
+}
+function name_of(text) { sub(/\(.*/, "", text); sub(/^.*::/, "", text); return text }
+/^part: / { finish(); open_part = 0; total = 0; self = 0; in_tick = 0; split("", cost) }
+/^desc: Trigger: Client Request: tick / {
+  open_part = 1; label = $0; sub(/^.*Request: /, "", label); contacts = $8
+}
+/^fn=/ { in_tick = ($0 ~ /^fn=palpate::tick\(/); callee = "" }
+/^cfn=/ { callee = substr($0, 5); next }
+/^calls=/ { want = 1; next }
+/^[0-9+*-]/ {
+  if (want) {
+    want = 0
+    if (callee ~ /^palpate::tick\(/) total += $2
+    if (in_tick) cost[name_of(callee)] += $2
+  } else if (in_tick) cost["tick itself, publish"] += $2
+}
+END {
+  finish()
+  if (ticks == 0 || worst == 0) { print "no tick was counted"; exit 1 }
+  printf "%-22s %12s %12s %16s\n", "stage (instructions)", "worst tick", "most, any", "mean, in contact"
+  for (i = 1; i <= stages; i++) {
+    s = order[i]
+    printf "%-22s %12d %12d %16d\n", s, worst_cost[s], most[s], in_contact ? sum[s] / in_contact : 0
+  }
+  printf "%-22s %12d %12s %16d   (%s)\n", "tick", worst, "", in_contact ? contact_sum / in_contact : 0, worst_label
+  printf "summary %d %d %d %d\n", worst, in_contact ? contact_sum / in_contact : 0, ticks, in_contact
+}

@@ -1,0 +1,105 @@
+// Plays the scripted hand in baked scenes and prints, per scene, one line that must be the same from every compiler and
+// optimisation level: scene, ticks, and a hash over every tick's state hash and output. Also checks, within one build,
+// that a copy of the state continues with the same bits and that stale memory has no influence.
+// Usage: state_hash IMAGE...   Exit status 1 when a check within the build fails.
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <memory>
+#include <string>
+
+#include "rt_core/tick.h"
+#include "tests/support/image_file.h"
+#include "tests/support/scripted_hand.h"
+
+namespace palpate::test {
+namespace {
+
+struct Memory {
+  State state;
+  Scratch scratch;
+  Output output;
+};
+
+std::uint64_t mix(std::uint64_t hash, std::uint64_t word) {
+  hash = (hash ^ word) * 0x9E3779B97F4A7C15ull;
+  return hash ^ (hash >> 29);
+}
+
+std::uint64_t mix(std::uint64_t hash, Real value) {
+  std::uint64_t word = 0;
+  std::memcpy(&word, &value, sizeof(word));
+  return mix(hash, word);
+}
+
+// Everything the host or the device sees of a tick.
+std::uint64_t hash_output(std::uint64_t hash, const Output& o) {
+  for (const Wrench& w : {o.device_w, o.contact_w}) {
+    for (const Vec3& v : {w.force_N, w.torque_Nm}) hash = mix(mix(mix(hash, v.x), v.y), v.z);
+  }
+  hash = mix(mix(mix(mix(hash, o.penetration_m), o.energy_J), o.residual_m), o.ramp);
+  hash = mix(mix(hash, std::uint64_t{o.status}), std::uint64_t{o.fault});
+  return mix(hash, static_cast<std::uint64_t>(o.regions) << 32 | static_cast<std::uint32_t>(o.contacts));
+}
+
+struct Summary {
+  std::uint64_t hash = 0;
+  int ticks_in_contact = 0;
+  int most_regions = 0;
+};
+
+// One run of the script. `poison` fills all memory before the reset. From `swap_tick` on, the run goes on in `other`.
+Summary play(const Model& model, Memory& memory, unsigned char poison, int swap_tick, Memory* other) {
+  std::memset(static_cast<void*>(&memory), poison, sizeof(memory));
+  reset(memory.state);
+  memory.output = {};
+  Summary summary;
+  ScriptedHand hand(model);
+  Memory* now = &memory;
+  for (int i = 0; i < kScriptTicks; ++i) {
+    if (i == swap_tick) {
+      other->state = memory.state;
+      other->output = memory.output;
+      now = other;
+    }
+    const Input input = hand.next(now->output);
+    tick(model, now->state, now->scratch, input, now->output);
+    summary.hash = hash_output(mix(summary.hash, hash_state(model, now->state)), now->output);
+    summary.ticks_in_contact += now->output.contacts > 0 ? 1 : 0;
+    if (now->output.regions > summary.most_regions) summary.most_regions = now->output.regions;
+  }
+  return summary;
+}
+
+bool run_scene(const std::string& path) {
+  const ImageFile image(path);
+  const Model& model = image.model();
+  const auto a = std::make_unique<Memory>(), b = std::make_unique<Memory>();
+  const Summary first = play(model, *a, 0x00, -1, nullptr);
+  std::printf("%s %d %016llx %d %d\n", model.name, kScriptTicks, static_cast<unsigned long long>(first.hash),
+              first.ticks_in_contact, first.most_regions);
+  const Summary poisoned = play(model, *a, 0xA5, -1, nullptr);
+  if (poisoned.hash != first.hash) std::fprintf(stderr, "%s: memory left from before the reset matters\n", model.name);
+  std::memset(static_cast<void*>(b.get()), 0x5A, sizeof(Memory));
+  const Summary moved = play(model, *a, 0x00, kScriptTicks / 2, b.get());
+  if (moved.hash != first.hash) std::fprintf(stderr, "%s: a copied state does not continue alike\n", model.name);
+  return poisoned.hash == first.hash && moved.hash == first.hash;
+}
+
+}  // namespace
+}  // namespace palpate::test
+
+int main(int argc, char** argv) {
+  if (argc < 2) {
+    std::fprintf(stderr, "usage: state_hash IMAGE...\n");
+    return 2;
+  }
+  bool alike = true;
+  try {
+    for (int i = 1; i < argc; ++i) alike = palpate::test::run_scene(argv[i]) && alike;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "state_hash: %s\n", error.what());
+    return 2;
+  }
+  return alike ? 0 : 1;
+}

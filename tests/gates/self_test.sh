@@ -1,0 +1,95 @@
+#!/usr/bin/env bash
+# Proves that every gate can fire: each is given a sample that breaks its rule, and one that does not.
+# Usage: self_test.sh COMPILER
+set -euo pipefail
+compiler=${1:?usage: self_test.sh COMPILER}
+gates=$(cd "$(dirname "$0")" && pwd)
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+failures=0
+cases=0
+expect() { # pass|fail NAME COMMAND...
+  local wanted=$1 name=$2 got=pass
+  shift 2
+  "$@" >"$work/log" 2>&1 || got=fail
+  cases=$((cases + 1))
+  if [ "$got" != "$wanted" ]; then
+    echo "$name: expected to $wanted, but it did $got:"
+    sed 's/^/    /' "$work/log"
+    failures=$((failures + 1))
+  fi
+}
+tree() { # NAME FILE TEXT: a fresh tree holding one good file and FILE
+  rm -rf "${work:?}/$1"
+  mkdir -p "$work/$1/rt_core" "$work/$1/$(dirname "$2")"
+  cp "$gates/../../.clang-format" "$work/$1/"
+  printf '#include "rt_core/base.h"\n' >"$work/$1/rt_core/good.cpp"
+  printf '%b' "$3" >"$work/$1/$2"
+}
+source_gate() { # pass|fail GATE FILE TEXT
+  tree sample "$3" "$4"
+  expect "$1" "$2 on $3 ($4)" "$gates/$2.sh" "$work/sample"
+}
+
+source_gate pass include_direction rt_core/a.cpp '#include <cstdint>\n#include <Eigen/Core>\n#include "rt_core/base.h"\n'
+source_gate fail include_direction rt_core/a.cpp '#include <vector>\n'
+source_gate fail include_direction rt_core/a.h '#include <Eigen/Core>\n'
+source_gate fail include_direction rt_core/a.cpp '#include "hal/loop.h"\n'
+source_gate fail include_direction hal/a.cpp '#include "config/scene.h"\n'
+source_gate fail include_direction hal/a.cpp '#include <config/scene.h>\n'
+source_gate fail include_direction config/a.cpp '  #  include "hal/loop.h"\n'
+source_gate fail include_direction config/a.cpp '#include "sim_host/cli.h"\n'
+source_gate pass include_direction sim_host/a.cpp '#include "config/scene.h"\n#include "hal/loop.h"\n'
+
+long=$(printf 'int x;\\n%.0s' $(seq 501))
+source_gate fail file_size rt_core/a.cpp "$long"
+source_gate pass file_size rt_core/a.cpp 'int x;\n'
+
+source_gate fail format hal/a.cpp 'int  x ;\n'
+source_gate pass format hal/a.cpp 'int x;\n'
+
+source_gate pass words rt_core/a.cpp '// old normal to new normal; free of malloc\nint x; /* throw */\nconst char* t = "new";\nA(A&) = delete;\n'
+source_gate fail words rt_core/a.cpp 'int* x = new int;\n'
+source_gate fail words rt_core/a.h 'std::vector<int> x;\n'
+source_gate fail words rt_core/a.cpp 'double y = std::sin(x);\n'
+source_gate fail words rt_core/a.cpp 'void f() { while (true) {} }\n'
+source_gate pass words config/a.cpp 'std::vector<int> x;\n'
+source_gate fail words config/a.cpp "// TO""DO: later\n"
+source_gate fail words tests/a.cpp "GTEST_""SKIP();\n"
+source_gate fail words docs/a.md "see /wo""rk/main/run\n"
+source_gate fail words docs/a.md "see ../sha""red/notes\n"
+
+compile() { "$compiler" -std=c++20 -O1 -fPIC "$@"; }
+archive() { # NAME TEXT
+  printf '%b' "$2" >"$work/$1.cpp"
+  compile -c "$work/$1.cpp" -o "$work/$1.o"
+  rm -f "$work/$1.a"
+  ar rc "$work/$1.a" "$work/$1.o"
+}
+archive clean 'int f(int x) { return x + 1; }\n'
+expect pass "symbols_core on clean code" "$gates/symbols_core.sh" "$work/clean.a"
+archive allocates 'int* f() { return new int(3); }\n'
+expect fail "symbols_core on operator new" "$gates/symbols_core.sh" "$work/allocates.a"
+archive throws 'void f() { throw 1; }\n'
+expect fail "symbols_core on throw" "$gates/symbols_core.sh" "$work/throws.a"
+archive libm 'extern "C" double pow(double, double); double f(double x) { return pow(x, 0.3); }\n'
+expect fail "symbols_core on pow" "$gates/symbols_core.sh" "$work/libm.a"
+archive penetrates 'extern "C" int ccdGJKPenetration(); int f() { return ccdGJKPenetration(); }\n'
+expect fail "symbols_core on ccdGJKPenetration" "$gates/symbols_core.sh" "$work/penetrates.a"
+
+program() { # NAME TEXT LIBRARY...
+  local name=$1
+  printf '%b' "$2" >"$work/$name.cpp"
+  shift 2
+  compile "$work/$name.cpp" -o "$work/$name" -Wl,--no-as-needed "$@"
+}
+program overlap 'extern "C" int ccdGJKIntersect(); int main(int n, char**) { return n > 9 ? ccdGJKIntersect() : 0; }\n' -lccd
+expect pass "symbols_controller on ccdGJKIntersect" "$gates/symbols_controller.sh" "$work/overlap"
+program penetration 'extern "C" int ccdMPRPenetration(); int main(int n, char**) { return n > 9 ? ccdMPRPenetration() : 0; }\n' -lccd
+expect fail "symbols_controller on ccdMPRPenetration" "$gates/symbols_controller.sh" "$work/penetration"
+program pictures 'int main() { return 0; }\n' -lpng
+expect fail "symbols_controller on libpng" "$gates/symbols_controller.sh" "$work/pictures"
+
+[ "$failures" -eq 0 ] || { echo "gate self-test: $failures of $cases cases wrong"; exit 1; }
+echo "gate self-test: $cases cases, every gate fires and none fires on good code"

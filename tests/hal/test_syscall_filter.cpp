@@ -1,0 +1,52 @@
+// The real-time thread's allow-list: what the loop needs passes, anything else is refused, recorded and survivable.
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <sys/syscall.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <thread>
+
+#include "hal/syscall_filter.h"
+
+namespace palpate::test {
+namespace {
+
+TEST(SyscallFilter, LoopCallsPassAndAnythingElseIsRefusedAndRecorded) {
+  int pair[2];
+  ASSERT_EQ(socketpair(AF_UNIX, SOCK_SEQPACKET, 0, pair), 0);
+  bool installed = false;
+  int after_loop_calls = -2, after_open = -2, open_result = 0, open_errno = 0;
+  std::string reason;
+  std::thread loop([&] {
+    installed = install_syscall_filter(reason);
+    char byte = 1;
+    timespec now{};
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &now, nullptr);
+    send(pair[0], &byte, 1, 0);
+    recv(pair[1], &byte, 1, 0);
+    after_loop_calls = forbidden_syscall();
+    open_result = static_cast<int>(syscall(SYS_openat, AT_FDCWD, "/dev/null", O_RDONLY, 0));
+    open_errno = errno;
+    after_open = forbidden_syscall();
+  });
+  loop.join();
+  ASSERT_TRUE(installed) << reason;
+  EXPECT_EQ(after_loop_calls, -1);
+  EXPECT_EQ(open_result, -1);
+  EXPECT_EQ(open_errno, ENOSYS);
+  EXPECT_EQ(after_open, SYS_openat);
+  const int fd = open("/dev/null", O_RDONLY);  // other threads are free
+  EXPECT_GE(fd, 0);
+  close(fd);
+  close(pair[0]);
+  close(pair[1]);
+  clear_forbidden_syscall();
+  EXPECT_EQ(forbidden_syscall(), -1);
+}
+
+}  // namespace
+}  // namespace palpate::test

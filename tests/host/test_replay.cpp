@@ -1,0 +1,184 @@
+// Replay: a run recorded in memory comes out identical; a changed input, a changed result, a gap, another scene and
+// damage are each named.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <functional>
+
+#include "rt_core/tick.h"
+#include "sim_host/image_file.h"
+#include "sim_host/replay.h"
+#include "tests/support/tiny_image.h"
+
+namespace palpate {
+namespace {
+
+constexpr std::uint64_t kTicks = 400;
+
+struct RecordedRun {
+  RecordedRun() : image(test::tiny_image()) {
+    EXPECT_EQ(open_image(image.bytes(), model).error, ImageError::kNone);
+    reset(initial);
+  }
+  // Runs the core and records it; `spoil` may change a record before it is written.
+  void record(const std::function<void(TickRecord&)>& spoil = {}) {
+    path = (std::filesystem::temp_directory_path() / (std::to_string(getpid()) + "_replay.plr")).string();
+    RecordingHeader header;
+    header.scene_hash = model.scene_hash;
+    std::strcpy(header.scene_name, "tiny");
+    std::strcpy(header.image_path, "tiny.pal");
+    RecordingWriter writer(path, header, initial);
+    State state = initial;
+    Scratch scratch;
+    for (std::uint64_t i = 0; i < kTicks; ++i) {
+      Input input;
+      // Comes down on the tetrahedron's face, slides and leaves.
+      const double phase = static_cast<double>(i) / static_cast<double>(kTicks);
+      input.pose_w.position_m = {0.02 * phase, 0.01 * phase, 0.06 - 0.05 * std::sin(3.14159 * phase)};
+      input.commands = i > 5 ? Command::kArm : 0;
+      Output output;
+      tick(model, state, scratch, input, output);
+      TickRecord record{};
+      fill_record(model, state, input, output, record);
+      record.sequence = i + 1;
+      if (spoil) spoil(record);
+      if (record.sequence != 0) writer.add(record);
+    }
+    writer.finish();
+  }
+  ReplayResult replay_it() {
+    const MappedFile file(path);
+    std::filesystem::remove(path);
+    RecordingReader reader(file.bytes());
+    return replay(reader, model);
+  }
+
+  test::ImageBytes image;
+  Model model;
+  State initial;
+  std::string path;
+};
+
+TEST(Replay, SameInputsGiveTheSameBits) {
+  RecordedRun run;
+  double force = 0;
+  run.record([&](TickRecord& record) { force = std::max(force, norm(record.output.device_w.force_N)); });
+  EXPECT_GT(force, 0.01) << "the run must touch the body, or it proves little";
+  const ReplayResult result = run.replay_it();
+  EXPECT_TRUE(result.identical()) << result.stage << " " << result.field << " " << result.recorded << " " << result.replayed;
+  EXPECT_EQ(result.ticks, kTicks);
+}
+
+TEST(Replay, StartsFromTheRecordedStateNotFromZero) {
+  RecordedRun run;
+  run.initial.next_region_id = 1000;
+  run.initial.tick = 77;
+  run.record();
+  EXPECT_TRUE(run.replay_it().identical());
+}
+
+TEST(Replay, OneAlteredInputIsFoundAtItsTick) {
+  RecordedRun run;
+  run.record([](TickRecord& record) {
+    if (record.tick == 200) record.input.pose_w.position_m.z += 1e-9;
+  });
+  const ReplayResult result = run.replay_it();
+  ASSERT_TRUE(result.differs);
+  EXPECT_EQ(result.tick, 200u);
+  EXPECT_EQ(result.ticks, 200u);
+  EXPECT_NE(result.stage, "");
+  EXPECT_NE(result.recorded, result.replayed);
+}
+
+TEST(Replay, AlteredResultsNameStageAndField) {
+  const auto first_difference_of = [](auto spoil) {
+    RecordedRun run;
+    run.record([&](TickRecord& record) {
+      if (record.tick == 150) spoil(record);
+    });
+    const ReplayResult result = run.replay_it();
+    EXPECT_TRUE(result.differs);
+    EXPECT_EQ(result.tick, 150u);
+    return result.stage + ":" + result.field;
+  };
+  EXPECT_EQ(first_difference_of([](TickRecord& r) { r.output.contact_w.force_N.x += 1e-12; }), "force:output.contact_w");
+  EXPECT_EQ(first_difference_of([](TickRecord& r) { r.output.device_w.torque_Nm.z += 1; }), "safety:output.device_w");
+  EXPECT_EQ(first_difference_of([](TickRecord& r) { r.output.mode = Mode::kHold; }), "safety:output.mode");
+  EXPECT_EQ(first_difference_of([](TickRecord& r) { r.output.contacts += 1; }), "collide:output.contacts");
+  EXPECT_EQ(first_difference_of([](TickRecord& r) { r.output.regions += 1; }), "regions:output.regions");
+  EXPECT_EQ(first_difference_of([](TickRecord& r) { r.state_hash ^= 1; }),
+            "state:state_hash (no recorded output differs)");
+  // Two differences: the earlier stage is the one to look at.
+  EXPECT_EQ(first_difference_of([](TickRecord& r) {
+              r.output.ramp = 9;
+              r.output.energy_J = 9;
+            }),
+            "force:output.energy_J");
+}
+
+TEST(Replay, GapEndsTheVerificationAndIsCounted) {
+  RecordedRun run;
+  run.record([](TickRecord& record) {
+    if (record.sequence >= 100 && record.sequence < 110) record.sequence = 0;  // not written
+  });
+  const ReplayResult result = run.replay_it();
+  EXPECT_FALSE(result.identical());
+  EXPECT_FALSE(result.differs);
+  EXPECT_EQ(result.lost, 10u);
+  EXPECT_EQ(result.ticks, 99u);
+}
+
+TEST(Replay, AnotherSceneIsRefusedNamingBoth) {
+  RecordedRun run;
+  run.record();
+  const std::uint64_t recorded = run.model.scene_hash;
+  run.image.params().k1_N_per_m += 1;
+  run.image.seal();
+  ASSERT_EQ(open_image(run.image.bytes(), run.model).error, ImageError::kNone);
+  try {
+    run.replay_it();
+    FAIL() << "accepted another scene";
+  } catch (const RecordingError& error) {
+    char text[2][17];
+    std::snprintf(text[0], sizeof(text[0]), "%016llx", static_cast<unsigned long long>(recorded));
+    std::snprintf(text[1], sizeof(text[1]), "%016llx", static_cast<unsigned long long>(run.model.scene_hash));
+    EXPECT_NE(std::strstr(error.what(), text[0]), nullptr) << error.what();
+    EXPECT_NE(std::strstr(error.what(), text[1]), nullptr) << error.what();
+  }
+}
+
+TEST(Replay, CutRecordingIsVerifiedAsFarAsItGoes) {
+  RecordedRun run;
+  run.record();
+  std::filesystem::resize_file(run.path, std::filesystem::file_size(run.path) - 5000);
+  const ReplayResult result = run.replay_it();
+  EXPECT_FALSE(result.identical());
+  EXPECT_FALSE(result.differs);
+  EXPECT_NE(result.damage.find("offset "), std::string::npos);
+  EXPECT_GT(result.ticks, 0u);
+}
+
+TEST(Replay, BrokenImageFileNamesTheField) {
+  const std::string path = (std::filesystem::temp_directory_path() / (std::to_string(getpid()) + "_bad.pal")).string();
+  test::ImageBytes image = test::tiny_image();
+  image.params().period_s = -1;
+  image.seal();
+  std::FILE* file = std::fopen(path.c_str(), "wb");
+  ASSERT_NE(file, nullptr);
+  std::fwrite(image.bytes().data(), 1, image.bytes().size(), file);
+  std::fclose(file);
+  try {
+    const ImageFile broken(path);
+    FAIL() << "accepted a broken image";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::strstr(error.what(), "period_s"), nullptr) << error.what();
+    EXPECT_NE(std::strstr(error.what(), path.c_str()), nullptr) << error.what();
+  }
+  std::filesystem::remove(path);
+}
+
+}  // namespace
+}  // namespace palpate

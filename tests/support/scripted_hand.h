@@ -1,0 +1,89 @@
+// A hand that plays the same eight seconds in every scene, derived from the scene's own geometry: approach the top of
+// the body, press, slide along a circle, tilt both ways while pressing, tap, press deeply, and leave. It holds the
+// handle through a spring, so that the path depends on the forces rendered: a single wrong bit anywhere changes
+// everything after it. Determinism, guard and instruction tests all tick with this hand. Plain IEEE arithmetic and
+// rt_core's own sine: the same bits from every compiler.
+#pragma once
+
+#include "rt_core/io.h"
+#include "rt_core/math.h"
+#include "rt_core/model.h"
+
+namespace palpate::test {
+
+inline constexpr int kScriptTicks = 8000;
+
+class ScriptedHand {
+ public:
+  explicit ScriptedHand(const Model& model) : period_s_(model.params.period_s), size_m_(model.params.surface_size_m) {
+    Vec3 top{0, 0, -kHuge};
+    for (const Vec3& v : model.vertex_m) {
+      if (v.z > top.z) top = v;
+    }
+    // Lowest point of the tool in its own frame comes to rest on the top of the body.
+    Vec3 lowest{0, 0, kHuge};
+    for (const ToolPoint& p : model.tool_point) {
+      const Vec3 bottom = p.position_tool_m - Vec3{0, 0, p.margin_m};
+      if (bottom.z < lowest.z) lowest = bottom;
+    }
+    touch_ = top - lowest;
+    handle_.position_m = touch_ + Vec3{0, 0, kClearance_m};
+  }
+
+  // The sample of the next tick, after the forces of the last one acted on hand and handle for one period.
+  Input next(const Output& last) {
+    const Pose target = target_at(static_cast<Real>(tick_) * period_s_);
+    const Vec3 pull = kHand_N_per_m * (target.position_m - handle_.position_m) - kHand_Ns_per_m * velocity_;
+    velocity_ += (period_s_ / kHandle_kg) * (pull + last.device_w.force_N);
+    handle_.position_m += period_s_ * velocity_;
+    handle_.orientation = target.orientation;
+    Input input;
+    input.pose_w = {quantised(handle_.position_m), handle_.orientation};
+    input.velocity_w = velocity_;
+    input.commands = tick_ == 1 ? Command::kArm : 0;
+    tick_ += 1;
+    return input;
+  }
+
+ private:
+  static constexpr Real kClearance_m = 0.01;
+  static constexpr Real kHandle_kg = 0.2;
+  static constexpr Real kHand_N_per_m = 500;
+  static constexpr Real kHand_Ns_per_m = 12;
+  static constexpr Real kEncoder_m = 3e-5;
+
+  // 0 before `from`, 1 after `to`, a straight line between.
+  static Real ease(Real t_s, Real from_s, Real to_s) { return clamp_to((t_s - from_s) / (to_s - from_s), 0, 1); }
+  // 0, up to 1 during the first tenth, down again during the last tenth.
+  static Real during(Real t_s, Real from_s, Real to_s) {
+    const Real edge = 0.1 * (to_s - from_s);
+    return ease(t_s, from_s, from_s + edge) - ease(t_s, to_s - edge, to_s);
+  }
+  static Vec3 quantised(Vec3 p) {
+    const auto step = [](Real x) { return kEncoder_m * static_cast<Real>(static_cast<std::int64_t>(x / kEncoder_m)); };
+    return {step(p.x), step(p.y), step(p.z)};
+  }
+
+  Pose target_at(Real t_s) const {
+    const Real press = ease(t_s, 0.3, 0.8) - ease(t_s, 7.6, 7.9);                  // down, and up at the end
+    const Real deep = during(t_s, 6.2, 7.5);                                       // press as hard as a hand does
+    const Real tap = during(t_s, 5.2, 5.4) + during(t_s, 5.5, 5.7);                // leave and come back, twice
+    const Real slide = during(t_s, 1.2, 3.2);                                      // two turns of a circle
+    const Real roll = during(t_s, 3.4, 4.2), pitch = during(t_s, 4.3, 5.1);        // tilt over x, then over y
+    const Real sway = math::sin(25.0 * t_s);                                       // 4 Hz, within the tilts
+    const Real depth_m = kClearance_m + 0.012 * press + 0.02 * deep - 0.03 * tap;  // below the approach height
+    const Real radius_m = 0.08 * size_m_ * slide, angle = 6.283185307179586 * t_s;
+    Pose target;
+    target.position_m = touch_ + Vec3{radius_m * math::cos(angle), radius_m * math::sin(angle),
+                                      2.0 * kClearance_m - depth_m + 0.005 * (1.0 - press)};
+    target.orientation = small_rotation({0.3 * roll * sway, 0.3 * pitch * sway, 0.0});
+    return target;
+  }
+
+  Real period_s_, size_m_;
+  Vec3 touch_, velocity_;
+  Pose handle_;
+  std::int64_t tick_ = 0;
+};
+
+}  // namespace palpate::test
