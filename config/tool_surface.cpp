@@ -10,8 +10,8 @@ namespace palpate {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-// Samples around an axis: a multiple of twice every ring size but 7, 9 and 11, so that by symmetry no sample is equally far
-// from two points of a ring (all sit half a step off), and symmetric points get equal areas.
+// Samples around an axis, half a step off: for rings of 3, 4, 5, 6, 8, 10 or 12 points symmetric and never equally far
+// from two of them, so that symmetric points get equal areas.
 constexpr std::int32_t kAround = 240;
 constexpr std::int32_t kAlong = 24;  // per profile line or arc
 

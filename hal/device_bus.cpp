@@ -160,6 +160,19 @@ int make_command_frames(WireProfile profile, int node, const wire::Command& comm
   return 2;
 }
 
+int make_status_frames(int node, const wire::Status& status, Frame (&frames)[2]) noexcept {
+  fill<wire::Status, wire::kStatusBytes>(frames[0], wire::kStatusId, node, true, status);
+  return 1;
+}
+
+int make_status_frames(int node, const wire::ClassicPosition& position, const wire::ClassicOrientation& orientation,
+                       Frame (&frames)[2]) noexcept {
+  fill<wire::ClassicPosition, wire::kClassicPositionBytes>(frames[0], wire::kClassicPositionId, node, false, position);
+  fill<wire::ClassicOrientation, wire::kClassicOrientationBytes>(frames[1], wire::kClassicOrientationId, node, false,
+                                                                 orientation);
+  return 2;
+}
+
 bool DeviceBus::transmit(const DeviceCommand& command) noexcept {
   wire::Command header;
   sent_ = (sent_ + 1) & 0xFFFFu;

@@ -92,7 +92,10 @@ struct WireIds {
 WireIds status_ids(WireProfile profile, int node) noexcept;
 WireIds command_ids(WireProfile profile, int node) noexcept;
 
-// Frames of one command or status, ready to send. Shared with the device's side.
+// Frames of one command or status, ready to send; they return how many.
+int make_status_frames(int node, const wire::Status& status, Frame (&frames)[2]) noexcept;
+int make_status_frames(int node, const wire::ClassicPosition& position, const wire::ClassicOrientation& orientation,
+                       Frame (&frames)[2]) noexcept;
 int make_command_frames(WireProfile profile, int node, const wire::Command& command, const DeviceCommand& si,
                         Frame (&frames)[2]) noexcept;
 

@@ -27,7 +27,6 @@
 //   C. Neither: all words are of version v1, and v2 == v1.
 #pragma once
 
-#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -175,10 +174,9 @@ class TelemetryWriter {
     copy_text(header.image_path, image_path);
     std::memcpy(static_cast<void*>(&header.initial_state), &initial_state, sizeof(State));
   }
-  // Publishes one record; sets record.sequence to 1, 2, 3... Does nothing before open().
-  void write(TickRecord& record) PALPATE_RT {
-    record.sequence = ++sequence_;
-    if (region_ == nullptr) return;
+  // Publishes one record under the next sequence number 1, 2, 3..., whatever record.sequence says. Not before open().
+  void write(const TickRecord& record) PALPATE_RT {
+    sequence_ += 1;
     TelemetryRegion::Slot& slot = region_->slot[sequence_ % kTelemetryCapacity];
     // Relaxed: ordered before the data words by *their* release stores (case B above).
     slot.sequence.store(0, std::memory_order_relaxed);
@@ -202,9 +200,11 @@ class TelemetryWriter {
     for (; i + 1 < N && from[i] != '\0'; ++i) to[i] = from[i];
     for (; i < N; ++i) to[i] = '\0';
   }
-  static void store_words(std::atomic<std::uint64_t> (&word)[kRecordWords], const TickRecord& record) PALPATE_RT {
+  void store_words(std::atomic<std::uint64_t> (&word)[kRecordWords], const TickRecord& record) const PALPATE_RT {
     const auto* bytes = reinterpret_cast<const unsigned char*>(&record);
-    for (std::size_t i = 0; i < kRecordWords; ++i) {  // bound: kRecordWords
+    static_assert(offsetof(TickRecord, sequence) == 0, "word 0 is the sequence");
+    word[0].store(sequence_, std::memory_order_release);  // as below
+    for (std::size_t i = 1; i < kRecordWords; ++i) {      // bound: kRecordWords
       std::uint64_t value;
       __builtin_memcpy(&value, bytes + 8 * i, 8);
       // Release: keeps the "being written" mark before the data; pairs with the acquire load in load_words (case B).

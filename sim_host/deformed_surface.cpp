@@ -39,10 +39,13 @@ DeformedSurface deformed_surface(const Model& model, std::vector<Vec3> displacem
 }
 
 DeformedSurface deformed_surface(const Model& model, const State& state) {
-  SurfaceShape shape;
-  prepare_shape(model, state, shape);
-  std::vector<Vec3> displacement(model.vertex_m.size());
-  for (std::size_t i = 0; i < displacement.size(); ++i) displacement[i] = displacement_at(model, state, shape, i);
+  ShapeField field;
+  prepare_shape(model, state, field);
+  std::vector<Vec3> displacement;
+  displacement.reserve(model.vertex_m.size());
+  for (std::size_t i = 0; i < model.vertex_m.size(); ++i) {
+    displacement.push_back(displacement_at(model, field, model.vertex_m[i], static_cast<std::int32_t>(i)));
+  }
   return deformed_surface(model, std::move(displacement));
 }
 

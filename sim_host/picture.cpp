@@ -15,7 +15,7 @@ namespace {
 enum Material : std::int32_t { kBody = 0, kAnchorFree, kAnchorFixed, kTool, kArrow };
 
 constexpr Colour kInk = colour(0x1f2933), kGrey = colour(0x5b6672);
-constexpr Colour kToolColour = colour(0x6d8fae), kArrowColour = colour(0x0f5fa8);
+constexpr Colour kToolColour = colour(0x6d8fae), kArrowColour = colour(0x1b74c4);
 
 struct ForceLabel {
   Vec3 tip_w;
@@ -76,7 +76,7 @@ class Renderer {
   std::vector<ForceLabel> labels_;
   // Soft shadow on the ground: a blurred view of body and tool from above.
   static constexpr int kShadow = 256;
-  double ground_z_ = 0, shadow_half_ = 1;
+  double ground_y_ = 0, shadow_half_ = 1;
   Vec3 shadow_centre_;
   std::vector<float> shadow_;
 };
@@ -109,7 +109,7 @@ void Renderer::draw_anchors() {
   for (std::size_t k = 0; k < model_.anchor.size(); ++k) {
     const Anchor& anchor = model_.anchor[k];
     const Vec3 at = anchor.position_m + (anchor.fixed != 0 ? Vec3{} : state_.anchor[k].displacement_w);
-    solid_.draw(sphere_mesh({at, {}}, 0.012 * model_.params.surface_size_m), projection_,
+    solid_.draw(sphere_mesh({at, {}}, 0.014 * model_.params.surface_size_m), projection_,
                 anchor.fixed != 0 ? kAnchorFixed : kAnchorFree);
   }
 }
@@ -132,17 +132,17 @@ void Renderer::draw_arrows() {
 }
 
 void Renderer::make_shadow() {
-  ground_z_ = 1e30;
-  for (const Vec3 v : surface_.position_m) ground_z_ = std::min(ground_z_, v.z);
+  ground_y_ = 1e30;
+  for (const Vec3 v : surface_.position_m) ground_y_ = std::min(ground_y_, v.y);
   shadow_half_ = 1.2 * model_.params.surface_size_m;
   Vec3 centre;
   for (const Vec3 v : model_.vertex_m) centre += v;
   shadow_centre_ = (1.0 / static_cast<double>(model_.vertex_m.size())) * centre;
   constexpr double kHigh = 100.0;  // so far up that the view is parallel
   Camera above;
-  above.eye_m = {shadow_centre_.x, shadow_centre_.y, ground_z_ + kHigh * shadow_half_};
-  above.target_m = {shadow_centre_.x, shadow_centre_.y, ground_z_};
-  above.up = {0, 1, 0};
+  above.eye_m = {shadow_centre_.x, ground_y_ + kHigh * shadow_half_, shadow_centre_.z};
+  above.target_m = {shadow_centre_.x, ground_y_, shadow_centre_.z};
+  above.up = {0, 0, -1};
   above.vertical_fov_rad = 2 * std::atan(1.0 / kHigh);
   Layer layer(kShadow, kShadow);
   RenderMesh body;
@@ -177,9 +177,9 @@ Colour Renderer::background(int x, int y) const {
   const float down = static_cast<float>(y) / static_cast<float>(solid_.height());
   Colour c = mix(colour(0xfdfdfe), colour(0xe3e8ee), down * down);
   const Vec3 ray = projection_.ray(x + 0.5, y + 0.5);
-  if (!(ray.z < -1e-6)) return c;
-  const Vec3 hit = projection_.eye() + ((ground_z_ - projection_.eye().z) / ray.z) * ray;
-  const double u = (hit.x - shadow_centre_.x) / shadow_half_, v = -(hit.y - shadow_centre_.y) / shadow_half_;
+  if (!(ray.y < -1e-6)) return c;
+  const Vec3 hit = projection_.eye() + ((ground_y_ - projection_.eye().y) / ray.y) * ray;
+  const double u = (hit.x - shadow_centre_.x) / shadow_half_, v = (hit.z - shadow_centre_.z) / shadow_half_;
   if (!(std::abs(u) < 0.99 && std::abs(v) < 0.99)) return c;
   const auto cell = [](double t) { return static_cast<int>((t + 1) * 0.5 * kShadow); };
   return mix(c, colour(0x2b3440), 0.38f * shadow_[static_cast<std::size_t>(cell(v) * kShadow + cell(u))]);
@@ -193,7 +193,7 @@ Colour Renderer::shade(Colour base, const Surfel& surfel, int x, int y, float gl
   const Vec3 back = -projection_.forward();
   const Vec3 key = unit_or(-0.55 * projection_.right() + 0.75 * projection_.up() + 0.55 * back, view);
   const Vec3 fill = unit_or(0.8 * projection_.right() + 0.1 * projection_.up() + 0.5 * back, view);
-  const double light = 0.36 + 0.56 * std::max(0.0, dot(n, key)) + 0.14 * std::max(0.0, dot(n, fill)) + 0.10 * n.z;
+  const double light = 0.44 + 0.50 * std::max(0.0, dot(n, key)) + 0.14 * std::max(0.0, dot(n, fill)) + 0.10 * dot(n, kWorldUp);
   const double highlight = std::pow(std::max(0.0, dot(n, unit_or(key + view, view))), 48.0);
   const auto lit = static_cast<float>(light), shine = gloss * static_cast<float>(highlight);
   return {base.r * lit + shine, base.g * lit + shine, base.b * lit + shine};

@@ -12,6 +12,9 @@
 
 namespace palpate {
 
+// Scenes stand on the plane y = 0 (config/procedural.h).
+inline constexpr Vec3 kWorldUp{0, 1, 0};
+
 struct PictureOptions {
   int width = 1200, height = 900;
   int supersampling = 2;           // samples per pixel and axis, 1..4

@@ -19,15 +19,16 @@ Camera default_camera(const Model& model, const State& state) {
   for (const Region& region : state.region) {
     if (region.id != 0 && region.lost_ticks == 0) side += region.normal_force_N * region.normal_w;
   }
-  side = unit_or(side, {0, 0, 1});
-  double azimuth = -1.0;  // radians from x: from the front, a little from the right
-  if (std::hypot(side.x, side.y) > 0.4) azimuth = std::atan2(side.y, side.x) - 0.7;
+  side = unit_or(side, kWorldUp);
+  double azimuth = 0.55;  // radians from +z towards +x: from the front, a little from the right
+  if (std::hypot(side.x, side.z) > 0.4) azimuth = std::atan2(side.x, side.z) + 0.7;
   constexpr double kElevation = 0.42, kFov = 0.5;
-  const Vec3 direction{std::cos(kElevation) * std::cos(azimuth), std::cos(kElevation) * std::sin(azimuth),
-                       std::sin(kElevation)};
+  const Vec3 direction{std::cos(kElevation) * std::sin(azimuth), std::sin(kElevation),
+                       std::cos(kElevation) * std::cos(azimuth)};
   Camera camera;
-  camera.target_m = centre + Vec3{0, 0, 0.22 * radius};  // room for the tool above
-  camera.eye_m = camera.target_m + (1.55 * radius / std::tan(0.5 * kFov)) * direction;
+  camera.target_m = centre + 0.28 * radius * kWorldUp;  // room for the tool above
+  camera.eye_m = camera.target_m + (1.32 * radius / std::tan(0.5 * kFov)) * direction;
+  camera.up = kWorldUp;
   camera.vertical_fov_rad = kFov;
   return camera;
 }

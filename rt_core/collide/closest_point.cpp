@@ -18,7 +18,7 @@ struct Best {
   float bound() const PALPATE_RT { return static_cast<float>(distance2 * (1 + 0x1p-20) + 1e-20); }
 };
 
-void consider(const Model& model, Vec3 p, std::int32_t index, Best& best) PALPATE_RT {
+inline void consider(const Model& model, const Vec3& p, std::int32_t index, Best& best) PALPATE_RT {
   const Triangle& t = model.triangle[static_cast<std::size_t>(index)];
   const TrianglePoint at = closest_on_triangle(p, model.vertex_m[static_cast<std::size_t>(t.vertex[0])],
                                                model.vertex_m[static_cast<std::size_t>(t.vertex[1])],
@@ -39,7 +39,7 @@ struct Pending {
 // Depth-first descent, nearest child first, over a bounded stack.
 class Descent {
  public:
-  Descent(const Model& model, Vec3 p, Best& best) PALPATE_RT : model_(model), p_(p), query_(node_query(p)), best_(best) {}
+  Descent(const Model& model, Vec3 p, Best& best) PALPATE_RT : model_(model), p_(p), query_(node_query(p)), best_(best), bound_(best.bound()) {}
 
   void run(SurfacePoint& result) PALPATE_RT {
     Pending next{0, 0};
@@ -65,22 +65,28 @@ class Descent {
   // Tests a node's children: leaves are measured at once, inner nodes pushed, the nearest of them returned.
   Pending open(const BvhNode& node) PALPATE_RT {
     const Float4 distance2 = box_distance2(node, query_);
-    float bound = best_.bound();
-    Mask4 admitted = distance2 <= splat4(bound);
-    const int admitted_count = -(admitted[0] + admitted[1] + admitted[2] + admitted[3]);
-    if (admitted_count > 1) admitted &= ~cone_excludes(node, query_);
+    unsigned admitted = lanes(distance2 <= splat4(bound_));
+    // One admitted child must be followed anyway; only then is the cone test, twice the price of the boxes', saved.
+    if ((admitted & (admitted - 1)) != 0) admitted &= ~lanes(cone_excludes(node, query_));
+    float lane[4];
+    __builtin_memcpy(lane, &distance2, sizeof lane);
     Pending nearest{0, -1};
-    for (int k = 0; k < 4; ++k) {  // bound: 4
-      if (admitted[k] == 0) continue;
+    for (; admitted != 0; admitted &= admitted - 1) {  // bound: 4
+      const int k = __builtin_ctz(admitted);
       if (node.child[k] < 0) {
         measure_leaf(~node.child[k], node.count[k]);
-      } else if (nearest.node < 0) {
-        nearest = {distance2[k], node.child[k]};
-      } else if (distance2[k] < nearest.distance2) {
-        push(nearest);
-        nearest = {distance2[k], node.child[k]};
+        continue;
+      }
+      Pending entry{lane[k], node.child[k]};
+      if (nearest.node >= 0 && entry.distance2 < nearest.distance2) {
+        const Pending farther = nearest;
+        nearest = entry;
+        entry = farther;
+      }
+      if (nearest.node >= 0 && nearest.node != entry.node) {
+        push(entry);
       } else {
-        push({distance2[k], node.child[k]});
+        nearest = entry;
       }
     }
     return nearest;
@@ -88,6 +94,7 @@ class Descent {
 
   void measure_leaf(std::int32_t first, std::int32_t count) PALPATE_RT {
     for (std::int32_t i = 0; i < count; ++i) consider(model_, p_, first + i, best_);  // bound: 4
+    bound_ = best_.bound();
   }
 
   void push(Pending entry) PALPATE_RT {
@@ -100,10 +107,9 @@ class Descent {
   }
 
   bool pop(Pending& next) PALPATE_RT {
-    const float bound = best_.bound();
     while (top_ > 0) {  // bound: kMaxTraversalStack
       next = stack_[--top_];
-      if (next.distance2 <= bound) return true;
+      if (next.distance2 <= bound_) return true;
     }
     return false;
   }
@@ -112,6 +118,7 @@ class Descent {
   const Vec3 p_;
   const NodeQuery query_;
   Best& best_;
+  float bound_;  // best_.bound(), kept current
   Pending stack_[kMaxTraversalStack];
   std::int32_t top_ = 0, high_water_ = 0;
   double overflow_distance2_ = 1e300;  // nearest box given up because of a cap

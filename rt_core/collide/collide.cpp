@@ -63,6 +63,7 @@ void skip(PointState& point, Real gap_m) PALPATE_RT {
 // A truncated search may have ended on a far part of the surface and got the side wrong. Signed distance changes by at
 // most the distance moved, so a point that was farther than that from the surface is still on its side.
 Real side_checked(Real signed_distance_m, const PointState& last, Real margin_m, Real moved_m) PALPATE_RT {
+  if (last.gap_bound_m == 0) return signed_distance_m;  // nothing known from the last tick
   const Real before = last.gap_m + margin_m;
   if (before > moved_m) return abs_of(signed_distance_m);
   return before < -moved_m ? -abs_of(signed_distance_m) : signed_distance_m;

@@ -23,6 +23,19 @@ inline Float4 sqrt4(Float4 a) PALPATE_RT {
   return root;
 }
 
+// Bit k set where lane k of the mask is true.
+inline unsigned lanes(Mask4 mask) PALPATE_RT {
+#ifdef __SSE__
+  Float4 bits;
+  __builtin_memcpy(&bits, &mask, sizeof bits);
+  return static_cast<unsigned>(__builtin_ia32_movmskps(bits));
+#else
+  unsigned bits = 0;
+  for (int k = 0; k < 4; ++k) bits |= mask[k] != 0 ? 1u << k : 0u;  // bound: 4
+  return bits;
+#endif
+}
+
 // A query point in single precision: below and above the true coordinate, and an allowance for its rounding.
 struct NodeQuery {
   Float4 below[3], above[3];

@@ -68,6 +68,9 @@ Simplex nearest_on_face(const Simplex& s, std::int32_t i, std::int32_t j, std::i
 // The faces of a tetrahedron and, last, the corner opposite each.
 constexpr std::int32_t kFace[4][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {1, 3, 2, 0}};
 
+// Sine of the angle between a face and the opposite corner below which a tetrahedron counts as flat.
+constexpr Real kFlatSine = 1e-8;
+
 bool reduce_tetrahedron(Simplex& s) PALPATE_RT {
   Simplex best;
   Real best_distance2 = -1;
@@ -75,9 +78,11 @@ bool reduce_tetrahedron(Simplex& s) PALPATE_RT {
   for (const auto& f : kFace) {  // bound: 4
     const Vec3 a = s.point[f[0]].difference;
     const Vec3 n = cross(s.point[f[1]].difference - a, s.point[f[2]].difference - a);
-    const Real apex = dot(s.point[f[3]].difference - a, n), origin = -dot(a, n);
-    // The origin is outside this face, or the tetrahedron is flat and proves nothing.
-    if (apex * origin > 0) continue;
+    const Vec3 rise = s.point[f[3]].difference - a;
+    const Real apex = dot(rise, n), origin = -dot(a, n);
+    // Inside this face, unless the tetrahedron is so flat that rounding decides the side.
+    const bool flat = !(apex * apex > kFlatSine * kFlatSine * squared_norm(n) * squared_norm(rise));
+    if (!flat && apex * origin > 0) continue;
     inside = false;
     const Simplex candidate = nearest_on_face(s, f[0], f[1], f[2]);
     const Real distance2 = squared_norm(candidate.nearest());

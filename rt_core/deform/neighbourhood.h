@@ -1,4 +1,5 @@
-// The local neighbourhood of a contact: how the dent fades from the contact's edge to where the global shape takes over.
+// The local neighbourhood of a contact: how the dent fades from the contact's edge to where the global shape takes
+// over.
 #pragma once
 
 #include "rt_core/model.h"
@@ -23,8 +24,8 @@ struct Neighbourhood {
   NeighbourhoodLaw law = NeighbourhoodLaw::kNone;
   Real contact_radius_m = 0;
   Real reach_m = 0;
-  LogLaw log;          // kLog: g = A - B ln r
-  Real at_reach = 0;   // kPunch: asin(a/R)
+  LogLaw log;                   // kLog: g = A - B ln r
+  Real at_reach = 0;            // kPunch: asin(a/R)
   Real inverse_at_contact = 0;  // kLogC1, kPunch: 1 / denominator
 };
 
@@ -36,9 +37,9 @@ Neighbourhood make_neighbourhood(NeighbourhoodLaw law, Real contact_radius_m, Re
 // g(r), in [0, 1].
 Real neighbourhood_blend(const Neighbourhood& neighbourhood, Real distance_m) PALPATE_RT;
 
-// The paper's modification factor omega = min(1, sqrt(A_ref / A)): a larger region makes a shallower dent. The paper counts
-// mesh points, which depends on the mesh; area does not, and for a flat punch at given force depth falls as 1/sqrt(A).
-// Applied to the dent that is drawn, never to a force. 1 when an area is not positive.
+// The paper's modification factor omega = min(1, sqrt(A_ref / A)): a larger region makes a shallower dent. The paper
+// counts mesh points, which depends on the mesh; area does not, and for a flat punch at given force depth falls as
+// 1/sqrt(A). Applied to the dent that is drawn, never to a force. 1 when an area is not positive.
 Real region_size_factor(Real area_m2, Real reference_area_m2) PALPATE_RT;
 
 }  // namespace palpate

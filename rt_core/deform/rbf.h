@@ -16,7 +16,7 @@ using RbfVector = Real[kMaxRbf];
 struct RbfContact {
   Vec3 point_w;
   RbfVector q{};
-  Real inverse_s = 0;            // 0 when p lies at an anchor (|s| < 1e-6 body sizes, |s| being twice the distance)
+  Real inverse_s = 0;           // 0 when p lies at an anchor (|s| < 1e-6 body sizes, |s| being twice the distance)
   std::int32_t at_anchor = -1;  // that anchor, or -1
 };
 

@@ -5,8 +5,9 @@
 namespace palpate {
 namespace {
 
-// Columns of the paper's system nearer to parallel than this (sine of the angle) are taken as parallel. Below it the two
-// scales are the difference of nearly equal things: an anchor misplaced by 1 % of the body moves them by their own size.
+// Columns of the paper's system nearer to parallel than this (sine of the angle) are taken as parallel. Below it the
+// two scales are the difference of nearly equal things: an anchor misplaced by 1 % of the body moves them by their own
+// size.
 constexpr Real kParallelSine = 1e-2;
 
 BeamSection section_of(const Anchor& anchor) PALPATE_RT {
@@ -41,8 +42,8 @@ void build_skeleton(const SkeletonSetup& setup, std::span<const Anchor> anchor, 
     const Anchor& a = anchor[at];
     const Vec3 position = offset_w.empty() ? a.position_m : a.position_m + offset_w[at];
     const Real min_length_m = setup.guard_length ? 2.0 * a.section_radius_m : 0.0;
-    skeleton.beam[i] = make_straight_beam(setup.material, section_of(a), position, contact_w, a.normal, setup.theory,
-                                          min_length_m);
+    skeleton.beam[i] =
+        make_straight_beam(setup.material, section_of(a), position, contact_w, a.normal, setup.theory, min_length_m);
   }
   clear_forces(skeleton);
 }

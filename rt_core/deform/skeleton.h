@@ -11,14 +11,14 @@
 namespace palpate {
 
 struct Skeleton {
-  std::int32_t count = 0;      // beams, = anchors
-  bool degenerate = false;     // no usable stiffness: all forces and displacements are zero
-  bool minimum_norm = false;   // paper law only: its two columns are parallel, the smallest solution was taken
-  Real alpha_Pa = 0;           // paper law only: scale of the axial ratios (6); E in the stiffness law
-  Real beta_Pa = 0;            // paper law only: scale of the bending ratios (7); 3E in the Euler-Bernoulli stiffness law
-  Vec3 displacement_w;         // stiffness law: displacement of the contact point, K^-1 F
+  std::int32_t count = 0;     // beams, = anchors
+  bool degenerate = false;    // no usable stiffness: all forces and displacements are zero
+  bool minimum_norm = false;  // paper law only: its two columns are parallel, the smallest solution was taken
+  Real alpha_Pa = 0;          // paper law only: scale of the axial ratios (6); E in the stiffness law
+  Real beta_Pa = 0;     // paper law only: scale of the bending ratios (7); 3E in the Euler-Bernoulli stiffness law
+  Vec3 displacement_w;  // stiffness law: displacement of the contact point, K^-1 F
   StraightBeam beam[kMaxAnchors];
-  Vec3 force_w[kMaxAnchors];   // on each beam's tip
+  Vec3 force_w[kMaxAnchors];  // on each beam's tip
 };
 
 // Result of one anchor.
@@ -49,9 +49,9 @@ bool distribute_by_stiffness(Vec3 force_on_body_w, Skeleton& skeleton) PALPATE_R
 
 // The paper's ratios (Luo & Xiao 2006, equations (6), (7), (8)): F_i = alpha (S_i/l_i)(x_i.D) x_i +
 // beta (I_i/l_i^3)(D - (x_i.D) x_i) with D the direction of the force and alpha, beta unknown. In space (8) gives three
-// equations for the two scales: they are solved in the least-squares sense, so sum F_i = F holds only where F lies in the
-// plane of the two columns. Where the columns are parallel (a force along a symmetry axis) the least-norm solution is
-// taken. Needs beams built with BeamTheory::kEulerBernoulli. Returns false when there is no usable stiffness.
+// equations for the two scales: they are solved in the least-squares sense, so sum F_i = F holds only where F lies in
+// the plane of the two columns. Where the columns are parallel (a force along a symmetry axis) the least-norm solution
+// is taken. Needs beams built with BeamTheory::kEulerBernoulli. Returns false when there is no usable stiffness.
 bool distribute_by_ratios(Real youngs_modulus_Pa, Vec3 force_on_body_w, Skeleton& skeleton) PALPATE_RT;
 
 // Builds and distributes with the model's law. False: no anchors, SkeletonLaw::kNone, or degenerate (see the flag).

@@ -5,8 +5,8 @@
 
 namespace palpate {
 
-// kTimoshenko adds the shear compliance l/(kappa G S); without it beams about as thick as they are long, which skeletons
-// are full of, are absurdly stiff in bending. kEulerBernoulli is the paper's theory.
+// kTimoshenko adds the shear compliance l/(kappa G S); without it beams about as thick as they are long, which
+// skeletons are full of, are absurdly stiff in bending. kEulerBernoulli is the paper's theory.
 enum class BeamTheory : std::int32_t { kTimoshenko = 0, kEulerBernoulli = 1 };
 
 struct BeamMaterial {
@@ -22,17 +22,18 @@ struct BeamSection {
 };
 
 struct StraightBeam {
-  Vec3 axis;                  // unit, from the anchor to the contact point
-  Real length_m = 0;          // true length
-  Real axial_N_per_m = 0;     // k_a = E S / l
-  Real bending_N_per_m = 0;   // k_b = 1 / (l^3/(3EI) + l/(kappa G S)), or 3EI/l^3
+  Vec3 axis;                 // unit, from the anchor to the contact point
+  Real length_m = 0;         // true length
+  Real axial_N_per_m = 0;    // k_a = E S / l
+  Real bending_N_per_m = 0;  // k_b = 1 / (l^3/(3EI) + l/(kappa G S)), or 3EI/l^3
 };
 
 // Stresses on the clamped section of one beam.
 struct BeamStress {
-  Real axial_Pa = 0;    // F_x / S, tension positive
-  Real bending_Pa = 0;  // |F_perp| l r / I at the extreme fibre, >= 0. On the centre line, where the paper takes it, it is 0
-  Real shear_Pa = 0;    // tau(0,0) >= 0, along the transverse force
+  Real axial_Pa = 0;  // F_x / S, tension positive
+  Real bending_Pa =
+      0;  // |F_perp| l r / I at the extreme fibre, >= 0. On the centre line, where the paper takes it, it is 0
+  Real shear_Pa = 0;  // tau(0,0) >= 0, along the transverse force
 };
 
 // Shear stresses over a circular section (transverse force along y, coordinates from the centre).
@@ -42,9 +43,9 @@ struct SectionShear {
 };
 
 // Beam from `anchor` to `contact`. `fallback_axis` (unit) is used where the two coincide. The stiffness is taken at
-// l_eff = sqrt(l^2 + min_length_m^2), which keeps it finite for a contact at the anchor; min_length_m = 0 gives the bare
-// formulas (then l must be > 0). Bending stiffness is kept at or above 1e-6 of the axial one, so that a skeleton of
-// collinear beams stays regular. Zero stiffness when an input is not finite or not positive.
+// l_eff = sqrt(l^2 + min_length_m^2), which keeps it finite for a contact at the anchor; min_length_m = 0 gives the
+// bare formulas (then l must be > 0). Bending stiffness is kept at or above 1e-6 of the axial one, so that a skeleton
+// of collinear beams stays regular. Zero stiffness when an input is not finite or not positive.
 StraightBeam make_straight_beam(const BeamMaterial& material, const BeamSection& section, Vec3 anchor, Vec3 contact,
                                 Vec3 fallback_axis, BeamTheory theory, Real min_length_m) PALPATE_RT;
 
@@ -63,11 +64,11 @@ SectionShear section_shear(const BeamSection& section, Real poisson_ratio, Real 
                            Real z_m) PALPATE_RT;
 
 // Displacement of the anchor when its clamp is released over `release_length_m` (s): that of the beam's point at x = s,
-// g d + (lambda - g)(x.d) x with lambda = min(1, s/l), g = (3 lambda^2 - lambda^3)/2, the Euler-Bernoulli deflection line
-// scaled to the tip displacement d. A strain at one point fixes no displacement, so the paper's "compute the displacement
-// from the strain" needs this length; s = pi r (1 - nu^2)/2 makes the axial part that of a rigid circular foot on a half
-// space. Same formula with d = the dent instead of the skeleton's own tip displacement: the kinematic variant, in which E
-// cancels. s <= 0: the anchor keeps still.
+// g d + (lambda - g)(x.d) x with lambda = min(1, s/l), g = (3 lambda^2 - lambda^3)/2, the Euler-Bernoulli deflection
+// line scaled to the tip displacement d. A strain at one point fixes no displacement, so the paper's "compute the
+// displacement from the strain" needs this length; s = pi r (1 - nu^2)/2 makes the axial part that of a rigid circular
+// foot on a half space. Same formula with d = the dent instead of the skeleton's own tip displacement: the kinematic
+// variant, in which E cancels. s <= 0: the anchor keeps still.
 Vec3 released_displacement(const StraightBeam& beam, Vec3 tip_displacement, Real release_length_m) PALPATE_RT;
 
 }  // namespace palpate

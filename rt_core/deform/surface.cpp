@@ -29,7 +29,8 @@ Vec3 dent_of(const Model& model, const Region& region) PALPATE_RT {
   return is_finite(dent) ? dent : Vec3{};
 }
 
-// Adds the contact point as an interpolation node that moves by d_c: u += psi(x) (d_c - u(p)), spread over coefficients.
+// Adds the contact point as an interpolation node that moves by d_c: u += psi(x) (d_c - u(p)), spread over
+// coefficients.
 void add_contact_node(const Model& model, const Vec3 (&own)[kMaxRbf], ShapeRegion& r, ShapeField& field) PALPATE_RT {
   make_rbf_contact(model, r.contact_w, r.node);
   const auto n = static_cast<std::int32_t>(model.sizes.n_rbf);
@@ -125,6 +126,46 @@ Vec3 displacement_at(const Model& model, const ShapeField& field, Vec3 rest_poin
   return sum;
 }
 
+namespace {
+
+// Bound of |u| for the interpolant of anchor displacements alone.
+Real anchors_bound(const Model& model, const Vec3 (&displacement)[kMaxAnchors], Vec3 centre) PALPATE_RT {
+  const auto anchors = static_cast<std::int32_t>(model.sizes.n_anchor);
+  Vec3 c[kMaxRbf];
+  rbf_coefficients(model, displacement, c);
+  Real bound = 0;
+  for (std::int32_t i = 0; i < anchors; ++i) {
+    bound += norm(c[i]) * norm(model.anchor[static_cast<std::size_t>(i)].position_m - centre);
+  }
+  Vec3 tail = c[anchors];
+  if (model.params.rbf_tail == 1) {
+    tail += centre.x * c[anchors + 1] + centre.y * c[anchors + 2] + centre.z * c[anchors + 3];
+    const Real steepest = norm(c[anchors + 1]) + norm(c[anchors + 2]) + norm(c[anchors + 3]);
+    bound += steepest * square_root(3.0) * model.params.surface_size_m;
+  }
+  return bound + norm(tail);
+}
+
+// Bound of |psi|, taken about the contact point: tight even for a contact close to an anchor, where coefficients of
+// opposite sign and nearly equal place grow without limit.
+Real node_weight_bound(const Model& model, const RbfContact& node) PALPATE_RT {
+  const auto anchors = static_cast<std::int32_t>(model.sizes.n_anchor);
+  const Vec3 p = node.point_w;
+  Real bound = 0;
+  for (std::int32_t i = 0; i < anchors; ++i) {
+    bound += abs_of(node.q[i]) * norm(model.anchor[static_cast<std::size_t>(i)].position_m - p);
+  }
+  Real tail = node.q[anchors];
+  if (model.params.rbf_tail == 1) {
+    const Vec3 slope{node.q[anchors + 1], node.q[anchors + 2], node.q[anchors + 3]};
+    tail += dot(slope, p);
+    bound += norm(slope) * square_root(3.0) * model.params.surface_size_m;
+  }
+  return (bound + abs_of(tail)) * abs_of(node.inverse_s);
+}
+
+}  // namespace
+
 double displacement_bound(const Model& model, const State& state) PALPATE_RT {
   ShapeField field;
   prepare_shape(model, state, field);
@@ -134,29 +175,18 @@ double displacement_bound(const Model& model, const State& state) PALPATE_RT {
   if (anchors > 0) centre = (1.0 / anchors) * centre;
 
   Real bound = 0;
-  for (std::int32_t i = 0; i < anchors; ++i) {
-    bound += norm(field.coefficient_w[i]) * norm(model.anchor[static_cast<std::size_t>(i)].position_m - centre);
-  }
-  Vec3 tail = field.coefficient_w[anchors];
-  if (field.interpolated && model.params.rbf_tail == 1) {
-    const Vec3* gradient = &field.coefficient_w[anchors + 1];
-    tail += centre.x * gradient[0] + centre.y * gradient[1] + centre.z * gradient[2];
-    const Real steepest = norm(gradient[0]) + norm(gradient[1]) + norm(gradient[2]);
-    bound += steepest * square_root(3.0) * model.params.surface_size_m;
-  }
-  bound += norm(tail);
-
-  const bool angles = uses_angles(model);
-  Real largest_sum = 0;  // the displacement-angle law never exceeds its corners
-  for (std::int32_t i = 0; i < field.count; ++i) {
+  for (std::int32_t i = 0; i < field.count; ++i) {  // <= kMaxRegions
     const ShapeRegion& r = field.region[i];
-    bound += norm(r.node_coefficient_w) * norm(r.contact_w - centre);
-    Real largest = 0;
+    Real largest = 0;  // the displacement-angle law never exceeds its corners
     for (const Vec3& d : r.anchor_displacement_w) largest = max_of(largest, norm(d));
-    // Its contact blend psi may leave [0, 1] where the interpolation overshoots; the RBF bound above covers psi's size.
-    largest_sum += largest;
+    Real own = field.interpolated ? anchors_bound(model, r.anchor_displacement_w, centre) : 0.0;
+    if (uses_angles(model)) own = max_of(own, largest);
+    if (r.local.law == NeighbourhoodLaw::kNone && field.interpolated) {
+      own += node_weight_bound(model, r.node) * (norm(r.dent_w) + own);
+    }
+    bound += own;
   }
-  return angles ? max_of(bound, largest_sum) : bound;
+  return bound;
 }
 
 }  // namespace palpate

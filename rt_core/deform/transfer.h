@@ -9,8 +9,8 @@
 namespace palpate {
 
 // Force (N, world frame, on the tool's side) that region `from_slot` adds at region `to_slot`, through the skeleton
-// (Luo & Xiao 2006, section VI): sum_a w_a(p_to) K_a K^-1 F_from, where K_a are the beams from the centre of `from` to the
-// anchors, w_a the surface interpolation's weights at the centre of `to`, and F_from = normal_force_N * normal_w +
+// (Luo & Xiao 2006, section VI): sum_a w_a(p_to) K_a K^-1 F_from, where K_a are the beams from the centre of `from` to
+// the anchors, w_a the surface interpolation's weights at the centre of `to`, and F_from = normal_force_N * normal_w +
 // friction_force_w, the force of the body on the tool.
 //
 // Sign: the same as F_from, because the weights sum to one: two regions pushed in side by side (equal normals) give a
@@ -18,10 +18,10 @@ namespace palpate {
 // The caller adds only the component along normal_w of `to`, and clamps the normal force at zero.
 //
 // Reads centre_w, normal_w, normal_force_N and friction_force_w of both slots as they are at the call, and, with
-// CouplingLaw::kTemporal, last tick's anchor_by_region of the regions born before `from` (its skeleton stands on anchors
-// already displaced by them). Zero when from == to, when either slot is not in contact, when there is no skeleton or
-// interpolation, or when the skeleton is degenerate. Not reciprocal: the law as a whole is not conservative.
-// Bound: n_anchor beams and one n_rbf x n_anchor product.
+// CouplingLaw::kTemporal, last tick's anchor_by_region of the regions born before `from` (its skeleton stands on
+// anchors already displaced by them). Zero when from == to, when either slot is not in contact, when there is no
+// skeleton or interpolation, or when the skeleton is degenerate. Not reciprocal: the law as a whole is not
+// conservative. Bound: n_anchor beams and one n_rbf x n_anchor product.
 Vec3 transferred_force_w(const Model& model, const State& state, std::int32_t from_slot,
                          std::int32_t to_slot) PALPATE_RT;
 

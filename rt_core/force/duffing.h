@@ -19,8 +19,8 @@ struct DuffingParameters {
   Real epsilon_beta0_squared = 0;
 };
 
-// Coefficient of the cubic term. kPaper, 3/4: the mean of cos^4 over that of cos^2, right for an oscillation of amplitude
-// D (harmonic balance). kStatic, 1: where a constant force on the damped oscillator settles.
+// Coefficient of the cubic term. kPaper, 3/4: the mean of cos^4 over that of cos^2, right for an oscillation of
+// amplitude D (harmonic balance). kStatic, 1: where a constant force on the damped oscillator settles.
 enum class DuffingCoefficient { kPaper, kStatic };
 
 // f(D) = m (omega0^2 D + coefficient epsilon beta0^2 D^3), D in mm and f in N, converted to SI. Example: m = 1,
@@ -35,8 +35,8 @@ constexpr Real contact_modulus_Pa(Real youngs_modulus_Pa, Real poisson_ratio) {
   return youngs_modulus_Pa / (1.0 - poisson_ratio * poisson_ratio);
 }
 
-// Cubic that matches value and slope of Hertz's law F = (4/3) E* sqrt(R) D^1.5 (rigid sphere of radius R on a half-space)
-// at the reference depth; within 6.8 % of F(reference) on [0, 1.25 reference]. All arguments > 0, |nu| < 1.
+// Cubic that matches value and slope of Hertz's law F = (4/3) E* sqrt(R) D^1.5 (rigid sphere of radius R on a
+// half-space) at the reference depth; within 6.8 % of F(reference) on [0, 1.25 reference]. All arguments > 0, |nu| < 1.
 inline CubicCoefficients hertz_coefficients(Real youngs_modulus_Pa, Real poisson_ratio, Real radius_m,
                                             Real reference_depth_m) {
   const Real c = 4.0 / 3.0 * contact_modulus_Pa(youngs_modulus_Pa, poisson_ratio) * square_root(radius_m);

@@ -33,8 +33,7 @@ Real spring_tangent_N_per_m(const TangentialSpring& spring, Real stretch) PALPAT
   const Real reach = reach_m(spring, stretch);
   if (!(reach > kNoStretch_m)) return spring.law.k1_N_per_m;
   const Real cosine = stretch / reach, sine = spring.depth_m / reach;
-  return law_tangent_N_per_m(spring.law, reach) * cosine * cosine +
-         secant_N_per_m(spring.law, reach) * sine * sine;
+  return law_tangent_N_per_m(spring.law, reach) * cosine * cosine + secant_N_per_m(spring.law, reach) * sine * sine;
 }
 Real normal_gain_N(const TangentialSpring& spring, Real stretch) PALPATE_RT {
   if (!(spring.depth_m > 0)) return 0.0;
@@ -81,10 +80,10 @@ Real power_law(Real k, Real force, Real beta) PALPATE_RT {
   return k * math::pow(force, beta);
 }
 
-FrictionForce sticking(const TangentialSpring& spring, Vec3 direction, Real length) PALPATE_RT {
+FrictionForce spring_response(const TangentialSpring& spring, Real depth_rate, Vec3 direction, Real length) PALPATE_RT {
   FrictionForce result;
   result.force_w = -spring_force_N(spring, length) * direction;
-  result.normal_gain_N = normal_gain_N(spring, length);
+  result.normal_gain_N = depth_rate * normal_gain_N(spring, length);
   const Real reach = reach_m(spring, length);
   result.energy_J = law_energy_J(spring.law, reach) - law_energy_J(spring.law, spring.depth_m);
   result.along_N_per_m = spring_tangent_N_per_m(spring, length);
@@ -133,7 +132,7 @@ FrictionForce friction_step(const FrictionParameters& parameters, const Friction
   const Vec3 direction = length > kNoStretch_m ? (1.0 / length) * trial : Vec3{};
 
   const bool paper = parameters.law == FrictionLaw::kPaper;
-  const Real normal = load.force_N + normal_gain_N(spring, length);
+  const Real normal = load.force_N + load.depth_rate * normal_gain_N(spring, length);
   const Real limit_static = static_limit_N(parameters, normal);
   const Real limit_sliding = sliding_limit_N(parameters, normal);
   const Real limit = memory.mode == FrictionMode::kSlip && !paper ? limit_sliding : limit_static;
@@ -141,7 +140,7 @@ FrictionForce friction_step(const FrictionParameters& parameters, const Friction
   if (force <= limit * kLimitSlack) {
     memory.mode = FrictionMode::kStick;
     memory.stretch_w = trial;
-    return sticking(spring, direction, length);
+    return spring_response(spring, load.depth_rate, direction, length);
   }
   memory.mode = FrictionMode::kSlip;
   Vec3 slip_direction = direction;
@@ -152,7 +151,7 @@ FrictionForce friction_step(const FrictionParameters& parameters, const Friction
     memory.stretch_w = spring_stretch_m(spring, limit_sliding) * direction;
   }
   const Real kept = norm(memory.stretch_w);
-  FrictionForce result = sticking(spring, slip_direction, kept);
+  FrictionForce result = spring_response(spring, load.depth_rate, slip_direction, kept);
   result.force_w = -limit_sliding * slip_direction;
   result.along_N_per_m = 0.0;
   result.across_N_per_m = min_of(result.across_N_per_m, limit_sliding / max_of(kept, kNoStretch_m));

@@ -4,9 +4,9 @@
 set -euo pipefail
 archive=${1:?usage: symbols_core.sh ARCHIVE}
 
-# Memory moves that compilers emit; libccd's one bounded, allocation-free routine, its default first direction and its
+# Memory functions (bounded by their length, no side effects); libccd's one bounded, allocation-free routine, its default first direction and its
 # constant zero vector; what position-independent code and the stack protector need.
-allowed='^(memcpy|memmove|memset|memcmp|bcmp|ccdGJKIntersect|ccdFirstDirDefault|ccd_vec3_origin|_ccd_vec3_origin'
+allowed='^(memcpy|memmove|memset|memcmp|memchr|bcmp|ccdGJKIntersect|ccdFirstDirDefault|ccd_vec3_origin|_ccd_vec3_origin'
 allowed+='|_GLOBAL_OFFSET_TABLE_|__stack_chk_fail|_GLOBAL__.*)$'
 
 defined=$(nm --defined-only --format=posix "$archive" | awk 'NF >= 2 && $2 ~ /[A-Za-z]/ {print $1}' | LC_ALL=C sort -u)

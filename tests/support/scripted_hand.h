@@ -13,20 +13,24 @@ namespace palpate::test {
 
 inline constexpr int kScriptTicks = 8000;
 
+// Where the tool's origin is when its lowest point rests on the top of the body, unrotated.
+inline Vec3 touching_position(const Model& model) {
+  Vec3 top{0, 0, -kHuge};
+  for (const Vec3& v : model.vertex_m) {
+    if (v.z > top.z) top = v;
+  }
+  Vec3 lowest{0, 0, kHuge};
+  for (const ToolPoint& p : model.tool_point) {
+    const Vec3 bottom = p.position_tool_m - Vec3{0, 0, p.margin_m};
+    if (bottom.z < lowest.z) lowest = bottom;
+  }
+  return top - lowest;
+}
+
 class ScriptedHand {
  public:
   explicit ScriptedHand(const Model& model) : period_s_(model.params.period_s), size_m_(model.params.surface_size_m) {
-    Vec3 top{0, 0, -kHuge};
-    for (const Vec3& v : model.vertex_m) {
-      if (v.z > top.z) top = v;
-    }
-    // Lowest point of the tool in its own frame comes to rest on the top of the body.
-    Vec3 lowest{0, 0, kHuge};
-    for (const ToolPoint& p : model.tool_point) {
-      const Vec3 bottom = p.position_tool_m - Vec3{0, 0, p.margin_m};
-      if (bottom.z < lowest.z) lowest = bottom;
-    }
-    touch_ = top - lowest;
+    touch_ = touching_position(model);
     handle_.position_m = touch_ + Vec3{0, 0, kClearance_m};
   }
 

@@ -1,0 +1,316 @@
+#include "config/compile.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "config/anchors.h"
+#include "config/bvh_build.h"
+#include "config/config_error.h"
+#include "config/mesh_io.h"
+#include "config/patches.h"
+#include "config/schema.h"
+#include "config/tool_points.h"
+#include "rt_core/deform/rbf_system.h"
+
+namespace palpate {
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+// One bake: fills `image` and `report` step by step; later steps use what earlier ones wrote.
+class Compiler {
+ public:
+  explicit Compiler(const SceneDesc& scene) : scene_(scene) {}
+
+  CompileResult run() {
+    check_scene(scene_);
+    report_.name = image_.name = scene_.name;
+    add_laws();
+    add_surface();
+    add_tool();
+    add_distances();
+    add_device();
+    add_skeleton();
+    CompileResult result{write_image(image_), std::move(report_)};
+    result.report.image_bytes = result.bytes.size();
+    return result;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& key, const std::string& what) const {
+    throw ConfigError(scene_.source.where(key) + ": " + what);
+  }
+  void warn(const std::string& text) { report_.warnings.push_back(text); }
+
+  void add_laws() {
+    ModelParams& p = image_.params;
+    p.contact_weight = static_cast<std::int32_t>(scene_.contact.weight);
+    p.friction_law = static_cast<std::int32_t>(scene_.friction.law);
+    p.tangential_law = static_cast<std::int32_t>(scene_.friction.tangential);
+    p.skeleton_law = static_cast<std::int32_t>(scene_.skeleton.law);
+    p.shape_law = static_cast<std::int32_t>(scene_.shape.interpolation);
+    p.neighbourhood_law = static_cast<std::int32_t>(scene_.shape.neighbourhood);
+    p.coupling_law = static_cast<std::int32_t>(scene_.coupling.law);
+    p.rbf_tail = scene_.shape.tail;
+    p.youngs_modulus_Pa = scene_.material.youngs_modulus_Pa;
+    p.poisson_ratio = effective_poisson_ratio(scene_.material);
+    p.density_kg_per_m3 = scene_.material.density_kg_per_m3;
+    if (scene_.material.poisson_ratio > 0.5) warn("poisson_ratio 1.0 is impossible; 0.47 is used instead");
+    if (p.poisson_ratio > 0.495 && p.poisson_ratio <= 0.5)
+      warn("poisson_ratio above 0.495 is nearly incompressible: right for beams and contact, not for solid elements");
+
+    report_.contact = contact_coefficients(scene_);
+    p.k1_N_per_m = report_.contact.k1_N_per_m;
+    p.k3_N_per_m3 = report_.contact.k3_N_per_m3;
+    if (!(p.k1_N_per_m <= 1e9 && p.k3_N_per_m3 <= 1e15))
+      fail("contact.law", "gives k1 = " + number_text(p.k1_N_per_m) + " N/m, k3 = " + number_text(p.k3_N_per_m3) +
+                              " N/m3; allowed up to 1e9 and 1e15: soften the law");
+    p.max_depth_m = scene_.contact.max_depth_m;
+    p.neighbourhood_radius_m = scene_.shape.radius_m;
+
+    report_.friction = friction_coefficients(scene_.friction);
+    p.friction_k_N = report_.friction.k_N;
+    p.friction_beta = scene_.friction.beta;
+    p.friction_mu_dynamic = report_.friction.mu_dynamic;
+  }
+
+  void add_surface() {
+    mesh_ = make_body(scene_, report_.warnings);
+    report_.volume_m3 = signed_volume_m3(mesh_);
+    report_.surface_m2 = surface_area_m2(mesh_);
+    report_.mass_kg = report_.volume_m3 * scene_.material.density_kg_per_m3;
+    image_.vertex_m = mesh_.vertex_m;
+    image_.vertex_normal = vertex_normals(mesh_);
+    image_.params.surface_size_m = bounds_of(mesh_).largest_m();
+    const std::vector<Corners> adjacent = triangle_adjacency(mesh_);
+    std::vector<Triangle> triangle(mesh_.triangle.size());
+    for (std::size_t t = 0; t < triangle.size(); ++t) {
+      std::copy(mesh_.triangle[t].begin(), mesh_.triangle[t].end(), triangle[t].vertex);
+      std::copy(adjacent[t].begin(), adjacent[t].end(), triangle[t].adjacent);
+    }
+    BvhBuild bvh = build_bvh(image_.vertex_m, triangle);
+    if (bvh.stack_high_water > kMaxTraversalStack)
+      fail("body", "the hierarchy needs " + std::to_string(bvh.stack_high_water) + " stack entries; allowed " +
+                       std::to_string(kMaxTraversalStack) + ": remesh the body");
+    image_.triangle = std::move(bvh.triangle);
+    image_.bvh = std::move(bvh.node);
+    report_.vertices = static_cast<std::int64_t>(image_.vertex_m.size());
+    report_.triangles = static_cast<std::int64_t>(image_.triangle.size());
+    report_.bvh_nodes = static_cast<std::int32_t>(image_.bvh.size());
+    report_.bvh_depth = bvh.depth;
+    report_.traversal_stack = bvh.stack_high_water;
+  }
+
+  void add_tool() {
+    Tool tool;
+    try {
+      tool = make_tool(scene_.piece);
+    } catch (const ConfigError& error) {
+      throw ConfigError(scene_.source.file + ": " + error.what());
+    }
+    double total = 0;
+    for (const ToolPoint& point : tool.point) total += point.area_m2;
+    report_.reference_area_m2 = is_auto(scene_.contact.reference_area_m2)
+                                    ? total / static_cast<double>(tool.point.size())
+                                    : scene_.contact.reference_area_m2;
+    for (ToolPoint& point : tool.point) point.weight = point.area_m2 / report_.reference_area_m2;
+    report_.tool_points = static_cast<std::int32_t>(tool.point.size());
+    report_.gap_m = tool.gap_m;
+    for (std::size_t i = 0; i < tool.piece.size(); ++i) {
+      const std::string label = "tool.piece[" + std::to_string(i) + "]";
+      const ToolPiece& piece = tool.piece[i];
+      if (piece.point_count == 0) continue;
+      if (piece.margin_m < scene_.contact.max_depth_m)
+        warn(label + ": its margin of " + number_text(1e3 * piece.margin_m) +
+             " mm is below contact.max_depth_mm; deeper than the margin the direction of contact can jump");
+      if (tool.gap_m[i] > piece.margin_m)
+        warn(label + ": its surface is up to " + number_text(std::round(1e5 * tool.gap_m[i]) / 100) +
+             " mm away from its tool points' spheres; add points or a larger margin");
+    }
+    image_.piece = std::move(tool.piece);
+    image_.tool_point = std::move(tool.point);
+    image_.hull_vertex_m = std::move(tool.hull_vertex_m);
+  }
+
+  // Mean distance of a piece's tool points to their nearest neighbours; the smallest over the pieces; 0 without pairs.
+  double point_spacing_m() const {
+    double spacing = 0;
+    for (const ToolPiece& piece : image_.piece) {
+      if (piece.point_count < 2) continue;
+      const auto first = image_.tool_point.begin() + piece.first_point, last = first + piece.point_count;
+      double sum = 0;
+      for (auto a = first; a != last; ++a) {
+        double nearest = kHuge;
+        for (auto b = first; b != last; ++b)
+          if (a != b) nearest = std::min(nearest, norm(a->position_tool_m - b->position_tool_m));
+        sum += nearest;
+      }
+      const double mean = sum / piece.point_count;
+      spacing = spacing > 0 ? std::min(spacing, mean) : mean;
+    }
+    return spacing;
+  }
+
+  void add_distances() {
+    ModelParams& p = image_.params;
+    const double spacing = point_spacing_m();
+    p.cluster_distance_m = !is_auto(scene_.contact.cluster_distance_m) ? scene_.contact.cluster_distance_m
+                           : spacing > 0                               ? clamp_to(2 * spacing, 1e-6, 1.0)
+                                                                       : 0.010;
+    report_.cluster_distance_m = p.cluster_distance_m;
+    p.far_field_radius_m = is_auto(scene_.coupling.radius_m)
+                               ? clamp_to(square_root(report_.reference_area_m2 / kPi), 1e-6, 1.0)
+                               : scene_.coupling.radius_m;
+  }
+
+  // The coupling a scene states, refused above the bound; or its share of the bound.
+  double coupling(double stated, const StiffnessBound& bound, double lowest, const char* key, const char* unit) const {
+    const std::string reason = bound.by_damping ? "2b / (T + 2 tau)" : "2 f_c / Delta";
+    const double value = is_auto(stated) ? kCouplingShare * bound.value : stated;
+    if (!(value <= bound.value))
+      fail(key, number_text(stated) + " " + unit + " is above what the device admits, " + number_text(bound.value) +
+                    " " + unit + " = " + reason + "; lower it, or state a device with more damping or less delay");
+    if (!(value >= lowest))
+      fail(key, "the device admits only " + number_text(bound.value) + " " + unit + " = " + reason +
+                    "; it cannot render this scene: check its damping, friction, encoder step and delay");
+    return std::min(value, 1e6);
+  }
+
+  void add_device() {
+    ModelParams& p = image_.params;
+    const DeviceDesc& d = scene_.device;
+    report_.bound = admissible_stiffness(d.damping_Ns_per_m, d.friction_N, d.encoder_step_m, d.period_s, d.delay_s);
+    report_.rotational_bound =
+        admissible_stiffness(d.damping_Nms_per_rad, d.friction_Nm, d.encoder_step_rad, d.period_s, d.delay_s);
+    p.coupling_N_per_m = coupling(d.coupling_N_per_m, report_.bound, 1, "device.coupling_N_per_m", "N/m");
+    p.coupling_Nm_per_rad = std::min(
+        coupling(d.coupling_Nm_per_rad, report_.rotational_bound, 1e-6, "device.coupling_Nm_per_rad", "N m/rad"), 1e4);
+    report_.coupling_N_per_m = p.coupling_N_per_m;
+    report_.coupling_Nm_per_rad = p.coupling_Nm_per_rad;
+    p.period_s = d.period_s;
+    p.force_max_N = d.force_max_N;
+    p.torque_max_Nm = d.torque_max_Nm;
+    p.force_rate_max_N_per_s = d.force_rate_max_N_per_s;
+    p.ramp_in_s = d.ramp_in_s;
+    p.ramp_out_s = d.ramp_out_s;
+    p.silence_hold_ticks = d.silence_hold_ticks;
+    p.silence_passive_ticks = d.silence_passive_ticks;
+    p.silence_fault_ticks = d.silence_fault_ticks;
+    p.speed_max_m_per_s = d.speed_max_m_per_s;
+  }
+
+  void add_skeleton() {
+    if (scene_.skeleton.law == SkeletonLaw::kNone) return;
+    report_.exact_anchors = scene_.skeleton.anchors == AnchorSource::kShape && has_exact_anchors(scene_.body.shape);
+    std::vector<AnchorPoint> anchors = report_.exact_anchors ? exact_anchors(scene_.body) : mesh_anchors(mesh_);
+    limit_anchors(mesh_, scene_.skeleton.anchors_min, scene_.skeleton.anchors_max, anchors);
+    add_anchors(anchors);
+    if (anchors.empty()) return;
+    add_interpolation(anchors);
+  }
+
+  // Sections: the beams share the body's volume, S = V / sum of lengths, lengths from the volume's centre; release
+  // length s = pi r (1 - nu^2) / 2, which gives the beam's end the compliance of a rigid circular foot on a half space.
+  void add_anchors(const std::vector<AnchorPoint>& anchors) {
+    const Vec3 centre = volume_centre_m(mesh_);
+    const double base = bounds_of(mesh_).lower_m.y + scene_.fixed.base_height_m;
+    double length = 0;
+    for (const AnchorPoint& a : anchors) length += norm(a.position_m - centre);
+    const double radius = is_auto(scene_.skeleton.section_radius_m)
+                              ? square_root(report_.volume_m3 / (length > 0 ? length : 1.0) / kPi)
+                              : scene_.skeleton.section_radius_m;
+    const double area = kPi * radius * radius, nu = image_.params.poisson_ratio;
+    for (const AnchorPoint& a : anchors) {
+      Anchor anchor{};
+      anchor.position_m = a.position_m;
+      anchor.normal = a.normal;
+      anchor.section_area_m2 = area;
+      anchor.section_inertia_m4 = 0.25 * area * radius * radius;
+      anchor.section_radius_m = radius;
+      anchor.release_length_m = 0.5 * kPi * radius * (1 - nu * nu);
+      anchor.fixed = a.position_m.y <= base ? 1 : 0;
+      image_.anchor.push_back(anchor);
+      report_.fixed_anchors += anchor.fixed;
+    }
+    report_.anchors = static_cast<std::int32_t>(anchors.size());
+    report_.section_radius_m = radius;
+    if (report_.fixed_anchors == 0)
+      warn("no anchor lies on the fixed base; raise body.fixed.base_height_mm if the body should rest on it");
+    if (report_.fixed_anchors == report_.anchors)
+      warn("every anchor is fixed, so the drawn shape moves only near contacts; lower body.fixed.base_height_mm");
+  }
+
+  void add_interpolation(const std::vector<AnchorPoint>& anchors) {
+    std::vector<Vec3> position;
+    for (const AnchorPoint& a : anchors) position.push_back(a.position_m);
+    const auto n = static_cast<std::size_t>(report_.anchors + rbf_tail_size(scene_.shape.tail));
+    image_.rbf_inverse.resize(n * n);
+    if (!invert_rbf_system(position, scene_.shape.tail, image_.rbf_inverse))
+      fail("shape.tail", "the interpolation through " + std::to_string(report_.anchors) +
+                             " anchors is singular (coinciding, or coplanar with tail = \"linear\"); use \"constant\" "
+                             "or raise skeleton.anchors_min");
+    if (scene_.shape.interpolation != ShapeLaw::kDisplacementAngle) return;
+    if (report_.anchors < 3)
+      fail("shape.interpolation", "\"displacement_angle\" needs 3 anchors and the body has " +
+                                      std::to_string(report_.anchors) + "; raise skeleton.anchors_min");
+    image_.patch = make_patches(mesh_.vertex_m, anchors, volume_centre_m(mesh_));
+  }
+
+  const SceneDesc& scene_;
+  SurfaceMesh mesh_;
+  ImageContents image_;
+  CompileReport report_;
+};
+
+}  // namespace
+
+SurfaceMesh make_body(const SceneDesc& scene, std::vector<std::string>& warnings) {
+  const BodyDesc& body = scene.body;
+  SurfaceMesh mesh;
+  std::string label = scene.source.where("body.shape");
+  switch (body.shape) {
+    case BodyShape::kEllipsoid:
+      mesh = make_ellipsoid(body.half_axes_m, body.triangles);
+      break;
+    case BodyShape::kSphere:
+      mesh = make_ellipsoid({body.radius_m, body.radius_m, body.radius_m}, body.triangles);
+      break;
+    case BodyShape::kCylinder:
+      mesh = make_cylinder(body.radius_m, body.height_m, body.triangles);
+      break;
+    case BodyShape::kBox:
+      mesh = make_box(body.size_m, body.triangles);
+      break;
+    case BodyShape::kRevolution:
+      mesh = make_revolution(body.profile, body.triangles);
+      break;
+    case BodyShape::kHeart:
+      mesh = make_heart(body.width_m, body.triangles);
+      break;
+    case BodyShape::kMesh: {
+      const std::filesystem::path file(body.mesh);
+      const std::string path = file.is_absolute() ? body.mesh : scene.source.directory + body.mesh;
+      label = scene.source.where("body.mesh") + ": " + path;
+      MeshFile read;
+      try {
+        read = read_mesh(path, body.scale);
+      } catch (const ConfigError& error) {
+        throw ConfigError(scene.source.where("body.mesh") + ": " + error.what());
+      }
+      mesh = std::move(read.mesh);
+      if (read.collapsed_triangles > 0)
+        warnings.push_back(path + ": dropped " + std::to_string(read.collapsed_triangles) +
+                           " triangles whose corners coincide");
+      if (body.fix_orientation) orient_mesh(mesh);
+      break;
+    }
+  }
+  check_mesh(mesh, label);
+  return mesh;
+}
+
+CompileResult compile_scene(const SceneDesc& scene) { return Compiler(scene).run(); }
+
+}  // namespace palpate

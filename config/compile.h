@@ -1,0 +1,45 @@
+// The scene compiler: a checked scene description in, the bytes of an image and a report out.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "config/contact_fit.h"
+#include "config/image_writer.h"
+#include "config/scene.h"
+
+namespace palpate {
+
+struct CompileReport {
+  std::string name;
+  std::size_t image_bytes = 0;
+  std::int64_t vertices = 0, triangles = 0;
+  double volume_m3 = 0, surface_m2 = 0, mass_kg = 0;
+  std::int32_t bvh_nodes = 0, bvh_depth = 0, traversal_stack = 0;
+  bool exact_anchors = false;
+  std::int32_t anchors = 0, fixed_anchors = 0;
+  double section_radius_m = 0;
+  ContactCoefficients contact;
+  double reference_area_m2 = 0, cluster_distance_m = 0;
+  FrictionCoefficients friction;
+  StiffnessBound bound, rotational_bound;  // N/m, N m/rad
+  double coupling_N_per_m = 0, coupling_Nm_per_rad = 0;
+  std::int32_t tool_points = 0;
+  std::vector<double> gap_m;  // per piece: largest distance from its touching surface to the nearest tool sphere
+  std::vector<std::string> warnings;
+};
+// The report as lines for a terminal.
+std::string report_text(const CompileReport& report);
+
+struct CompileResult {
+  std::vector<std::byte> bytes;
+  CompileReport report;
+};
+// Same scene, same bytes: nothing of paths, time or addresses goes into them. Throws ConfigError.
+CompileResult compile_scene(const SceneDesc& scene);
+
+// The body's surface, checked: made or read, as the scene says. Throws ConfigError. Adds warnings.
+SurfaceMesh make_body(const SceneDesc& scene, std::vector<std::string>& warnings);
+
+}  // namespace palpate

@@ -1,0 +1,47 @@
+#include <cstdio>
+
+#include "config/compile.h"
+
+namespace palpate {
+
+namespace {
+
+template <class... Values>
+void line(std::string& text, const char* pattern, Values... values) {
+  char buffer[512];
+  std::snprintf(buffer, sizeof buffer, pattern, values...);
+  text += buffer;
+  text += '\n';
+}
+
+const char* reason(const StiffnessBound& bound) {
+  return bound.by_damping ? "2b / (T + 2 tau)" : "2 f_c / Delta";
+}
+
+}  // namespace
+
+std::string report_text(const CompileReport& r) {
+  std::string text;
+  line(text, "scene      %s, image of %.3f MB", r.name.c_str(), 1e-6 * static_cast<double>(r.image_bytes));
+  line(text, "surface    %lld vertices, %lld triangles, %.4g cm3, %.4g cm2, %.4g kg", static_cast<long long>(r.vertices),
+       static_cast<long long>(r.triangles), 1e6 * r.volume_m3, 1e4 * r.surface_m2, r.mass_kg);
+  line(text, "hierarchy  %d nodes, %d levels, traversal stack at most %d of %d", r.bvh_nodes, r.bvh_depth,
+       r.traversal_stack, kMaxTraversalStack);
+  line(text, "skeleton   %d anchors (%s), %d fixed, beam radius %.4g mm", r.anchors,
+       r.exact_anchors ? "exact" : "from the mesh", r.fixed_anchors, 1e3 * r.section_radius_m);
+  line(text, "contact    k1 = %.6g N/m, k3 = %.6g N/m3 (%s)", r.contact.k1_N_per_m, r.contact.k3_N_per_m3,
+       r.contact.derivation.c_str());
+  line(text, "           reference area %.4g mm2, cluster distance %.4g mm", 1e6 * r.reference_area_m2,
+       1e3 * r.cluster_distance_m);
+  line(text, "friction   K = %.6g N^(1-beta), sliding coefficient %.4g", r.friction.k_N, r.friction.mu_dynamic);
+  line(text, "coupling   %.5g N/m of %.5g admitted (%s); %.4g N m/rad of %.4g (%s)", r.coupling_N_per_m, r.bound.value,
+       reason(r.bound), r.coupling_Nm_per_rad, r.rotational_bound.value, reason(r.rotational_bound));
+  line(text, "tool       %d points in %d pieces", r.tool_points, static_cast<int>(r.gap_m.size()));
+  for (std::size_t i = 0; i < r.gap_m.size(); ++i)
+    line(text, "           piece %d: surface at most %.2f mm from its points' spheres", static_cast<int>(i),
+         1e3 * r.gap_m[i]);
+  for (const std::string& warning : r.warnings) text += "warning    " + warning + '\n';
+  return text;
+}
+
+}  // namespace palpate

@@ -1,0 +1,44 @@
+// Presses without a device: drives tick() through a list of tool poses, one pose per tick, and hands out every result.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+
+#include "rt_core/record.h"
+#include "sim_host/pose_csv.h"
+
+namespace palpate {
+
+struct PressRow {
+  double time_s = 0;
+  TickRecord record;               // inputs, outputs, regions and state hash of this tick
+  std::int64_t compute_ns = 0;     // of tick(), on this machine, now: not repeatable
+  std::int64_t instructions = -1;  // of tick() in user space; -1 where the kernel does not count them
+};
+
+// Counts this thread's user-space instructions through perf_event_open.
+class InstructionCounter {
+ public:
+  InstructionCounter();
+  ~InstructionCounter();
+  InstructionCounter(const InstructionCounter&) = delete;
+  InstructionCounter& operator=(const InstructionCounter&) = delete;
+  bool available() const { return fd_ >= 0; }
+  void start();
+  // Instructions since start(); -1 when not available.
+  std::int64_t stop();
+
+ private:
+  int fd_ = -1;
+};
+
+// Called after every tick. `state` and `scratch` (the contacts) are the tick's; they change with the next one.
+using PressListener = std::function<void(const PressRow& row, const State& state, const Scratch& scratch)>;
+
+// Resets `state`, then renders every pose with Drive::kTool: the virtual coupling is bypassed, so output.contact_w is
+// the wrench of the object on the tool held at that pose. `counter` may be null.
+void press(const Model& model, std::span<const TimedPose> poses, State& state, InstructionCounter* counter,
+           const PressListener& listen);
+
+}  // namespace palpate
