@@ -194,8 +194,17 @@ class Builder {
       node.cone_axis[axis][k] = static_cast<float>(component(cone.axis, axis));
     }
     node.cone_tangent[k] = round_up(cone.tangent);
+    node.cone_radius_m[k] = r.count > 0 ? round_up(radius_about(0.5 * (box.lower + box.upper), r)) : 0.0f;
     node.child[k] = r.count > 0 ? ~r.first : -1;
     node.count[k] = r.count <= kBvhLeafTriangles ? r.count : 0;
+  }
+
+  double radius_about(Vec3 centre, Range r) const {
+    double radius2 = 0;
+    for (const std::int32_t t : members(r))
+      for (const std::int32_t v : triangle_[static_cast<std::size_t>(t)].vertex)
+        radius2 = std::max(radius2, squared_norm(vertex_[static_cast<std::size_t>(v)] - centre));
+    return 1.001 * std::sqrt(radius2);  // more than covers the box centre's rounding to single precision
   }
 
   struct Cone {

@@ -58,8 +58,6 @@ class Compiler {
     p.poisson_ratio = effective_poisson_ratio(scene_.material);
     p.density_kg_per_m3 = scene_.material.density_kg_per_m3;
     if (scene_.material.poisson_ratio > 0.5) warn("poisson_ratio 1.0 is impossible; 0.47 is used instead");
-    if (p.poisson_ratio > 0.495 && p.poisson_ratio <= 0.5)
-      warn("poisson_ratio above 0.495 is nearly incompressible: right for beams and contact, not for solid elements");
 
     report_.contact = contact_coefficients(scene_);
     p.k1_N_per_m = report_.contact.k1_N_per_m;

@@ -27,4 +27,7 @@ std::vector<std::byte> write_image(const ImageContents& contents);
 // and the reason in `error`.
 bool save_image(const std::string& path, const std::vector<std::byte>& bytes, std::string& error);
 
+// Sizes, parameters and arrays of the format as Markdown tables: the generated part of docs/image_format.md.
+std::string image_markdown();
+
 }  // namespace palpate

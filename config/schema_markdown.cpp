@@ -69,8 +69,10 @@ std::string vector_text(const Vec3& v, double scale) {
 std::string default_text(const KeySpec& key, void* table) {
   if (key.required) return "required";
   switch (key.kind) {
-    case KeyKind::kNumber:
-      return rounded_text(*static_cast<double*>(key.field(table)) / key.scale);
+    case KeyKind::kNumber: {
+      const double value = *static_cast<double*>(key.field(table));
+      return is_auto(value) ? "-" : rounded_text(value / key.scale);
+    }
     case KeyKind::kNumberOrAuto: {
       const double value = *static_cast<double*>(key.field(table));
       return is_auto(value) ? "\"auto\"" : rounded_text(value / key.scale);

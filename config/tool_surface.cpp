@@ -13,7 +13,7 @@ constexpr double kPi = 3.14159265358979323846;
 // Samples around an axis, half a step off: for rings of 3, 4, 5, 6, 8, 10 or 12 points symmetric and never equally far
 // from two of them, so that symmetric points get equal areas.
 constexpr std::int32_t kAround = 240;
-constexpr std::int32_t kAlong = 24;  // per profile line or arc
+constexpr std::int32_t kAlong = 168;  // per profile line or arc: a multiple of twice 2, 3, 4, 6 and 7 steps
 
 // A ring of the outer surface of a body of revolution.
 struct Ring {

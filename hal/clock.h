@@ -12,8 +12,10 @@ namespace palpate {
 // wait_until returns at or after `deadline_ns`; at once if it has passed.
 template <typename T>
 concept Clock = requires(T clock, const T constant, std::int64_t deadline_ns) {
-  { constant.now_ns() } noexcept -> std::same_as<std::int64_t>;
-  { clock.wait_until(deadline_ns) } noexcept -> std::same_as<void>;
+  { constant.now_ns() }
+  noexcept->std::same_as<std::int64_t>;
+  { clock.wait_until(deadline_ns) }
+  noexcept->std::same_as<void>;
 };
 
 // CLOCK_MONOTONIC with absolute sleeps: no drift, immune to changes of the wall clock.
@@ -27,8 +29,8 @@ class MonotonicClock {
   void wait_until(std::int64_t deadline_ns) noexcept {
     const timespec deadline{static_cast<time_t>(deadline_ns / 1'000'000'000),
                             static_cast<long>(deadline_ns % 1'000'000'000)};
-    // Interrupted by a signal: sleep on, the deadline is absolute. The bound: more interruptions in one period mean that
-    // something floods this thread with signals; the loop then ticks early rather than hang here.
+    // Interrupted by a signal: sleep on, the deadline is absolute. The bound: more interruptions in one period mean
+    // that something floods this thread with signals; the loop then ticks early rather than hang here.
     for (int tries = 0; tries < 16; ++tries)
       if (::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &deadline, nullptr) == 0) return;
   }

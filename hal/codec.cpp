@@ -154,15 +154,15 @@ std::uint8_t crc8(std::span<const std::uint8_t> bytes, std::uint8_t crc) noexcep
   put_bits(payload.data(), start, bits, fit<is_signed>(from.member, bits));
 #define PALPATE_GET(member, name, start, bits, is_signed, factor, unit, meaning) \
   to.member = widen<is_signed>(get_bits(payload.data(), start, bits), bits);
-#define PALPATE_DEFINE(message, id, bytes, fd, sender, meaning)                                  \
-  void encode(const message& from, int node, std::span<std::uint8_t, bytes> payload) noexcept {  \
-    std::fill(payload.begin(), payload.end(), std::uint8_t{0});                                  \
-    PALPATE_WIRE_##message(PALPATE_PUT) seal(payload, id + static_cast<std::uint32_t>(node), fd); \
-  }                                                                                              \
-  DecodeResult decode(std::span<const std::uint8_t> payload, int node, message& to) noexcept {   \
-    if (payload.size() != bytes) return DecodeResult::kWrongLength;                              \
+#define PALPATE_DEFINE(message, id, bytes, fd, sender, meaning)                                         \
+  void encode(const message& from, int node, std::span<std::uint8_t, bytes> payload) noexcept {         \
+    std::fill(payload.begin(), payload.end(), std::uint8_t{0});                                         \
+    PALPATE_WIRE_##message(PALPATE_PUT) seal(payload, id + static_cast<std::uint32_t>(node), fd);       \
+  }                                                                                                     \
+  DecodeResult decode(std::span<const std::uint8_t> payload, int node, message& to) noexcept {          \
+    if (payload.size() != bytes) return DecodeResult::kWrongLength;                                     \
     if (!sealed(payload, id + static_cast<std::uint32_t>(node), fd)) return DecodeResult::kBadChecksum; \
-    PALPATE_WIRE_##message(PALPATE_GET) return DecodeResult::kOk;                                \
+    PALPATE_WIRE_##message(PALPATE_GET) return DecodeResult::kOk;                                       \
   }
 PALPATE_WIRE_MESSAGES(PALPATE_DEFINE)
 #undef PALPATE_DEFINE

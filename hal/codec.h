@@ -1,6 +1,6 @@
 // Wire codec of the open haptic node: pure encode and decode between plain structs of counts and bytes. No clock, no
-// socket, no state. Field placement comes from hal/wire_table.h; every message ends with a checksum that also covers its
-// identifier, so a frame that reaches the wrong decoder is refused.
+// socket, no state. Field placement comes from hal/wire_table.h; every message ends with a checksum that also covers
+// its identifier, so a frame that reaches the wrong decoder is refused.
 #pragma once
 
 #include <cstdint>
@@ -67,8 +67,8 @@ enum class MessageKind : int {
   PALPATE_WIRE_MESSAGES(PALPATE_KIND)
 #undef PALPATE_KIND
 };
-#define PALPATE_SIZE(message, id, bytes, fd, sender, meaning)     \
-  inline constexpr std::uint32_t k##message##Id = id;             \
+#define PALPATE_SIZE(message, id, bytes, fd, sender, meaning) \
+  inline constexpr std::uint32_t k##message##Id = id;         \
   inline constexpr std::size_t k##message##Bytes = bytes;
 PALPATE_WIRE_MESSAGES(PALPATE_SIZE)
 #undef PALPATE_SIZE
@@ -80,7 +80,7 @@ enum class DecodeResult { kOk, kWrongLength, kBadChecksum };
 
 // encode writes exactly k<Message>Bytes bytes. `node` (1..15) is added to the base identifier in the checksum.
 // decode accepts a payload of exactly that length and checksum; on failure `message` is untouched.
-#define PALPATE_DECLARE(message, id, bytes, fd, sender, meaning)                             \
+#define PALPATE_DECLARE(message, id, bytes, fd, sender, meaning)                               \
   void encode(const message& from, int node, std::span<std::uint8_t, bytes> payload) noexcept; \
   DecodeResult decode(std::span<const std::uint8_t> payload, int node, message& to) noexcept;
 PALPATE_WIRE_MESSAGES(PALPATE_DECLARE)

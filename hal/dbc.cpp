@@ -42,8 +42,7 @@ std::string dbc_text(int node) {
     const int bits = m.fd ? 16 : 8;
     text += signal_line({"Checksum", 8 * m.bytes - bits, bits, false, 1, "", ""}, receiver) + "\n";
     comments += "CM_ BO_ " + id + " \"" + m.meaning + "\";\n";
-    for (const SignalInfo& s : m.signals)
-      comments += "CM_ SG_ " + id + " " + s.name + " \"" + s.meaning + "\";\n";
+    for (const SignalInfo& s : m.signals) comments += "CM_ SG_ " + id + " " + s.name + " \"" + s.meaning + "\";\n";
     // 14 is StandardCAN_FD in the enumeration below, as the common tools number it.
     attributes += "BA_ \"VFrameFormat\" BO_ " + id + " " + (m.fd ? "14" : "0") + ";\n";
   }

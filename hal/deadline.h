@@ -2,8 +2,8 @@
 // and when missing them becomes a fault.
 //
 // Slots are period_ns apart on one absolute grid, so lateness never accumulates. A tick late by less than a period runs
-// at once. One late by a period or more has missed whole slots: they are counted and skipped, and the tick waits for the
-// next slot. It never catches up with a burst, which the hand would feel as several impulses at once.
+// at once. One late by a period or more has missed whole slots: they are counted and skipped, and the tick waits for
+// the next slot. It never catches up with a burst, which the hand would feel as several impulses at once.
 #pragma once
 
 #include <cstdint>
@@ -28,8 +28,8 @@ class DeadlineTracker {
     deadline_ns_ += limits_.period_ns;
     missed_ = 0;
   }
-  // True if `now_ns` is a whole period or more past the slot: the slots that passed are counted, and the deadline is now
-  // the first slot after now_ns, to be waited for.
+  // True if `now_ns` is a whole period or more past the slot: the slots that passed are counted, and the deadline is
+  // now the first slot after now_ns, to be waited for.
   bool skip(std::int64_t now_ns) noexcept {
     const std::int64_t late_ns = now_ns - deadline_ns_;
     if (late_ns < limits_.period_ns) return false;
@@ -46,9 +46,7 @@ class DeadlineTracker {
     worst_missed_ = missed_ > worst_missed_ ? missed_ : worst_missed_;
   }
   std::uint32_t missed() const noexcept { return missed_; }  // slots skipped just before this tick
-  bool fault() const noexcept {
-    return consecutive_ >= limits_.consecutive_ticks || missed_ >= limits_.slots_at_once;
-  }
+  bool fault() const noexcept { return consecutive_ >= limits_.consecutive_ticks || missed_ >= limits_.slots_at_once; }
   std::uint64_t total_missed() const noexcept { return total_missed_; }
   std::uint64_t overrun_ticks() const noexcept { return overrun_ticks_; }
   std::uint32_t worst_missed() const noexcept { return worst_missed_; }

@@ -4,10 +4,10 @@
 // Frames and units: SI, device frame (the device's own axes, origin at its reference point). hal/kinematics.h turns
 // samples into the world frame and wrenches back. Torque is about the handle's origin.
 // Time: `receive` and `transmit` never wait: each does a bounded number of non-blocking calls. Neither allocates.
-// Latency: a sample is as old as the bus makes it (see docs/realtime.md); `transmit` hands over the newest command only,
-// and an old command is never sent again.
-// Silence: no new valid sample since the last `receive` means `fresh == false`, with the last sample's values repeated
-// (all zero before the first one). A device must drop to zero force by itself when commands stop coming.
+// Latency: a sample is as old as the bus makes it (see docs/realtime.md); `transmit` hands over the newest command
+// only, and an old command is never sent again. Silence: no new valid sample since the last `receive` means `fresh ==
+// false`, with the last sample's values repeated (all zero before the first one). A device must drop to zero force by
+// itself when commands stop coming.
 #pragma once
 
 #include <concepts>
@@ -32,9 +32,9 @@ inline constexpr std::uint32_t kEnable = 1u << 0;  // power the drives; without 
 }  // namespace CommandFlag
 
 struct DeviceSample {
-  Vec3 position_m;        // of the handle, device frame
-  Quat orientation;       // handle to device frame, unit
-  Vec3 velocity_m_per_s;  // device frame, estimated over a few samples; zero until there are two
+  Vec3 position_m;                   // of the handle, device frame
+  Quat orientation;                  // handle to device frame, unit
+  Vec3 velocity_m_per_s;             // device frame, estimated over a few samples; zero until there are two
   std::uint32_t device_time_us = 0;  // device clock, wraps; 0 where the profile does not carry it
   std::uint32_t sequence = 0;        // as sent; wraps with the profile's width
   std::uint32_t flags = 0;           // DeviceFlag
@@ -56,8 +56,10 @@ struct DeviceCommand {
 // to the bus (it is dropped and counted, never queued).
 template <typename T>
 concept Device = requires(T device, DeviceSample& sample, const DeviceCommand& command) {
-  { device.receive(sample) } noexcept -> std::same_as<void>;
-  { device.transmit(command) } noexcept -> std::same_as<bool>;
+  { device.receive(sample) }
+  noexcept->std::same_as<void>;
+  { device.transmit(command) }
+  noexcept->std::same_as<bool>;
 };
 
 }  // namespace palpate

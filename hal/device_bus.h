@@ -15,17 +15,17 @@ enum class WireProfile : int { kFd = 0, kClassic = 1 };
 
 // Only ever count up. `lost` counts sequence numbers that never came (or came after a newer one).
 struct BusCounters {
-  std::uint64_t accepted = 0;     // status samples used or superseded by a newer one
-  std::uint64_t lost = 0;         // missing in the sequence
-  std::uint64_t duplicates = 0;   // same sequence number again: dropped
-  std::uint64_t reordered = 0;    // older than the newest: dropped
-  std::uint64_t restarts = 0;     // sequence jumped too far to be loss: the device restarted
-  std::uint64_t checksum = 0;     // checksum wrong: dropped
-  std::uint64_t malformed = 0;    // wrong length, version or unknown identifier: dropped
-  std::uint64_t unpaired = 0;     // classic profile: half of a sample whose other half never came
-  std::uint64_t clock = 0;        // device clock stood still or ran backwards between samples
-  std::uint64_t backlog = 0;      // receive queue not emptied in one tick
-  std::uint64_t send_dropped = 0; // commands not handed to the bus
+  std::uint64_t accepted = 0;      // status samples used or superseded by a newer one
+  std::uint64_t lost = 0;          // missing in the sequence
+  std::uint64_t duplicates = 0;    // same sequence number again: dropped
+  std::uint64_t reordered = 0;     // older than the newest: dropped
+  std::uint64_t restarts = 0;      // sequence jumped too far to be loss: the device restarted
+  std::uint64_t checksum = 0;      // checksum wrong: dropped
+  std::uint64_t malformed = 0;     // wrong length, version or unknown identifier: dropped
+  std::uint64_t unpaired = 0;      // classic profile: half of a sample whose other half never came
+  std::uint64_t clock = 0;         // device clock stood still or ran backwards between samples
+  std::uint64_t backlog = 0;       // receive queue not emptied in one tick
+  std::uint64_t send_dropped = 0;  // commands not handed to the bus
 };
 
 // Follows a wrapping sequence number. A step forward of up to half the window is loss; a step back of up to a quarter

@@ -6,7 +6,9 @@
 namespace palpate {
 
 DeviceNode::DeviceNode(Transport& transport, const NodeOptions& options, const PlantOptions& plant, HandPath path)
-    : transport_(transport), options_(options), plant_(plant, std::move(path)),
+    : transport_(transport),
+      options_(options),
+      plant_(plant, std::move(path)),
       sequence_(options.profile == WireProfile::kFd ? 16 : 8) {}
 
 void DeviceNode::obey(std::uint32_t sequence, const DeviceCommand& command, std::int64_t now_ns) noexcept {
@@ -42,8 +44,7 @@ void DeviceNode::take(const Frame& frame, std::int64_t now_ns) noexcept {
     return;
   }
   if (!fd && !frame.fd && base_id == wire::kClassicTorqueId && has_pending_ &&
-      wire::decode(payload, options_.node, torque) == wire::DecodeResult::kOk &&
-      torque.sequence == pending_.sequence) {
+      wire::decode(payload, options_.node, torque) == wire::DecodeResult::kOk && torque.sequence == pending_.sequence) {
     has_pending_ = false;
     wire::get_wrench(pending_, torque, command.force_N, command.torque_Nm);
     command.flags = torque.flags;

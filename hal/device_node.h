@@ -17,11 +17,11 @@ struct NodeOptions {
 };
 
 struct NodeCounters {
-  std::uint64_t commands = 0;   // obeyed
-  std::uint64_t lost = 0;       // command sequence numbers missing
-  std::uint64_t refused = 0;    // duplicates, old ones
-  std::uint64_t bad = 0;        // wrong checksum, length or identifier, unpaired half
-  std::uint64_t watchdog = 0;   // times the watchdog tripped
+  std::uint64_t commands = 0;  // obeyed
+  std::uint64_t lost = 0;      // command sequence numbers missing
+  std::uint64_t refused = 0;   // duplicates, old ones
+  std::uint64_t bad = 0;       // wrong checksum, length or identifier, unpaired half
+  std::uint64_t watchdog = 0;  // times the watchdog tripped
   std::uint64_t send_dropped = 0;
 };
 

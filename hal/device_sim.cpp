@@ -68,14 +68,16 @@ void DevicePlant::integrate(double time_s, double dt_s) noexcept {
   const PlantOptions& o = options_;
   const HandTarget hand = path_.at(time_s + 0.5 * dt_s);
   const Vec3 offset = hand.pose.position_m - pose_.position_m;
-  const Vec3 push = motor_.force_N + o.hand_stiffness_N_per_m * offset + o.hand_damping_N_s_per_m * hand.velocity_m_per_s;
+  const Vec3 push =
+      motor_.force_N + o.hand_stiffness_N_per_m * offset + o.hand_damping_N_s_per_m * hand.velocity_m_per_s;
   Vec3 mean;
-  velocity_ = midpoint_velocity(velocity_, push, o.mass_kg + o.hand_mass_kg,
-                                o.damping_N_s_per_m + o.hand_damping_N_s_per_m, o.hand_stiffness_N_per_m, o.friction_N,
-                                dt_s, mean);
+  velocity_ =
+      midpoint_velocity(velocity_, push, o.mass_kg + o.hand_mass_kg, o.damping_N_s_per_m + o.hand_damping_N_s_per_m,
+                        o.hand_stiffness_N_per_m, o.friction_N, dt_s, mean);
   pose_.position_m += dt_s * mean;
   const Vec3 turn = rotation_vector(hand.pose.orientation * conjugate(pose_.orientation));
-  const Vec3 twist = motor_.torque_Nm + o.hand_stiffness_Nm_per_rad * turn + o.hand_damping_Nm_s_per_rad * hand.spin_rad_per_s;
+  const Vec3 twist =
+      motor_.torque_Nm + o.hand_stiffness_Nm_per_rad * turn + o.hand_damping_Nm_s_per_rad * hand.spin_rad_per_s;
   spin_ = midpoint_velocity(spin_, twist, o.inertia_kg_m2, o.damping_Nm_s_per_rad + o.hand_damping_Nm_s_per_rad,
                             o.hand_stiffness_Nm_per_rad, o.friction_Nm, dt_s, mean);
   pose_.orientation = normalised(rotation_by(dt_s * mean) * pose_.orientation);
@@ -110,7 +112,9 @@ Vec3 DevicePlant::measured_m() noexcept {
 }
 
 SimulatedDevice::SimulatedDevice(const PlantOptions& options, HandPath path, const VirtualClock& clock)
-    : plant_(options, std::move(path)), clock_(clock), start_ns_(clock.now_ns()),
+    : plant_(options, std::move(path)),
+      clock_(clock),
+      start_ns_(clock.now_ns()),
       period_ns_(static_cast<std::int64_t>(std::llround(1e9 * options.period_s))) {}
 
 void SimulatedDevice::receive(DeviceSample& sample) noexcept {

@@ -14,25 +14,25 @@ namespace palpate {
 
 // The defaults resemble a desktop device of the Phantom 1.5 class held lightly; they are assumptions, not a data sheet.
 struct PlantOptions {
-  double mass_kg = 0.1;                   // of the handle, as felt at its tip
+  double mass_kg = 0.1;  // of the handle, as felt at its tip
   double damping_N_s_per_m = 0.5;
-  double friction_N = 0.05;               // Coulomb
-  double inertia_kg_m2 = 2e-4;            // about every axis
+  double friction_N = 0.05;     // Coulomb
+  double inertia_kg_m2 = 2e-4;  // about every axis
   double damping_Nm_s_per_rad = 1e-3;
   double friction_Nm = 1e-3;
-  double encoder_m = 3e-5;                // position quantum; 0: none
-  double noise_m = 0;                     // uniform noise of this half width before quantisation
+  double encoder_m = 3e-5;  // position quantum; 0: none
+  double noise_m = 0;       // uniform noise of this half width before quantisation
   std::uint64_t noise_seed = 1;
-  double force_max_N = 8.5;               // motors: magnitude is cut, direction kept
+  double force_max_N = 8.5;  // motors: magnitude is cut, direction kept
   double torque_max_Nm = 0.2;
-  int delay_ticks = 1;                    // extra periods from command to motor, 0..15
-  double hand_mass_kg = 0.1;              // part of the hand that moves with the handle
+  int delay_ticks = 1;        // extra periods from command to motor, 0..15
+  double hand_mass_kg = 0.1;  // part of the hand that moves with the handle
   double hand_stiffness_N_per_m = 300;
   double hand_damping_N_s_per_m = 5;
   double hand_stiffness_Nm_per_rad = 1;
   double hand_damping_Nm_s_per_rad = 2e-2;
-  double period_s = 1e-3;                 // device tick: commands are taken over and samples made
-  int substeps = 20;                      // of the integration per period, 1..1000
+  double period_s = 1e-3;  // device tick: commands are taken over and samples made
+  int substeps = 20;       // of the integration per period, 1..1000
 };
 
 // Mechanics only: implicit midpoint with an exact Coulomb step, unconditionally stable and of second order.
@@ -42,11 +42,11 @@ class DevicePlant {
 
   // One period under `command`, which enters the delay line first; zero force if not enabled.
   void step(const DeviceCommand& command) noexcept;
-  Pose pose() const noexcept { return pose_; }             // exact, device frame
+  Pose pose() const noexcept { return pose_; }  // exact, device frame
   Vec3 velocity_m_per_s() const noexcept { return velocity_; }
   Vec3 spin_rad_per_s() const noexcept { return spin_; }
-  Vec3 measured_m() noexcept;                              // with noise and encoder quantum; draws noise
-  Wrench motor() const noexcept { return motor_; }         // rendered in the last period
+  Vec3 measured_m() noexcept;                       // with noise and encoder quantum; draws noise
+  Wrench motor() const noexcept { return motor_; }  // rendered in the last period
   bool saturated() const noexcept { return saturated_; }
   double time_s() const noexcept { return static_cast<double>(ticks_) * options_.period_s; }
   std::uint64_t ticks() const noexcept { return ticks_; }

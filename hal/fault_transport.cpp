@@ -36,13 +36,15 @@ int FaultTransport::receive(std::span<Frame> frames) noexcept {
   const bool duplicate = active(TransportFault::kDuplicate) != nullptr;
   const bool reorder = active(TransportFault::kReorder) != nullptr;
   const bool lose = active(TransportFault::kLose) != nullptr || bus_off_;
-  if (delay != nullptr || (!reorder && !duplicate && held_count_ > 0 && held_[0].due > call_ - 1)) {
+  if (delay != nullptr || (queued_ && held_count_ > 0 && held_[0].due > call_ - 1)) {
+    queued_ = true;
     // A delay is a queue: what comes later also waits, so the order stays.
     for (int i = 0; i < count; ++i)
       hold(arrived[i], delay != nullptr ? call_ - 1 + static_cast<std::uint64_t>(delay->argument) : held_[0].due);
     return release(frames, 0);
   }
-  int out = 0;
+  int out = queued_ ? release(frames, 0) : 0;  // a queue delivers the old ones first, a reordering last
+  queued_ = false;
   for (int i = 0; i < count && !lose; ++i) {
     if (corrupt != nullptr) {
       std::uint8_t& byte = arrived[i].data[(corrupt->argument / 8) % 64];

@@ -1,4 +1,5 @@
-// Breaks a transport on purpose, by script: what is received, what is sent, or the state. For tests of everything above.
+// Breaks a transport on purpose, by script: what is received, what is sent, or the state. For tests of everything
+// above.
 #pragma once
 
 #include <cstdint>
@@ -51,6 +52,7 @@ class FaultTransport : public Transport {
   Held held_[kMaxFramesPerReceive];
   int held_count_ = 0;
   std::uint64_t call_ = 0;  // number of the next receive()
+  bool queued_ = false;     // held frames wait in order behind a delay
   bool bus_off_ = false;
 };
 

@@ -22,7 +22,8 @@ HandPath::HandPath(std::vector<HandPose> poses) : poses_(std::move(poses)) {
   for (std::size_t i = 0; i < poses_.size(); ++i) {
     const bool rises = i == 0 || poses_[i].time_s > poses_[i - 1].time_s;
     if (!is_finite(poses_[i].pose) || !is_finite(poses_[i].time_s) || !rises) {
-      error_ = "hand path: pose " + std::to_string(i + 1) + (rises ? " is not finite" : " is not later than the one before");
+      error_ =
+          "hand path: pose " + std::to_string(i + 1) + (rises ? " is not finite" : " is not later than the one before");
       poses_.clear();
       return;
     }

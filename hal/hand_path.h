@@ -23,7 +23,8 @@ struct HandTarget {
 class HandPath {
  public:
   HandPath() = default;  // rests at the origin
-  // Times must rise strictly and everything be finite; otherwise `error()` says which entry is wrong and the path rests.
+  // Times must rise strictly and everything be finite; otherwise `error()` says which entry is wrong and the path
+  // rests.
   explicit HandPath(std::vector<HandPose> poses);
   // At rest at each pose, before the first and after the last.
   HandTarget at(double time_s) const noexcept;

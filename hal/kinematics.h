@@ -13,10 +13,10 @@ namespace palpate {
 // `scale` cm. Forces are not scaled, so the stiffness the hand feels is the scene's times `scale`: the device's own
 // stiffness limit applies to that product.
 struct CartesianKinematics {
-  Vec3 position_w;     // of the device's origin
-  Quat orientation_w;  // device frame to world, unit
-  double scale = 1;    // 0.01 .. 100
-  double radius_m = 1; // workspace: device positions further than this from its origin are not believed
+  Vec3 position_w;      // of the device's origin
+  Quat orientation_w;   // device frame to world, unit
+  double scale = 1;     // 0.01 .. 100
+  double radius_m = 1;  // workspace: device positions further than this from its origin are not believed
 };
 
 inline bool valid(const CartesianKinematics& k) noexcept {

@@ -34,16 +34,16 @@ enum class LoopEnd : int { kTicksDone = 0, kStopped, kSilentAtStart };
 struct LoopSummary {
   LoopEnd end = LoopEnd::kStopped;
   std::uint64_t ticks = 0;
-  std::uint64_t start_ticks = 0;     // waited for the first sample
-  std::uint64_t missed_slots = 0;    // periods without a tick
-  std::uint64_t overrun_ticks = 0;   // ticks that followed missed slots
-  std::uint32_t worst_missed = 0;    // most slots missed in one go
-  std::uint64_t stale_ticks = 0;     // ticks without a fresh sample
-  std::uint32_t worst_stale = 0;     // longest silence in periods
-  std::uint64_t gaps = 0;            // status sequence numbers missing
-  std::uint64_t send_failures = 0;   // commands the bus did not take
-  std::int64_t worst_wake_ns = 0;    // largest wake-up latency
-  std::uint32_t faults = 0;          // every latched fault seen
+  std::uint64_t start_ticks = 0;    // waited for the first sample
+  std::uint64_t missed_slots = 0;   // periods without a tick
+  std::uint64_t overrun_ticks = 0;  // ticks that followed missed slots
+  std::uint32_t worst_missed = 0;   // most slots missed in one go
+  std::uint64_t stale_ticks = 0;    // ticks without a fresh sample
+  std::uint32_t worst_stale = 0;    // longest silence in periods
+  std::uint64_t gaps = 0;           // status sequence numbers missing
+  std::uint64_t send_failures = 0;  // commands the bus did not take
+  std::int64_t worst_wake_ns = 0;   // largest wake-up latency
+  std::uint32_t faults = 0;         // every latched fault seen
 };
 
 // What computes the force. step: one tick. fill: completes a record after it.
@@ -54,7 +54,9 @@ concept Controller = requires(T c, const Input& in, Output& out, const StageProb
 };
 // Telemetry must never wait; commands are level bits, polled once per tick.
 template <typename T>
-concept RecordSink = requires(T sink, const TickRecord& record) { sink.publish(record); };
+concept RecordSink = requires(T sink, const TickRecord& record) {
+  sink.publish(record);
+};
 template <typename T>
 concept CommandSource = requires(T source) {
   { source.poll() } -> std::convertible_to<std::uint32_t>;
@@ -84,8 +86,15 @@ class Loop {
   // All references must outlive the loop. `stop` is set by a signal handler or another thread.
   Loop(D& device, C& clock, K& controller, S& sink, H& host, const CartesianKinematics& kinematics,
        const LoopOptions& options, const std::atomic<bool>& stop) noexcept
-      : device_(device), clock_(clock), controller_(controller), sink_(sink), host_(host), kinematics_(kinematics),
-        options_(options), stop_(stop), slots_(options.deadline, clock.now_ns() + options.deadline.period_ns) {}
+      : device_(device),
+        clock_(clock),
+        controller_(controller),
+        sink_(sink),
+        host_(host),
+        kinematics_(kinematics),
+        options_(options),
+        stop_(stop),
+        slots_(options.deadline, clock.now_ns() + options.deadline.period_ns) {}
 
   LoopSummary run() noexcept {
     summary_.end = wait_for_device();

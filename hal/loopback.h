@@ -1,5 +1,5 @@
-// The same CAN frames over a local socket that keeps record boundaries (AF_UNIX, SOCK_SEQPACKET): for machines without a
-// CAN controller, and for tests.
+// The same CAN frames over a local socket that keeps record boundaries (AF_UNIX, SOCK_SEQPACKET): for machines without
+// a CAN controller, and for tests.
 #pragma once
 
 #include <memory>

@@ -45,13 +45,15 @@ RtVerdict set_affinity(int cpu) {
   if (cpu < CPU_SETSIZE) CPU_SET(static_cast<std::size_t>(cpu), &set);
   const int error = ::pthread_setaffinity_np(::pthread_self(), sizeof set, &set);
   if (error == 0) return accepted(kItem, "CPU " + std::to_string(cpu));
-  return refused(kItem, error, "CPU " + std::to_string(cpu) + " is not one of those listed in /sys/devices/system/cpu/online");
+  return refused(kItem, error,
+                 "CPU " + std::to_string(cpu) + " is not one of those listed in /sys/devices/system/cpu/online");
 }
 
 RtVerdict lock_memory() {
   constexpr const char* kItem = "memory lock";
   if (::mlockall(MCL_CURRENT | MCL_FUTURE) == 0) return accepted(kItem, "all pages, now and later");
-  return refused(kItem, errno, "raise the memlock limit: add '@realtime - memlock unlimited' to /etc/security/limits.d");
+  return refused(kItem, errno,
+                 "raise the memlock limit: add '@realtime - memlock unlimited' to /etc/security/limits.d");
 }
 
 RtVerdict quiet_heap() {

@@ -19,7 +19,7 @@ struct RtOptions {
 };
 
 struct RtVerdict {
-  std::string item;    // "scheduler", "affinity", "memory lock", "heap", "stack", "cpu sleep states"
+  std::string item;  // "scheduler", "affinity", "memory lock", "heap", "stack", "cpu sleep states"
   bool ok = false;
   int error = 0;       // errno of a refusal
   std::string detail;  // what was set, or why not and the remedy

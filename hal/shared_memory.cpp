@@ -90,7 +90,7 @@ SharedMemory SharedMemory::open_peer(int fd, std::size_t bytes, std::string& err
     return {};
   }
   // After the seals: the size cannot change any more.
-  struct stat status{};
+  struct stat status {};
   if (fstat(fd, &status) != 0 || status.st_size != static_cast<off_t>(bytes)) {
     error = "the peer's memory has " + std::to_string(status.st_size) + " bytes, expected " + std::to_string(bytes);
     return {};

@@ -69,12 +69,14 @@ struct Triangle {
 };
 // Node of a 4-wide hierarchy over the triangles. Bounds are single precision, rounded outward. The normal cone of a child
 // (axis, tangent of its half-angle) holds the normals of all its triangles and of their neighbours across edges and
-// vertices; a zero axis means "no cone": the child is then never skipped by direction.
+// vertices; its radius is that of a sphere about the box centre that holds the child. A zero axis means "no cone": the
+// child is then never skipped by direction.
 struct BvhNode {
   float lower_m[3][4];
   float upper_m[3][4];
   float cone_axis[3][4];
   float cone_tangent[4];
+  float cone_radius_m[4];
   std::int32_t child[4];  // count 0: inner node (>= 0) or empty (-1); count > 0: leaf, first triangle = ~child
   std::int32_t count[4];  // triangles in a leaf (1..4; they are contiguous), 0 for inner nodes and empty slots
 };

@@ -10,8 +10,8 @@ namespace palpate {
 
 // Exit codes of every command (sysexits style, kept small).
 inline constexpr int kExitOk = 0;
-inline constexpr int kExitFailed = 1;      // it ran, and the answer is "no": replay differs, faults latched
-inline constexpr int kExitUsage = 2;       // wrong arguments, unreadable or invalid input file
+inline constexpr int kExitFailed = 1;       // it ran, and the answer is "no": replay differs, faults latched
+inline constexpr int kExitUsage = 2;        // wrong arguments, unreadable or invalid input file
 inline constexpr int kExitUnavailable = 3;  // the machine lacks something: interface, permission, device
 
 // Each registers its subcommand; when the user picks it, the callback sets `exit_code`. Errors may be thrown as
@@ -21,7 +21,7 @@ void add_press_command(CLI::App& app, int& exit_code);
 void add_run_command(CLI::App& app, int& exit_code);
 void add_replay_command(CLI::App& app, int& exit_code);
 void add_latency_command(CLI::App& app, int& exit_code);
-void add_doctor_command(CLI::App& app, int& exit_code);
+void add_picture_command(CLI::App& app, int& exit_code);
 void add_doctor_command(CLI::App& app, int& exit_code);
 
 }  // namespace palpate

@@ -22,8 +22,9 @@ struct ReplayOptions {
 
 int report(const ReplayResult& result) {
   if (result.differs) {
-    fmt::print("differs at tick {}, stage {}, field {}\n  recorded {}\n  replayed {}\n  {} ticks before it are identical\n",
-               result.tick, result.stage, result.field, result.recorded, result.replayed, result.ticks);
+    fmt::print(
+        "differs at tick {}, stage {}, field {}\n  recorded {}\n  replayed {}\n  {} ticks before it are identical\n",
+        result.tick, result.stage, result.field, result.recorded, result.replayed, result.ticks);
   } else if (!result.damage.empty()) {
     fmt::print("damaged recording: {}\n  {} ticks before that are identical\n", result.damage, result.ticks);
   } else if (result.lost > 0) {

@@ -34,13 +34,16 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command->add_option("SCENE", options->scene, "scene (.toml, baked first) or image (.pal)")->required();
   command->add_option("--device", options->device, "auto, loopback (simulated device and hand) or can:IFACE")
       ->capture_default_str();
-  command->add_option("--duration", options->duration_s, "seconds")->capture_default_str()->check(CLI::Range(0.1, 86400.0));
+  command->add_option("--duration", options->duration_s, "seconds")
+      ->capture_default_str()
+      ->check(CLI::Range(0.1, 86400.0));
   command->add_option("--record", options->record, "recording to write")->capture_default_str();
   command->add_flag("--no-record", *no_record, "write no recording");
   command->add_option("--path", options->path,
                       "motion of the simulated hand, CSV: time_s,x_mm,y_mm,z_mm[,rx_deg,ry_deg,rz_deg]; default: the "
                       "scene's own");
-  command->add_option("--image", options->image, "where to write the image of a .toml scene; default: beside the recording");
+  command->add_option("--image", options->image,
+                      "where to write the image of a .toml scene; default: beside the recording");
   command->add_option("--cpu", options->cpu, "CPU of the real-time thread")->check(CLI::Range(-1, 1023));
   command->add_option("--priority", options->priority, "SCHED_FIFO priority of the real-time thread; 0: none")
       ->capture_default_str()

@@ -67,11 +67,11 @@ double number(const char* option, const char* text, double lowest, double highes
 
 Arguments parse(int argc, char** argv) {
   Arguments arguments;
-  const option options[] = {{"image", 1, nullptr, 'i'},      {"device", 1, nullptr, 'd'},
-                            {"device-fd", 1, nullptr, 'f'},  {"control-fd", 1, nullptr, 'c'},
-                            {"duration", 1, nullptr, 's'},   {"cpu", 1, nullptr, 'u'},
-                            {"priority", 1, nullptr, 'p'},   {"help", 0, nullptr, 'h'},
-                            {"version", 0, nullptr, 'v'},    {nullptr, 0, nullptr, 0}};
+  const option options[] = {{"image", 1, nullptr, 'i'},     {"device", 1, nullptr, 'd'},
+                            {"device-fd", 1, nullptr, 'f'}, {"control-fd", 1, nullptr, 'c'},
+                            {"duration", 1, nullptr, 's'},  {"cpu", 1, nullptr, 'u'},
+                            {"priority", 1, nullptr, 'p'},  {"help", 0, nullptr, 'h'},
+                            {"version", 0, nullptr, 'v'},   {nullptr, 0, nullptr, 0}};
   const auto integer = [](const char* name, double low, double high) {
     return static_cast<int>(number(name, optarg, low, high));
   };
@@ -94,7 +94,7 @@ Arguments parse(int argc, char** argv) {
 // Maps the image for the life of the process.
 Model load_image(const std::string& path) {
   const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  struct stat status{};
+  struct stat status {};
   if (fd < 0 || fstat(fd, &status) != 0 || status.st_size <= 0) {
     throw Failure{kUsage, path + ": cannot read: " + std::strerror(errno)};
   }
@@ -164,8 +164,8 @@ struct Core {
 };
 
 // The real-time thread: set-up, system-call filter, loop. Prints only before the filter is in place.
-LoopSummary run_loop(const Arguments& arguments, const Model& model, Core& core, HostConnection& host,
-                     DeviceBus& bus, const std::atomic<bool>& interrupted) {
+LoopSummary run_loop(const Arguments& arguments, const Model& model, Core& core, HostConnection& host, DeviceBus& bus,
+                     const std::atomic<bool>& interrupted) {
   std::atomic<bool> stop{false};
   const auto* mailbox = static_cast<const MailboxRegion*>(host.mailbox.data());
   HostPort port(mailbox, static_cast<std::uint32_t>(kHostSilence_s / model.params.period_s), interrupted, stop);

@@ -24,17 +24,19 @@ constexpr char kHelp[] =
     "palpate-device --device ADDRESS [options]: a simulated device and hand\n"
     "  --device ADDRESS   can:IFACE or loopback[:NAME], each with optional ,classic and ,node=N\n"
     "  --device-fd N      use the inherited socket N instead of opening the loopback\n"
-    "  --path FILE        the hand's motion: time_s,x_mm,y_mm,z_mm[,rx_deg,ry_deg,rz_deg]; default: rests at the origin\n"
+    "  --path FILE        the hand's motion: time_s,x_mm,y_mm,z_mm[,rx_deg,ry_deg,rz_deg]; default: rests at the "
+    "origin\n"
     "  --duration S       stop after S seconds; default: when the controller is gone (loopback) or on a signal\n"
     "  --priority P       SCHED_FIFO priority 1..98; default 0: ordinary scheduling\n"
     "  --cpu N            pin to this CPU\n"
     "  --set NAME=VALUE   a property of device or hand, repeatable; SI units:\n";
 
 // X(name): members of PlantOptions that --set reaches.
-#define PALPATE_PLANT_OPTIONS(X)                                                                                    \
-  X(mass_kg) X(damping_N_s_per_m) X(friction_N) X(inertia_kg_m2) X(damping_Nm_s_per_rad) X(friction_Nm) X(encoder_m) \
-  X(noise_m) X(force_max_N) X(torque_max_Nm) X(hand_mass_kg) X(hand_stiffness_N_per_m) X(hand_damping_N_s_per_m)    \
-  X(hand_stiffness_Nm_per_rad) X(hand_damping_Nm_s_per_rad) X(period_s)
+#define PALPATE_PLANT_OPTIONS(X)                                                                                     \
+  X(mass_kg)                                                                                                         \
+  X(damping_N_s_per_m) X(friction_N) X(inertia_kg_m2) X(damping_Nm_s_per_rad) X(friction_Nm) X(encoder_m) X(noise_m) \
+      X(force_max_N) X(torque_max_Nm) X(hand_mass_kg) X(hand_stiffness_N_per_m) X(hand_damping_N_s_per_m)            \
+          X(hand_stiffness_Nm_per_rad) X(hand_damping_Nm_s_per_rad) X(period_s)
 
 struct Failure {
   int exit_code;
@@ -72,8 +74,8 @@ std::string help() {
   std::string text = kHelp;
   const PlantOptions plant;
   char line[80];
-#define PALPATE_LINE(member)                                                                  \
-  std::snprintf(line, sizeof(line), "      %-28s %g\n", #member, plant.member);               \
+#define PALPATE_LINE(member)                                                    \
+  std::snprintf(line, sizeof(line), "      %-28s %g\n", #member, plant.member); \
   text += line;
   PALPATE_PLANT_OPTIONS(PALPATE_LINE)
 #undef PALPATE_LINE
@@ -132,7 +134,8 @@ void run_node(DeviceNode& node, const Arguments& arguments, const std::atomic<bo
   const auto period_ns = static_cast<std::int64_t>(arguments.plant.period_s * 1e9 + 0.5);
   const auto steps = static_cast<std::uint64_t>(arguments.duration_s / arguments.plant.period_s);
   std::int64_t deadline_ns = clock.now_ns();
-  for (std::uint64_t i = 0; (steps == 0 || i < steps) && !stop.load(std::memory_order_relaxed) && node.connected(); ++i) {
+  for (std::uint64_t i = 0; (steps == 0 || i < steps) && !stop.load(std::memory_order_relaxed) && node.connected();
+       ++i) {
     deadline_ns += period_ns;
     clock.wait_until(deadline_ns);
     node.step(clock.now_ns());
@@ -166,7 +169,8 @@ int main(int argc, char** argv) {
     return palpate::run(argc, argv);
   } catch (const palpate::Failure& failure) {
     const bool help = failure.exit_code == palpate::kOk;
-    std::fprintf(help ? stdout : stderr, "%s%s%s", help ? "" : "palpate-device: ", failure.text.c_str(), help ? "" : "\n");
+    std::fprintf(help ? stdout : stderr, "%s%s%s", help ? "" : "palpate-device: ", failure.text.c_str(),
+                 help ? "" : "\n");
     return failure.exit_code;
   }
 }

@@ -31,8 +31,10 @@ class HostPort {
   // a signal handler). `silence_ticks`: so long without a heartbeat is death.
   HostPort(const MailboxRegion* mailbox, std::uint32_t silence_ticks, const std::atomic<bool>& interrupted,
            std::atomic<bool>& stop) noexcept
-      : reader_(mailbox != nullptr ? MailboxReader(*mailbox) : MailboxReader()), silence_ticks_(silence_ticks),
-        interrupted_(interrupted), stop_(stop) {}
+      : reader_(mailbox != nullptr ? MailboxReader(*mailbox) : MailboxReader()),
+        silence_ticks_(silence_ticks),
+        interrupted_(interrupted),
+        stop_(stop) {}
 
   std::uint32_t poll() noexcept {
     // Relaxed, here and below: flags polled every tick, nothing else is published through them.

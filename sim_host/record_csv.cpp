@@ -12,11 +12,12 @@ namespace palpate {
 
 RecordCsv::RecordCsv(const std::string& path) : file_(std::fopen(path.c_str(), "w")) {
   if (file_ == nullptr) throw std::runtime_error(fmt::format("{}: cannot create: {}", path, std::strerror(errno)));
-  fmt::print(file_,
-             "tick,deadline_ns,wake_latency_ns,receive_ns,compute_ns,transmit_ns,publish_ns,stale_ticks,overrun_ticks,"
-             "commands,x_m,y_m,z_m,qw,qx,qy,qz,tool_x_m,tool_y_m,tool_z_m,device_fx_N,device_fy_N,device_fz_N,"
-             "device_tx_Nm,device_ty_Nm,device_tz_Nm,contact_fx_N,contact_fy_N,contact_fz_N,penetration_m,energy_J,ramp,"
-             "mode,regions,contacts,status,fault,state_hash\n");
+  fmt::print(
+      file_,
+      "tick,deadline_ns,wake_latency_ns,receive_ns,compute_ns,transmit_ns,publish_ns,stale_ticks,overrun_ticks,"
+      "commands,x_m,y_m,z_m,qw,qx,qy,qz,tool_x_m,tool_y_m,tool_z_m,device_fx_N,device_fy_N,device_fz_N,"
+      "device_tx_Nm,device_ty_Nm,device_tz_Nm,contact_fx_N,contact_fy_N,contact_fz_N,penetration_m,energy_J,ramp,"
+      "mode,regions,contacts,status,fault,state_hash\n");
 }
 
 RecordCsv::~RecordCsv() { std::fclose(file_); }

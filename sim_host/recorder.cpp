@@ -17,7 +17,9 @@ Recorder::Recorder(const TelemetryRegion& region, RecordingWriter* file, std::fu
 
 Recorder::~Recorder() { stop(); }
 
-void Recorder::start() { thread_ = std::thread([this] { run(); }); }
+void Recorder::start() {
+  thread_ = std::thread([this] { run(); });
+}
 
 void Recorder::stop() {
   if (!thread_.joinable()) return;

@@ -50,7 +50,9 @@ std::uint32_t crc_of(const void* data, std::size_t bytes, std::uint32_t start = 
   return static_cast<std::uint32_t>(crc32_z(start, static_cast<const Bytef*>(data), bytes));
 }
 
-std::span<const std::byte> bytes_of(const auto& value) { return {reinterpret_cast<const std::byte*>(&value), sizeof(value)}; }
+std::span<const std::byte> bytes_of(const auto& value) {
+  return {reinterpret_cast<const std::byte*>(&value), sizeof(value)};
+}
 
 template <std::size_t N>
 void copy_text(char (&to)[N], const char (&from)[N]) {
@@ -152,11 +154,11 @@ RecordingReader::RecordingReader(std::span<const std::byte> bytes) : bytes_(byte
   const Chunk head = expect_chunk(kHead, sizeof(RecordingHeader));
   std::memcpy(&header_, head.payload.data(), sizeof(header_));
   if (header_.layout_hash != kRecordLayoutHash) {
-    throw RecordingError(
-        fmt::format("the recording has another data layout ({:016x}) than this build ({:016x}): replay it with the build "
-                    "that made it: {:.{}}",
-                    header_.layout_hash, kRecordLayoutHash, static_cast<const char*>(header_.build_id),
-                    strnlen(header_.build_id, kBuildIdBytes)));
+    throw RecordingError(fmt::format(
+        "the recording has another data layout ({:016x}) than this build ({:016x}): replay it with the build "
+        "that made it: {:.{}}",
+        header_.layout_hash, kRecordLayoutHash, static_cast<const char*>(header_.build_id),
+        strnlen(header_.build_id, kBuildIdBytes)));
   }
   copy_text(header_.scene_name, header_.scene_name);
   copy_text(header_.build_id, header_.build_id);
@@ -190,7 +192,8 @@ RecordingReader::Chunk RecordingReader::read_chunk() {
   std::memcpy(&header, bytes_.data() + offset_, sizeof(header));
   if (header.bytes > kMostChunkBytes) throw RecordingError(fmt::format("offset {}: damaged chunk size", offset_));
   if (header.bytes > left - sizeof(header)) {
-    throw RecordingError(fmt::format("offset {}: chunk cut off: {} of {} bytes", offset_, left - sizeof(header), header.bytes));
+    throw RecordingError(
+        fmt::format("offset {}: chunk cut off: {} of {} bytes", offset_, left - sizeof(header), header.bytes));
   }
   const Chunk chunk{header.tag, header.count, bytes_.subspan(offset_ + sizeof(header), header.bytes)};
   if (header.crc != crc_of(chunk.payload.data(), chunk.payload.size(), crc_of(&header, offsetof(ChunkHeader, crc)))) {
@@ -205,9 +208,10 @@ RecordingReader::Chunk RecordingReader::expect_chunk(std::uint32_t tag, std::siz
   if (chunk.tag != tag) throw RecordingError(fmt::format("offset {}: unexpected chunk", chunk_offset_));
   if (chunk.payload.size() != bytes) {
     // A header that grew or shrank is another layout, not damage: the checksum was right.
-    throw RecordingError(fmt::format("offset {}: the recording has another data layout than this build ({} bytes here, "
-                                     "{} expected): replay it with the build that made it",
-                                     chunk_offset_, chunk.payload.size(), bytes));
+    throw RecordingError(
+        fmt::format("offset {}: the recording has another data layout than this build ({} bytes here, "
+                    "{} expected): replay it with the build that made it",
+                    chunk_offset_, chunk.payload.size(), bytes));
   }
   return chunk;
 }
@@ -260,8 +264,8 @@ void RecordingReader::finish(const Chunk& chunk) {
   std::memcpy(&end, chunk.payload.data(), sizeof(end));
   ended_ = true;
   if (end.records != records_ || end.lost != lost_) {
-    throw RecordingError(fmt::format("offset {}: the footer counts {} records and {} lost, found {} and {}", chunk_offset_,
-                                     end.records, end.lost, records_, lost_));
+    throw RecordingError(fmt::format("offset {}: the footer counts {} records and {} lost, found {} and {}",
+                                     chunk_offset_, end.records, end.lost, records_, lost_));
   }
   if (offset_ != bytes_.size()) {
     throw RecordingError(fmt::format("offset {}: {} bytes after the footer", offset_, bytes_.size() - offset_));
@@ -271,9 +275,10 @@ void RecordingReader::finish(const Chunk& chunk) {
 MappedFile::MappedFile(const std::string& path) {
   const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (fd < 0) throw RecordingError(fmt::format("{}: cannot open: {}", path, std::strerror(errno)));
-  struct stat status{};
+  struct stat status {};
   const bool sized = fstat(fd, &status) == 0 && status.st_size > 0;
-  void* data = sized ? mmap(nullptr, static_cast<std::size_t>(status.st_size), PROT_READ, MAP_PRIVATE, fd, 0) : MAP_FAILED;
+  void* data =
+      sized ? mmap(nullptr, static_cast<std::size_t>(status.st_size), PROT_READ, MAP_PRIVATE, fd, 0) : MAP_FAILED;
   close(fd);
   if (data == MAP_FAILED) throw RecordingError(fmt::format("{}: empty, or not a file that can be mapped", path));
   data_ = static_cast<const std::byte*>(data);

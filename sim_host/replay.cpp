@@ -91,8 +91,9 @@ bool first_record_difference(const TickRecord& recorded, const TickRecord& repla
 ReplayResult replay(RecordingReader& recording, const Model& model, const ReplayListener& listen) {
   const RecordingHeader& header = recording.header();
   if (header.scene_hash != model.scene_hash) {
-    throw RecordingError(fmt::format("the recording was made with scene image {:016x} ('{}', {}), this image is {:016x} ('{}')",
-                                     header.scene_hash, header.scene_name, header.image_path, model.scene_hash, model.name));
+    throw RecordingError(
+        fmt::format("the recording was made with scene image {:016x} ('{}', {}), this image is {:016x} ('{}')",
+                    header.scene_hash, header.scene_name, header.image_path, model.scene_hash, model.name));
   }
   ReplayResult result;
   State state = recording.initial_state();

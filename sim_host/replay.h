@@ -12,14 +12,14 @@
 namespace palpate {
 
 struct ReplayResult {
-  std::uint64_t ticks = 0;    // verified identical, from the start on
-  std::uint64_t lost = 0;     // records missing in the recording: nothing after the first gap can be verified
-  bool differs = false;       // the fields below say where
-  std::uint64_t tick = 0;     // first tick that differs (State::tick before it)
-  std::string stage;          // first stage whose results differ
-  std::string field;          // first field of that stage
+  std::uint64_t ticks = 0;         // verified identical, from the start on
+  std::uint64_t lost = 0;          // records missing in the recording: nothing after the first gap can be verified
+  bool differs = false;            // the fields below say where
+  std::uint64_t tick = 0;          // first tick that differs (State::tick before it)
+  std::string stage;               // first stage whose results differ
+  std::string field;               // first field of that stage
   std::string recorded, replayed;  // its values as text
-  std::string damage;         // not empty: the recording is damaged or cut there
+  std::string damage;              // not empty: the recording is damaged or cut there
   bool identical() const { return !differs && lost == 0 && damage.empty(); }
 };
 

@@ -1,22 +1,20 @@
 #include "sim_host/run_session.h"
 
 #include <fmt/format.h>
-#include <sys/socket.h>
 #include <unistd.h>
 
-#include <cerrno>
+#include <algorithm>
 #include <chrono>
 #include <csignal>
-#include <cstring>
 #include <memory>
 #include <optional>
 #include <thread>
 
-#include "sim_host/build_id.h"
+#include "hal/device_address.h"
 #include "sim_host/controller_link.h"
+#include "sim_host/device_process.h"
 #include "sim_host/recorder.h"
 #include "sim_host/scene_image.h"
-#include "sim_host/simulated_device.h"
 #include "sim_host/status_line.h"
 
 namespace palpate {
@@ -31,6 +29,9 @@ constexpr milliseconds kHeartbeatPeriod{50};
 // Fresh samples seen before arming, so that the force does not ramp in on the first, perhaps wild, ones.
 constexpr std::uint64_t kTicksBeforeArming = 50;
 
+// The simulated device stands for hardware, which nothing delays; but the controller comes first.
+constexpr int kDevicePriorityBelow = 10;
+
 volatile std::sig_atomic_t stop_signal = 0;
 extern "C" void on_stop_signal(int number) { stop_signal = number; }
 
@@ -39,7 +40,7 @@ class StopSignals {
  public:
   StopSignals() {
     stop_signal = 0;
-    struct sigaction action{};
+    struct sigaction action {};
     action.sa_handler = on_stop_signal;
     sigaction(SIGINT, &action, &old_int_);
     sigaction(SIGTERM, &action, &old_term_);
@@ -52,25 +53,42 @@ class StopSignals {
   StopSignals& operator=(const StopSignals&) = delete;
 
  private:
-  struct sigaction old_int_{}, old_term_{};
+  struct sigaction old_int_ {
+  }, old_term_{};
 };
 
 std::vector<std::string> controller_arguments(const RunOptions& options, const std::string& image,
-                                              const std::string& device) {
-  std::vector<std::string> arguments{"--image", image, "--device", device, "--priority", std::to_string(options.priority)};
+                                              const std::string& device, bool device_inherited) {
+  std::vector<std::string> arguments{"--image", image,        "--device",
+                                     device,    "--priority", std::to_string(options.priority)};
   if (options.cpu >= 0) arguments.insert(arguments.end(), {"--cpu", std::to_string(options.cpu)});
+  if (device_inherited) {
+    arguments.insert(arguments.end(), {"--device-fd", std::to_string(ControllerLink::kDeviceDescriptor)});
+  }
   return arguments;
+}
+
+// True when the run brings its own simulated device: on the loopback, unless the user named a socket of somebody
+// else's. "auto" takes the loopback when there is no CAN interface. Throws when the address cannot be read.
+bool wants_simulated_device(const std::string& device) {
+  std::string line, error;
+  const std::optional<DeviceAddress> address = parse_device_address(device, line, error);
+  if (!address) throw std::runtime_error(error);
+  return address->kind == TransportKind::kLoopback && device.rfind("loopback:", 0) != 0;
 }
 
 // Watches the controller until the time is over, a signal comes or it ends by itself.
 class Watch {
  public:
   Watch(ControllerLink& link, const RunOptions& options)
-      : link_(link), options_(options), reader_(link.telemetry()), show_(!options.quiet && isatty(STDERR_FILENO) != 0) {}
+      : link_(link),
+        options_(options),
+        reader_(link.telemetry()),
+        show_(!options.quiet && isatty(STDERR_FILENO) != 0) {}
 
   void run() {
     const auto end = Clock::now() + std::chrono::duration<double>(options_.duration_s);
-    while (Clock::now() < end && stop_signal == 0 && link_.process().running()) {
+    while (Clock::now() < end && stop_signal == 0 && !faulted_ && link_.process().running()) {
       link_.mailbox().beat();
       look();
       std::this_thread::sleep_for(kHeartbeatPeriod);
@@ -86,6 +104,8 @@ class Watch {
       link_.mailbox().set(Command::kArm, false);
       armed_ = true;
     }
+    // A latched fault leaves only by an operator's reset; there is none to ask here, so the run is over.
+    faulted_ = newest.output.mode == Mode::kFault;
     if (show_) fmt::print(stderr, "\r{}\x1b[K", line_.text(newest));
   }
 
@@ -95,6 +115,7 @@ class Watch {
   StatusLine line_;
   bool show_;
   bool armed_ = false;
+  bool faulted_ = false;
 };
 
 // Ends the controller in order; the heartbeat goes on meanwhile, or a slow stop would look like a dead host.
@@ -113,20 +134,18 @@ int finish(ControllerLink& link) {
 RunResult run_session(const RunOptions& options) {
   const StopSignals signals;
   const SceneImage scene = prepare_scene(options.scene, options.image, options.record);
-  const std::string device = choose_device(options.device);
-  const std::string folder = options.program_folder;
+  const std::string& folder = options.program_folder;
   const auto program = [&](const char* name) { return folder.empty() ? sibling_program(name) : folder + "/" + name; };
 
-  std::optional<SimulatedDevice> simulated;
-  std::string device_address = device;
-  int device_fd = -1;
-  if (device == "loopback") {
-    simulated.emplace(program("palpate-device"), scene, options.path);
-    device_fd = simulated->controller_end();
-    device_address = fmt::format("loopback:{}", ControllerLink::kDeviceDescriptor);
+  std::optional<DeviceProcess> device;
+  if (wants_simulated_device(options.device)) {
+    device.emplace(program("palpate-device"), scene, options.path, options.device,
+                   std::max(0, options.priority - kDevicePriorityBelow));
   }
-  ControllerLink link(program("palpate-rt"), controller_arguments(options, scene.image_path, device_address), device_fd);
-  if (simulated) simulated->close_controller_end();
+  ControllerLink link(program("palpate-rt"),
+                      controller_arguments(options, scene.image_path, options.device, device.has_value()),
+                      device ? device->controller_end() : -1);
+  if (device) device->close_controller_end();
 
   RunResult result;
   const auto summary = std::make_unique<RunSummary>();

@@ -9,15 +9,12 @@
 namespace palpate {
 
 struct SceneImage {
-  std::string image_path;          // absolute
+  std::string image_path;
   std::optional<SceneDesc> scene;  // known only when the user named a .toml
 };
 
-// `scene`: path of a .pal image (used as it is) or of a .toml scene, which is baked to `image`, or beside `record`, or
-// into the current folder as NAME.pal. Throws std::runtime_error.
+// `scene`: path of a .pal image (used as it is) or of a .toml scene, which is baked to `image`; when that is empty, to
+// NAME.pal in the folder of `record` (the current folder when that is empty too). Throws std::runtime_error.
 SceneImage prepare_scene(const std::string& scene, const std::string& image, const std::string& record);
-
-// "auto" becomes can:IFACE when a CAN interface is up, else "loopback"; says which on stdout. Other names are checked.
-std::string choose_device(const std::string& device);
 
 }  // namespace palpate

@@ -18,12 +18,11 @@ std::string StatusLine::text(const TickRecord& newest) {
   last_deadline_ns_ = now_ns;
   worst_wake_ns_ = std::max(worst_wake_ns_, newest.timing.wake_latency_ns);
   const Output& output = newest.output;
-  return fmt::format("{:7.2f} s  {:6.1f} Hz  {:7.3f} N  {} regions  {:7.3f} mm  {:<7}  worst wake-up {:6.1f} us  {}",
-                     1e-9 * static_cast<double>(now_ns - first_deadline_ns_), rate, norm(output.device_w.force_N),
-                     output.regions, 1e3 * output.penetration_m, mode_name(output.mode),
-                     1e-3 * static_cast<double>(worst_wake_ns_),
-                     output.fault != 0 ? bit_names(fault_bit_texts(), output.fault)
-                                       : bit_names(status_bit_texts(), output.status));
+  return fmt::format(
+      "{:7.2f} s  {:6.1f} Hz  {:7.3f} N  {} regions  {:7.3f} mm  {:<7}  worst wake-up {:6.1f} us  {}",
+      1e-9 * static_cast<double>(now_ns - first_deadline_ns_), rate, norm(output.device_w.force_N), output.regions,
+      1e3 * output.penetration_m, mode_name(output.mode), 1e-3 * static_cast<double>(worst_wake_ns_),
+      output.fault != 0 ? bit_names(fault_bit_texts(), output.fault) : bit_names(status_bit_texts(), output.status));
 }
 
 }  // namespace palpate

@@ -29,25 +29,38 @@ std::string bit_names(std::span<const BitText> table, std::uint32_t bits) {
 
 const char* mode_name(Mode mode) {
   switch (mode) {
-    case Mode::kIdle: return "idle";
-    case Mode::kForce: return "force";
-    case Mode::kHold: return "hold";
-    case Mode::kPassive: return "passive";
-    case Mode::kRamp: return "ramp";
-    case Mode::kFault: return "fault";
+    case Mode::kIdle:
+      return "idle";
+    case Mode::kForce:
+      return "force";
+    case Mode::kHold:
+      return "hold";
+    case Mode::kPassive:
+      return "passive";
+    case Mode::kRamp:
+      return "ramp";
+    case Mode::kFault:
+      return "fault";
   }
   return "?";
 }
 
 const char* stage_name(Stage stage) {
   switch (stage) {
-    case Stage::kSense: return "sense";
-    case Stage::kCollide: return "collide";
-    case Stage::kRegions: return "regions";
-    case Stage::kForce: return "force";
-    case Stage::kDeform: return "deform";
-    case Stage::kSafety: return "safety";
-    case Stage::kPublish: return "publish";
+    case Stage::kSense:
+      return "sense";
+    case Stage::kCollide:
+      return "collide";
+    case Stage::kRegions:
+      return "regions";
+    case Stage::kForce:
+      return "force";
+    case Stage::kDeform:
+      return "deform";
+    case Stage::kSafety:
+      return "safety";
+    case Stage::kPublish:
+      return "publish";
   }
   return "?";
 }

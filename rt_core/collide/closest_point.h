@@ -9,15 +9,16 @@
 namespace palpate {
 
 // Hierarchy nodes one query may open. Points within a few centimetres of a surface need 10 to 40 (measured on bodies of
-// 3 thousand to 1 million triangles, 2026-11-21); only points near the medial axis, where much of the surface is equally
-// far, need more. Past the cap the nearest point so far is returned, marked truncated: Status::kTraversalTruncated.
+// 3 thousand to 1 million triangles, 2026-11-21); only points near the medial axis, where much of the surface is
+// equally far, need more. Past the cap the nearest point so far is returned, marked truncated:
+// Status::kTraversalTruncated.
 inline constexpr std::int32_t kMaxQueryNodes = 512;
 // Distance below which p - closest is too short to have a direction: the pseudo-normal is used instead.
 inline constexpr double kDirectionFloor_m = 1e-9;
 
 struct SurfacePoint {
-  Vec3 closest_w;             // on the rest surface
-  Vec3 normal_w;              // unit, outward: along p - closest outside, its opposite inside, pseudo-normal at contact
+  Vec3 closest_w;  // on the rest surface
+  Vec3 normal_w;   // unit, outward: along p - closest outside, its opposite inside, pseudo-normal at contact
   double signed_distance_m = 0;  // < 0 inside the body
   double lower_bound_m = 0;      // no surface point is nearer to p than this
   std::int32_t triangle = -1;    // the lowest index among equally near triangles

@@ -1,5 +1,6 @@
 // Stage collide: which tool points touch the rest surface, where and how deeply. Reads the tool's poses; writes
-// state.point (but region), scratch.contact. Bound: n_tool_point queries. Status: kContactsDropped, kTraversalTruncated.
+// state.point (but region), scratch.contact. Bound: n_tool_point queries. Status: kContactsDropped,
+// kTraversalTruncated.
 #include "rt_core/collide/closest_point.h"
 #include "rt_core/deform/surface.h"
 #include "rt_core/stages.h"
@@ -112,9 +113,9 @@ class Collider {
       state_.high_water.traversal_stack = surface.stack_high_water;
     }
     if (!surface.found) return forget(point);
-    const Real signed_distance =
-        surface.truncated ? side_checked(surface.signed_distance_m, point, tool_point.margin_m, moved)
-                          : surface.signed_distance_m;
+    const Real signed_distance = surface.truncated
+                                     ? side_checked(surface.signed_distance_m, point, tool_point.margin_m, moved)
+                                     : surface.signed_distance_m;
     if (surface.truncated) scratch_.status |= Status::kTraversalTruncated;
     const bool flipped = (signed_distance < 0) != (surface.signed_distance_m < 0);
     point.closest_w = surface.closest_w;

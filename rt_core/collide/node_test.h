@@ -17,12 +17,6 @@ inline Float4 load4(const float (&lane)[4]) PALPATE_RT {
 inline Float4 splat4(float x) PALPATE_RT { return Float4{x, x, x, x}; }
 inline Float4 max4(Float4 a, Float4 b) PALPATE_RT { return a > b ? a : b; }
 inline Float4 abs4(Float4 a) PALPATE_RT { return max4(a, -a); }
-inline Float4 sqrt4(Float4 a) PALPATE_RT {
-  Float4 root;
-  for (int k = 0; k < 4; ++k) root[k] = __builtin_sqrtf(a[k]);  // bound: 4; a >= 0
-  return root;
-}
-
 // Bit k set where lane k of the mask is true.
 inline unsigned lanes(Mask4 mask) PALPATE_RT {
 #ifdef __SSE__
@@ -73,26 +67,23 @@ inline Float4 box_distance2(const BvhNode& node, const NodeQuery& q) PALPATE_RT 
 
 // Lanes whose normal cone proves that they hold no local minimum of the distance (Johnson & Cohen 2001). At a nearest
 // point x the direction p - x is a positive combination of the normals around x, or of their opposites, so it lies in
-// the double cone of any child that holds x. With m the box centre and r its half diagonal, every x in the box has
+// the double cone of any child that holds x. With m the box centre and r the child's radius about it, every x in the
+// child has
 //   |(p - x) x axis| >= |(p - m) x axis| - r   and   |(p - x) . axis| <= |(p - m) . axis| + r,
 // so the child can go when the first exceeds tan(half-angle) times the second. Cost no longer grows as the mesh is
 // refined: boxes alone admit a number of triangles proportional to distance / edge length.
 // A zero axis makes the left side 0: never skipped.
 inline Mask4 cone_excludes(const BvhNode& node, const NodeQuery& q) PALPATE_RT {
   Float4 v[3], a[3];
-  Float4 radius2{};
   for (int axis = 0; axis < 3; ++axis) {  // bound: 3
-    const Float4 lower = load4(node.lower_m[axis]), upper = load4(node.upper_m[axis]);
-    const Float4 half = 0.5f * (upper - lower);
-    v[axis] = q.above[axis] - 0.5f * (upper + lower);
+    v[axis] = q.above[axis] - 0.5f * (load4(node.upper_m[axis]) + load4(node.lower_m[axis]));
     a[axis] = load4(node.cone_axis[axis]);
-    radius2 += half * half;
   }
   const Float4 cx = v[1] * a[2] - v[2] * a[1];
   const Float4 cy = v[2] * a[0] - v[0] * a[2];
   const Float4 cz = v[0] * a[1] - v[1] * a[0];
   const Float4 along = abs4(v[0] * a[0] + v[1] * a[1] + v[2] * a[2]);
-  const Float4 radius = 1.001f * sqrt4(radius2) + q.rounding;
+  const Float4 radius = load4(node.cone_radius_m) + q.rounding;
   const Float4 reach = radius + load4(node.cone_tangent) * (along + radius);
   return cx * cx + cy * cy + cz * cz > reach * reach;
 }

@@ -23,8 +23,8 @@ struct Simplex {
   bool holds(Vec3 difference) const PALPATE_RT;
 };
 
-// Drops the points that do not carry the nearest point to the origin and sets the weights of the rest. Returns true when
-// the origin lies inside a tetrahedron (all four points kept).
+// Drops the points that do not carry the nearest point to the origin and sets the weights of the rest. Returns true
+// when the origin lies inside a tetrahedron (all four points kept).
 bool reduce(Simplex& simplex) PALPATE_RT;
 
 }  // namespace palpate

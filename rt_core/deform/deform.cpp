@@ -13,9 +13,8 @@ std::int32_t anchor_count(const Model& model) PALPATE_RT {
 
 void clear_anchors(State& state, std::int32_t anchors) PALPATE_RT {
   for (std::int32_t a = 0; a < anchors; ++a) state.anchor[a] = {};
-  for (auto& displacement_w : state.anchor_by_region) {
-    for (std::int32_t a = 0; a < anchors; ++a) displacement_w[a] = {};
-  }
+  // All-zero bytes are +0.0: whole rows at once instead of one component at a time.
+  for (auto& row : state.anchor_by_region) __builtin_memset(&row, 0, static_cast<std::size_t>(anchors) * sizeof(Vec3));
 }
 
 // Adds one region's skeleton to the anchors.

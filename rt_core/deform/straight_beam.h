@@ -1,4 +1,5 @@
 // One straight beam of the skeleton: clamped at an anchor, loaded at the contact point (Luo & Xiao 2006, section V).
+// Inline where called once per anchor and tick: a third of the stage's instructions were argument passing (2026-11-21).
 #pragma once
 
 #include "rt_core/vec.h"
@@ -50,18 +51,45 @@ StraightBeam make_straight_beam(const BeamMaterial& material, const BeamSection&
                                 Vec3 fallback_axis, BeamTheory theory, Real min_length_m) PALPATE_RT;
 
 // K_i d = k_b d + (k_a - k_b) (x.d) x: force on the tip for tip displacement d.
-Vec3 beam_force(const StraightBeam& beam, Vec3 tip_displacement) PALPATE_RT;
+inline Vec3 beam_force(const StraightBeam& beam, Vec3 tip_displacement) PALPATE_RT {
+  const Real along = (beam.axial_N_per_m - beam.bending_N_per_m) * dot(beam.axis, tip_displacement);
+  return beam.bending_N_per_m * tip_displacement + along * beam.axis;
+}
 // K_i^-1 f; zero for a beam without stiffness.
-Vec3 beam_tip_displacement(const StraightBeam& beam, Vec3 tip_force) PALPATE_RT;
-
-// Stresses at the clamped end under tip force `tip_force` (the force on the beam).
-BeamStress anchor_stress(const StraightBeam& beam, const BeamSection& section, Real poisson_ratio,
-                         Vec3 tip_force) PALPATE_RT;
+inline Vec3 beam_tip_displacement(const StraightBeam& beam, Vec3 tip_force) PALPATE_RT {
+  if (!(beam.axial_N_per_m > 0 && beam.bending_N_per_m > 0)) return {};
+  const Vec3 along = dot(beam.axis, tip_force) * beam.axis;
+  return (1.0 / beam.axial_N_per_m) * along + (1.0 / beam.bending_N_per_m) * (tip_force - along);
+}
 
 // Saint-Venant's flexure of a circular section (Luo & Xiao 2006, section V, with the bending function of the circle,
 // phi = (3+2nu) r^2 y/4 + (1+2nu)(y^3 - 3 y z^2)/12): free of traction on the rim, resultant = transverse_force_N.
-SectionShear section_shear(const BeamSection& section, Real poisson_ratio, Real transverse_force_N, Real y_m,
-                           Real z_m) PALPATE_RT;
+inline SectionShear section_shear(const BeamSection& section, Real poisson_ratio, Real transverse_force_N, Real y_m,
+                                  Real z_m) PALPATE_RT {
+  const Real nu = poisson_ratio;
+  const Real denominator = 2.0 * (1.0 + nu) * section.inertia_m4;
+  if (!(denominator > 0)) return {};
+  const Real scale = transverse_force_N / denominator;
+  const Real r2 = section.radius_m * section.radius_m;
+  const Real y2 = y_m * y_m;
+  const Real z2 = z_m * z_m;
+  const Real phi_y = (3.0 + 2.0 * nu) * r2 / 4.0 + (1.0 + 2.0 * nu) * (y2 - z2) / 4.0;
+  const Real phi_z = -(1.0 + 2.0 * nu) * y_m * z_m / 2.0;
+  return {scale * (phi_y + nu * z2 - (1.0 + nu) * y2), scale * phi_z};
+}
+
+// Stresses at the clamped end under tip force `tip_force` (the force on the beam).
+inline BeamStress anchor_stress(const StraightBeam& beam, const BeamSection& section, Real poisson_ratio,
+                                Vec3 tip_force) PALPATE_RT {
+  BeamStress stress;
+  if (!(section.area_m2 > 0 && section.inertia_m4 > 0)) return stress;
+  const Real axial_N = dot(beam.axis, tip_force);
+  const Real transverse_N = norm(tip_force - axial_N * beam.axis);
+  stress.axial_Pa = axial_N / section.area_m2;
+  stress.bending_Pa = transverse_N * beam.length_m * section.radius_m / section.inertia_m4;
+  stress.shear_Pa = section_shear(section, poisson_ratio, transverse_N, 0, 0).xy_Pa;
+  return stress;
+}
 
 // Displacement of the anchor when its clamp is released over `release_length_m` (s): that of the beam's point at x = s,
 // g d + (lambda - g)(x.d) x with lambda = min(1, s/l), g = (3 lambda^2 - lambda^3)/2, the Euler-Bernoulli deflection
@@ -69,6 +97,11 @@ SectionShear section_shear(const BeamSection& section, Real poisson_ratio, Real 
 // displacement from the strain" needs this length; s = pi r (1 - nu^2)/2 makes the axial part that of a rigid circular
 // foot on a half space. Same formula with d = the dent instead of the skeleton's own tip displacement: the kinematic
 // variant, in which E cancels. s <= 0: the anchor keeps still.
-Vec3 released_displacement(const StraightBeam& beam, Vec3 tip_displacement, Real release_length_m) PALPATE_RT;
+inline Vec3 released_displacement(const StraightBeam& beam, Vec3 tip_displacement, Real release_length_m) PALPATE_RT {
+  if (!(release_length_m > 0)) return {};
+  const Real lambda = release_length_m < beam.length_m ? release_length_m / beam.length_m : 1.0;
+  const Real g = lambda * lambda * (3.0 - lambda) / 2.0;
+  return g * tip_displacement + ((lambda - g) * dot(beam.axis, tip_displacement)) * beam.axis;
+}
 
 }  // namespace palpate

@@ -1,6 +1,7 @@
 #include "rt_core/deform/surface.h"
 
 #include "rt_core/deform/displacement_angle.h"
+#include "rt_core/deform/temporal_order.h"
 
 namespace palpate {
 namespace {
@@ -101,7 +102,7 @@ void prepare_shape(const Model& model, const State& state, ShapeField& field) PA
   for (Vec3& c : field.coefficient_w) c = {};
   for (std::int32_t slot = 0; slot < kMaxRegions; ++slot) {
     const Region& region = state.region[slot];
-    if (region.id != 0 && region.lost_ticks == 0) prepare_region(model, state, slot, field);
+    if (is_in_contact(region) && is_finite(region.centre_w)) prepare_region(model, state, slot, field);
   }
 }
 

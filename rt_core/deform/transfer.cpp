@@ -16,7 +16,7 @@ bool in_contact(const State& state, std::int32_t slot) PALPATE_RT {
 Vec3 transferred_force_w(const Model& model, const State& state, std::int32_t from_slot,
                          std::int32_t to_slot) PALPATE_RT {
   if (from_slot == to_slot || !in_contact(state, from_slot) || !in_contact(state, to_slot)) return {};
-  if (!rbf_available(model)) return {};
+  if (!rbf_available(model) || !is_finite(state.region[to_slot].centre_w)) return {};
   const Region& from = state.region[from_slot];
   Vec3 offset[kMaxAnchors];
   const std::span<const Vec3> offsets = earlier_displacements(model, state, from_slot, offset);

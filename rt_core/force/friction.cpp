@@ -133,9 +133,8 @@ FrictionForce friction_step(const FrictionParameters& parameters, const Friction
 
   const bool paper = parameters.law == FrictionLaw::kPaper;
   const Real normal = load.force_N + load.depth_rate * normal_gain_N(spring, length);
-  const Real limit_static = static_limit_N(parameters, normal);
-  const Real limit_sliding = sliding_limit_N(parameters, normal);
-  const Real limit = memory.mode == FrictionMode::kSlip && !paper ? limit_sliding : limit_static;
+  const bool sliding_on = memory.mode == FrictionMode::kSlip && !paper;
+  const Real limit = sliding_on ? sliding_limit_N(parameters, normal) : static_limit_N(parameters, normal);
   const Real force = spring_force_N(spring, length);
   if (force <= limit * kLimitSlack) {
     memory.mode = FrictionMode::kStick;
@@ -143,18 +142,21 @@ FrictionForce friction_step(const FrictionParameters& parameters, const Friction
     return spring_response(spring, load.depth_rate, direction, length);
   }
   memory.mode = FrictionMode::kSlip;
+  // The radial law's normal force falls as the stretch is cut; where sliding is plain mu F the cut ends at mu depth.
+  const Real cut = spring.depth_m > 0 ? min_of(length, parameters.mu_dynamic * spring.depth_m) : length;
+  const Real sliding = sliding_limit_N(parameters, load.force_N + load.depth_rate * normal_gain_N(spring, cut));
   Vec3 slip_direction = direction;
   if (paper) {
     memory.stretch_w = start;
     slip_direction = unit_or(start, direction);
   } else {
-    memory.stretch_w = spring_stretch_m(spring, limit_sliding) * direction;
+    memory.stretch_w = spring_stretch_m(spring, sliding) * direction;
   }
   const Real kept = norm(memory.stretch_w);
   FrictionForce result = spring_response(spring, load.depth_rate, slip_direction, kept);
-  result.force_w = -limit_sliding * slip_direction;
+  result.force_w = -sliding * slip_direction;
   result.along_N_per_m = 0.0;
-  result.across_N_per_m = min_of(result.across_N_per_m, limit_sliding / max_of(kept, kNoStretch_m));
+  result.across_N_per_m = min_of(result.across_N_per_m, sliding / max_of(kept, kNoStretch_m));
   return result;
 }
 

@@ -99,8 +99,8 @@ std::int32_t remembered(const Scratch& scratch, const Clusters& clusters, std::i
   return found;
 }
 
-// Pass 3: an empty slot, else that of the region lost longest (ties: the youngest). There is always one, because at most
-// kMaxRegions clusters take part.
+// Pass 3: an empty slot, else that of the region lost longest (ties: the youngest). There is always one, because at
+// most kMaxRegions clusters take part.
 std::int32_t vacate(const State& state, const Assignment& work) PALPATE_RT {
   std::int32_t slot = kNone;
   for (std::int32_t s = 0; s < kMaxRegions; ++s) {  // bound: kMaxRegions

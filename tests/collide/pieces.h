@@ -33,7 +33,7 @@ inline double distance_to_core(const ToolPiece& piece, Vec3 p) {
       return std::hypot(std::max(r - h[0], 0.0), over_z);
     case PieceShape::kBox:
       return norm({std::max(std::abs(p.x) - h[0], 0.0), std::max(std::abs(p.y) - h[1], 0.0), over_z});
-    case PieceShape::kCone: {  // in the half plane (r, z): inside, below the base, or off the slant
+    case PieceShape::kCone: {                  // in the half plane (r, z): inside, below the base, or off the slant
       const double ex = -h[0], ez = 2 * h[2];  // base rim to tip
       const double qx = r - h[0], qz = p.z + h[2];
       if (p.z >= -h[2] && ex * qz - ez * qx >= 0) return 0;
@@ -63,9 +63,7 @@ inline double distance_oracle(const ToolPiece& piece, const Pose& piece_pose, co
   Vec3 t[3];
   for (int k = 0; k < 3; ++k) t[k] = inverse_transform(piece_pose, triangle[k]);
   return minimum([&](double u) {
-    return minimum([&](double v) {
-      return distance_to_core(piece, (1 - u) * t[0] + u * ((1 - v) * t[1] + v * t[2]));
-    });
+    return minimum([&](double v) { return distance_to_core(piece, (1 - u) * t[0] + u * ((1 - v) * t[1] + v * t[2])); });
   });
 }
 

@@ -116,7 +116,7 @@ TEST_P(ClosestPoint, SignIsRightAroundEveryVertex) {
       const Vec3 p = body.model.vertex_m[v] + 2e-4 * random_unit(rng);
       const SurfacePoint s = closest_surface_point(body.model, p, 1e12, -1);
       if (abs_of(s.signed_distance_m) < 1e-8) continue;
-      ASSERT_EQ(s.signed_distance_m < 0, winding_number(body.model, p) > 0.5) << "vertex " << v;
+      ASSERT_EQ(s.signed_distance_m<0, winding_number(body.model, p)> 0.5) << "vertex " << v;
     }
   }
 }
@@ -178,8 +178,8 @@ TEST(ClosestPointLimits, WarmWorkDoesNotGrowWithTheMesh) {
     double sum = 0;
     for (int i = 0; i < 400; ++i) {
       const Vec3 u = random_unit(rng);
-      const Vec3 p = Vec3{0.05 * u.x, 0.035 * u.y, 0.03 * u.z} +
-                     5e-3 * unit_or({u.x / 0.05, u.y / 0.035, u.z / 0.03}, {});
+      const Vec3 p =
+          Vec3{0.05 * u.x, 0.035 * u.y, 0.03 * u.z} + 5e-3 * unit_or({u.x / 0.05, u.y / 0.035, u.z / 0.03}, {});
       const int warm = closest_surface_point(body.model, p, 1e12, -1).triangle;
       sum += closest_surface_point(body.model, p + 3e-5 * random_unit(rng), 1e12, warm).nodes;
     }

@@ -1,8 +1,8 @@
 // Stage collide on whole tools: contacts against brute force, skipping, overflow, bad poses.
 #include <gtest/gtest.h>
 
-#include <limits>
 #include <cstring>
+#include <limits>
 #include <memory>
 
 #include "rt_core/collide/closest_point.h"

@@ -16,7 +16,7 @@ TEST(Support, IsTheFarthestPointOfTheCore) {
     for (int i = 0; i < 200; ++i) {
       const Vec3 d = random_unit(rng);
       const Vec3 s = core_support(piece, {}, 1e3 * d);
-      EXPECT_LT(distance_to_core(piece, s), 1e-15);  // on the core
+      EXPECT_LT(distance_to_core(piece, s), 1e-15);                        // on the core
       EXPECT_NEAR(norm(s - core_support(piece, {}, 1e-6 * d)), 0, 1e-15);  // length of the direction does not matter
       for (int j = 0; j < 50; ++j) {
         Vec3 p = random_vec(rng, 0.012);
@@ -102,7 +102,8 @@ TEST(ConvexDistance, DegenerateAndBadInput) {
     const Vec3 p{0.03, 0.01, 0.02};
     const Vec3 point[3] = {p, p, p}, segment[3] = {p, p, {0.04, 0, 0}};
     EXPECT_NEAR(distance_piece_triangle(model, piece, {}, point).distance_m, distance_to_core(piece, p), 1e-12);
-    EXPECT_NEAR(distance_piece_triangle(model, piece, {}, segment).distance_m, distance_oracle(piece, {}, segment), 1e-9);
+    EXPECT_NEAR(distance_piece_triangle(model, piece, {}, segment).distance_m, distance_oracle(piece, {}, segment),
+                1e-9);
     const Vec3 bad[3] = {p, {nan, 0, 0}, p};
     EXPECT_EQ(distance_piece_triangle(model, piece, {}, bad).distance_m, kHuge);
     EXPECT_FALSE(distance_piece_triangle(model, piece, {{nan, 0, 0}, {}}, point).overlap);

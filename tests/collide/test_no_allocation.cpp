@@ -65,8 +65,7 @@ TEST(NoAllocation, StagesWithOverflowAndLoss) {
   body.piece = {all_pieces()[4]};
   body.piece[0].bounding_radius_m = 1;
   body.piece[0].point_count = 100;
-  for (int i = 0; i < 100; ++i)
-    body.tool_point.push_back({{1e-3 * (i % 10), 1e-3 * (i / 10), 0}, 5e-3, 1e-6, 1, 0, 0});
+  for (int i = 0; i < 100; ++i) body.tool_point.push_back({{1e-3 * (i % 10), 1e-3 * (i / 10), 0}, 5e-3, 1e-6, 1, 0, 0});
   body.bind();
   body.model.params.cluster_distance_m = 2e-4;  // every contact its own region
   const auto state = std::make_unique<State>();

@@ -43,7 +43,9 @@ TEST(Overlap, DegeneratePairsStayWithinTheBudget) {
   // Flat and lattice shapes, where libccd's other routines were seen to loop for ever, and pairs far from the origin.
   std::mt19937_64 rng(5);
   std::uniform_int_distribution<int> lattice(-1, 1);
-  const auto corner = [&](double s) { return s * Vec3{double(lattice(rng)), double(lattice(rng)), double(lattice(rng))}; };
+  const auto corner = [&](double s) {
+    return s * Vec3{double(lattice(rng)), double(lattice(rng)), double(lattice(rng))};
+  };
   std::vector<Vec3> vertex(4);
   Model model;
   model.hull_vertex_m = vertex;

@@ -94,7 +94,8 @@ std::vector<Touch> random_touches(std::mt19937_64& rng, int count, double half) 
   std::shuffle(points.begin(), points.end(), rng);
   std::uniform_real_distribution<double> depth(1e-4, 4e-3);
   std::vector<Touch> touches;
-  for (int i = 0; i < count; ++i) touches.push_back({points[static_cast<std::size_t>(i)], random_vec(rng, half), depth(rng)});
+  for (int i = 0; i < count; ++i)
+    touches.push_back({points[static_cast<std::size_t>(i)], random_vec(rng, half), depth(rng)});
   return touches;
 }
 

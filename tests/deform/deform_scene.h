@@ -39,9 +39,10 @@ inline Row solve_dense(Dense a, Row b) {
   return b;
 }
 
+inline long double wide(double x) { return static_cast<long double>(x); }
+
 inline long double distance(Vec3 a, Vec3 b) {
-  const long double x = static_cast<long double>(a.x) - b.x, y = static_cast<long double>(a.y) - b.y,
-                    z = static_cast<long double>(a.z) - b.z;
+  const long double x = wide(a.x) - wide(b.x), y = wide(a.y) - wide(b.y), z = wide(a.z) - wide(b.z);
   return std::sqrt(x * x + y * y + z * z);
 }
 
@@ -112,8 +113,7 @@ inline void make_ellipsoid(Scene& scene, double radius_m = 6e-3) {
   scene.model.params.neighbourhood_law = static_cast<std::int32_t>(NeighbourhoodLaw::kLogC1);
   scene.model.params.neighbourhood_radius_m = 10e-3;
   scene.model.params.surface_size_m = 80e-3;
-  const Vec3 ends[6] = {{40e-3, 0, 0},  {-40e-3, 0, 0}, {0, 30e-3, 0},
-                        {0, -30e-3, 0}, {0, 0, 25e-3},  {0, 0, -25e-3}};
+  const Vec3 ends[6] = {{40e-3, 0, 0}, {-40e-3, 0, 0}, {0, 30e-3, 0}, {0, -30e-3, 0}, {0, 0, 25e-3}, {0, 0, -25e-3}};
   scene.anchors.clear();
   for (const Vec3& p : ends) scene.anchors.push_back(make_anchor(p, radius_m, 0.47, p.z < 0));
   scene.bind();

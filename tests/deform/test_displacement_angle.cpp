@@ -29,8 +29,9 @@ TEST(DisplacementAngle, AgreesWithDefinition) {
       corner[i] = {deform_test::random_vector(random, 1e-3), unit_or(deform_test::random_vector(random, 1), {1, 0, 0}),
                    w[i]};
       const long double length = deform_test::distance(corner[i].displacement, {});
-      m += w[i] * length;
-      theta += w[i] * std::acos(static_cast<long double>(dot(corner[i].displacement, corner[i].normal)) / length);
+      m += deform_test::wide(w[i]) * length;
+      const double cosine_m = dot(corner[i].displacement, corner[i].normal);
+      theta += deform_test::wide(w[i]) * std::acos(deform_test::wide(cosine_m) / length);
       linear += w[i] * corner[i].displacement;
     }
     const Vec3 n = unit_or(deform_test::random_vector(random, 1), {0, 0, 1});

@@ -31,7 +31,7 @@ TEST(Neighbourhood, WorkedBlendsAtFiveMillimetres) {
 
 // The formulas in long double through the C library.
 TEST(Neighbourhood, AgreesWithDefinitions) {
-  const long double a = kA, big = kR;
+  const long double a = deform_test::wide(kA), big = deform_test::wide(kR);
   for (int i = 1; i < 100; ++i) {
     const long double r = a + (big - a) * i / 100;
     const auto c1 = [&](long double x) { return std::log(big / x) - 0.5L * (1 - x * x / big / big); };

@@ -11,6 +11,7 @@ namespace {
 using deform_test::Dense;
 using deform_test::Row;
 using deform_test::Scene;
+using deform_test::wide;
 
 // d(x) with nodes `node` (displacements `value`) by dense elimination of the interpolation system in long double: the
 // oracle for the baked inverse and for the moving contact point, which is simply one more node here.
@@ -19,15 +20,15 @@ Vec3 dense_interpolation(const std::vector<Vec3>& node, const std::vector<Vec3>&
   Dense m(size, Row(size, 0));
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = 0; j < n; ++j) m[i][j] = deform_test::distance(node[i], node[j]);
-    const long double p[4] = {1, node[i].x, node[i].y, node[i].z};
+    const long double p[4] = {1, wide(node[i].x), wide(node[i].y), wide(node[i].z)};
     for (std::size_t k = 0; k < size - n; ++k) m[i][n + k] = m[n + k][i] = p[k];
   }
-  const long double p[4] = {1, x.x, x.y, x.z};
+  const long double p[4] = {1, wide(x.x), wide(x.y), wide(x.z)};
   Vec3 result;
   double* out[3] = {&result.x, &result.y, &result.z};
   for (int axis = 0; axis < 3; ++axis) {
     Row b(size, 0);
-    for (std::size_t i = 0; i < n; ++i) b[i] = deform_test::component(value[i], axis);
+    for (std::size_t i = 0; i < n; ++i) b[i] = wide(deform_test::component(value[i], axis));
     const Row c = deform_test::solve_dense(m, b);
     long double sum = 0;
     for (std::size_t i = 0; i < n; ++i) sum += c[i] * deform_test::distance(x, node[i]);
@@ -181,7 +182,8 @@ TEST_P(Rbf, InvariantUnderRigidMotion) {
     for (Anchor& a : moved.anchors) a.position_m = transform(pose, a.position_m);
     ASSERT_TRUE(moved.bind());
     const Weights weights(moved.model, transform(pose, x));
-    // 1e-11: coordinates 1 m from the origin are rounded at 1e-16 m of bodies of 0.04 m; the linear tail squares that ratio.
+    // 1e-11: coordinates 1 m from the origin are rounded at 1e-16 m of bodies of 0.04 m; the linear tail squares that
+    // ratio.
     for (std::size_t i = 0; i < anchors(); ++i) EXPECT_NEAR(weights.w[i], rest.w[i], 1e-11);
   }
 }

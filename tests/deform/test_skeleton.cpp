@@ -10,6 +10,7 @@ namespace palpate {
 namespace {
 
 using deform_test::make_anchor;
+using deform_test::wide;
 
 // The worked example: five anchors, p = (0,0,20) mm, F = (1,0,-10) N, sections of radius 6 mm.
 struct Example {
@@ -64,8 +65,8 @@ TEST(Skeleton, WorkedExampleEulerBernoulli) {
   expect_near(s.force_w[4], {0.011258, 0, -4.780796}, 6e-7);
   EXPECT_NEAR(0.5 * dot(example.force, s.displacement_w), 2.857428252e-3, 6e-13);
 
-  const BeamStress stress = anchor_stress(s.beam[0], {example.anchors[0].section_area_m2,
-      example.anchors[0].section_inertia_m4, 6e-3}, 0.47, s.force_w[0]);
+  const BeamStress stress = anchor_stress(
+      s.beam[0], {example.anchors[0].section_area_m2, example.anchors[0].section_inertia_m4, 6e-3}, 0.47, s.force_w[0]);
   const double axial_N = dot(s.beam[0].axis, s.force_w[0]);
   EXPECT_NEAR(axial_N, -2.446053, 6e-7);
   EXPECT_NEAR(norm(s.force_w[0] - axial_N * s.beam[0].axis), 0.048030, 6e-7);
@@ -109,21 +110,21 @@ TEST(Skeleton, StiffnessLawAgreesWithDenseSolve) {
 
     deform_test::Dense k(3, deform_test::Row(3, 0));
     for (const Anchor& a : anchors) {
-      const long double l = deform_test::distance(a.position_m, contact), r = a.section_radius_m;
-      const long double le = std::sqrt(l * l + 4 * r * r), e = 3e6L, nu = 0.47;
+      const long double l = deform_test::distance(a.position_m, contact), r = wide(a.section_radius_m);
+      const long double le = std::sqrt(l * l + 4 * r * r), e = 3e6L, nu = wide(0.47);
       const long double g = e / (2 * (1 + nu)), kappa = 6 * (1 + nu) / (7 + 6 * nu);
-      const long double ka = e * a.section_area_m2 / le;
-      const long double kb =
-          1 / (le * le * le / (3 * e * a.section_inertia_m4) + le / (kappa * g * a.section_area_m2));
+      const long double area = wide(a.section_area_m2), inertia = wide(a.section_inertia_m4);
+      const long double ka = e * area / le;
+      const long double kb = 1 / (le * le * le / (3 * e * inertia) + le / (kappa * g * area));
       for (int i = 0; i < 3; ++i) {
         for (int j = 0; j < 3; ++j) {
           const Vec3 span = contact - a.position_m;
-          const long double xx = deform_test::component(span, i) / l * deform_test::component(span, j) / l;
+          const long double xx = wide(deform_test::component(span, i)) / l * wide(deform_test::component(span, j)) / l;
           k[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] += (i == j ? kb : 0) + (ka - kb) * xx;
         }
       }
     }
-    const deform_test::Row d = deform_test::solve_dense(k, {force.x, force.y, force.z});
+    const deform_test::Row d = deform_test::solve_dense(k, {wide(force.x), wide(force.y), wide(force.z)});
     const Vec3 oracle{static_cast<double>(d[0]), static_cast<double>(d[1]), static_cast<double>(d[2])};
     EXPECT_LT(norm(s.displacement_w - oracle), 1e-12 * norm(oracle));
   }
@@ -185,7 +186,8 @@ TEST(Skeleton, PaperRatiosTakeTheLeastNormWhereSingular) {
   EXPECT_NEAR(s.beta_Pa / (10 * b / (a * a + b * b)), 1, 1e-12);
 }
 
-// In space the three equations overdetermine the two scales: least squares means the residual is normal to both columns.
+// In space the three equations overdetermine the two scales: least squares means the residual is normal to both
+// columns.
 TEST(Skeleton, PaperRatiosAreLeastSquaresInSpace) {
   std::mt19937_64 random(5);
   int unbalanced = 0;
@@ -211,8 +213,8 @@ TEST(Skeleton, PaperRatiosAreLeastSquaresInSpace) {
   EXPECT_GT(unbalanced, 10);  // the paper's law does lose force; the stiffness law never does
 }
 
-// alpha = E, beta = 3E would be the stiffness law: for one beam, whose force lies in the columns' plane, both agree only
-// if the displacement is along the force; the ratios put it there by assumption.
+// alpha = E, beta = 3E would be the stiffness law: for one beam, whose force lies in the columns' plane, both agree
+// only if the displacement is along the force; the ratios put it there by assumption.
 TEST(Skeleton, PaperRatiosBalanceASingleBeam) {
   Example example;
   example.anchors.resize(1);

@@ -165,13 +165,14 @@ TEST(Codec, PosesSurviveWithinHalfACount) {
     set_pose(position, orientation, p, q);
     get_pose(position, orientation, p_back, q_back);
     EXPECT_NEAR(p_back.y, p.y, 0.5001e-5);
-    EXPECT_LT(norm(small_rotation_vector(q_back * conjugate(q))), 1.6e-3);  // half counts of 3.46e-4 and the completed one
+    EXPECT_LT(norm(small_rotation_vector(q_back * conjugate(q))),
+              1.6e-3);  // half counts of 3.46e-4 and the completed one
   }
 }
 
 TEST(Codec, WrenchesSurviveSaturateAndNeverCarryNan) {
   Command command;
-  set_wrench(command, {1.2345, -100, std::nan("")}, {0.01234, 1e300, -INFINITY});
+  set_wrench(command, {1.2345, -100, std::nan("")}, {0.01234, 1e300, -HUGE_VAL});
   EXPECT_EQ(command.force[0], 1235);
   EXPECT_EQ(command.force[1], -32767);
   EXPECT_EQ(command.force[2], 0);
@@ -196,24 +197,24 @@ TEST(Dbc, DocumentEqualsTheTable) {
 }
 
 // Encodes each signal alone with all its bits set and compares the bits of the frame with the table's.
-#define PALPATE_ALONE(member, signal_name, start, bits, is_signed, factor, unit, meaning)       \
-  {                                                                                             \
-    auto m = empty;                                                                             \
-    m.member = is_signed ? static_cast<decltype(m.member)>(-1)                                  \
-                         : static_cast<decltype(m.member)>((std::uint64_t{1} << bits) - 1);     \
-    const Bytes with = to_bytes(m);                                                             \
-    for (int bit = 0; bit < last_bit; ++bit) {                                                  \
-      const bool set = ((with[static_cast<std::size_t>(bit) / 8] >> (bit % 8)) & 1) != 0;       \
-      EXPECT_EQ(set, bit >= start && bit < start + bits) << #signal_name << " bit " << bit;     \
-    }                                                                                           \
+#define PALPATE_ALONE(member, signal_name, start, bits, is_signed, factor, unit, meaning)                          \
+  {                                                                                                                \
+    auto m = empty;                                                                                                \
+    m.member = is_signed ? static_cast<std::remove_cvref_t<decltype((m.member))>>(-1)                              \
+                         : static_cast<std::remove_cvref_t<decltype((m.member))>>((std::uint64_t{1} << bits) - 1); \
+    const Bytes with = to_bytes(m);                                                                                \
+    for (int bit = 0; bit < last_bit; ++bit) {                                                                     \
+      const bool set = ((with[static_cast<std::size_t>(bit) / 8] >> (bit % 8)) & 1) != 0;                          \
+      EXPECT_EQ(set, bit >= start && bit < start + bits) << #signal_name << " bit " << bit;                        \
+    }                                                                                                              \
   }
-#define PALPATE_TEST_MESSAGE(message, id, bytes, fd, sender, meaning)                      \
-  TEST(Dbc, Bits##message) {                                                               \
-    const auto to_bytes = [](const message& m) { return encoded<message, bytes>(m); };     \
-    message empty;                                                                         \
-    clear_version(empty);                                                                  \
-    const int last_bit = 8 * (bytes - (fd ? 2 : 1));                                       \
-    PALPATE_WIRE_##message(PALPATE_ALONE)                                                  \
+#define PALPATE_TEST_MESSAGE(message, id, bytes, fd, sender, meaning)                  \
+  TEST(Dbc, Bits##message) {                                                           \
+    const auto to_bytes = [](const message& m) { return encoded<message, bytes>(m); }; \
+    message empty;                                                                     \
+    clear_version(empty);                                                              \
+    const int last_bit = 8 * (bytes - (fd ? 2 : 1));                                   \
+    PALPATE_WIRE_##message(PALPATE_ALONE)                                              \
   }
 template <typename M>
 void clear_version(M&) {}

@@ -68,7 +68,8 @@ TEST(Replay, SameInputsGiveTheSameBits) {
   run.record([&](TickRecord& record) { force = std::max(force, norm(record.output.device_w.force_N)); });
   EXPECT_GT(force, 0.01) << "the run must touch the body, or it proves little";
   const ReplayResult result = run.replay_it();
-  EXPECT_TRUE(result.identical()) << result.stage << " " << result.field << " " << result.recorded << " " << result.replayed;
+  EXPECT_TRUE(result.identical()) << result.stage << " " << result.field << " " << result.recorded << " "
+                                  << result.replayed;
   EXPECT_EQ(result.ticks, kTicks);
 }
 
@@ -104,7 +105,8 @@ TEST(Replay, AlteredResultsNameStageAndField) {
     EXPECT_EQ(result.tick, 150u);
     return result.stage + ":" + result.field;
   };
-  EXPECT_EQ(first_difference_of([](TickRecord& r) { r.output.contact_w.force_N.x += 1e-12; }), "force:output.contact_w");
+  EXPECT_EQ(first_difference_of([](TickRecord& r) { r.output.contact_w.force_N.x += 1e-12; }),
+            "force:output.contact_w");
   EXPECT_EQ(first_difference_of([](TickRecord& r) { r.output.device_w.torque_Nm.z += 1; }), "safety:output.device_w");
   EXPECT_EQ(first_difference_of([](TickRecord& r) { r.output.mode = Mode::kHold; }), "safety:output.mode");
   EXPECT_EQ(first_difference_of([](TickRecord& r) { r.output.contacts += 1; }), "collide:output.contacts");

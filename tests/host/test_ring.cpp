@@ -17,7 +17,7 @@ namespace {
 // Zeroed like a fresh memfd.
 template <typename T>
 struct Zeroed {
-  Zeroed() : bytes(new(std::align_val_t{64}) unsigned char[sizeof(T)]()) {}
+  Zeroed() : bytes(new (std::align_val_t{64}) unsigned char[sizeof(T)]()) {}
   ~Zeroed() { ::operator delete[](bytes, std::align_val_t{64}); }
   Zeroed(const Zeroed&) = delete;
   Zeroed& operator=(const Zeroed&) = delete;

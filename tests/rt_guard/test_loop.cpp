@@ -32,9 +32,9 @@ constexpr std::int64_t kPeriod_ns = 100'000;
 // Presses 8 mm deep and slides to and fro, twice a second of the device's own time, for the whole run.
 HandPath pressing_path(const Model& model) {
   const Vec3 touch = touching_position(model);
-  std::vector<HandPose> poses{{0.0, {touch + Vec3{0, 0, 0.01}, {}}}};
+  std::vector<HandPose> poses{{0.0, {touch + Vec3{0, 0.01, 0}, {}}}};
   for (int i = 1; i < 250; ++i) {
-    const Vec3 slide{i % 2 == 0 ? 0.004 : -0.004, 0, i % 20 == 0 ? 0.005 : -0.008};
+    const Vec3 slide{i % 2 == 0 ? 0.004 : -0.004, i % 20 == 0 ? 0.005 : -0.008, 0};
     poses.push_back({0.5 * i, {touch + slide, {}}});
   }
   return HandPath(std::move(poses));

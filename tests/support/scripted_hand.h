@@ -13,25 +13,35 @@ namespace palpate::test {
 
 inline constexpr int kScriptTicks = 8000;
 
-// Where the tool's origin is when its lowest point rests on the top of the body, unrotated.
+// Where the tool's origin is when its lowest points, unrotated, are level with and centred over the highest points of
+// the body. Up is y, as in every scene. Points within kLevel_m count as equally high or low.
 inline Vec3 touching_position(const Model& model) {
-  Vec3 top{0, 0, -kHuge};
+  constexpr Real kLevel_m = 5e-4;
+  const auto bottom_of = [](const ToolPoint& p) { return p.position_tool_m - Vec3{0, p.margin_m, 0}; };
+  Real top_m = -kHuge, bottom_m = kHuge;
+  for (const Vec3& v : model.vertex_m) top_m = max_of(top_m, v.y);
+  for (const ToolPoint& p : model.tool_point) bottom_m = min_of(bottom_m, bottom_of(p).y);
+  Vec3 top, bottom;
+  Real top_count = 0, bottom_count = 0;
   for (const Vec3& v : model.vertex_m) {
-    if (v.z > top.z) top = v;
+    if (v.y < top_m - kLevel_m) continue;
+    top += v;
+    top_count += 1;
   }
-  Vec3 lowest{0, 0, kHuge};
   for (const ToolPoint& p : model.tool_point) {
-    const Vec3 bottom = p.position_tool_m - Vec3{0, 0, p.margin_m};
-    if (bottom.z < lowest.z) lowest = bottom;
+    if (bottom_of(p).y > bottom_m + kLevel_m) continue;
+    bottom += bottom_of(p);
+    bottom_count += 1;
   }
-  return top - lowest;
+  const Vec3 centred = (1 / top_count) * top - (1 / bottom_count) * bottom;
+  return {centred.x, top_m - bottom_m, centred.z};
 }
 
 class ScriptedHand {
  public:
-  explicit ScriptedHand(const Model& model) : period_s_(model.params.period_s), size_m_(model.params.surface_size_m) {
-    touch_ = touching_position(model);
-    handle_.position_m = touch_ + Vec3{0, 0, kClearance_m};
+  explicit ScriptedHand(const Model& model)
+      : period_s_(model.params.period_s), size_m_(model.params.surface_size_m), touch_(touching_position(model)) {
+    handle_.position_m = touch_ + Vec3{0, kClearance_m, 0};
   }
 
   // The sample of the next tick, after the forces of the last one acted on hand and handle for one period.
@@ -69,18 +79,17 @@ class ScriptedHand {
   }
 
   Pose target_at(Real t_s) const {
-    const Real press = ease(t_s, 0.3, 0.8) - ease(t_s, 7.6, 7.9);                  // down, and up at the end
-    const Real deep = during(t_s, 6.2, 7.5);                                       // press as hard as a hand does
-    const Real tap = during(t_s, 5.2, 5.4) + during(t_s, 5.5, 5.7);                // leave and come back, twice
-    const Real slide = during(t_s, 1.2, 3.2);                                      // two turns of a circle
-    const Real roll = during(t_s, 3.4, 4.2), pitch = during(t_s, 4.3, 5.1);        // tilt over x, then over y
-    const Real sway = math::sin(25.0 * t_s);                                       // 4 Hz, within the tilts
-    const Real depth_m = kClearance_m + 0.012 * press + 0.02 * deep - 0.03 * tap;  // below the approach height
+    const Real press = ease(t_s, 0.3, 0.8) - ease(t_s, 7.6, 7.9);            // down, and up at the end
+    const Real deep = during(t_s, 6.2, 7.5);                                 // press as hard as a hand does
+    const Real tap = during(t_s, 5.2, 5.4) + during(t_s, 5.5, 5.7);          // leave and come back, twice
+    const Real slide = during(t_s, 1.2, 3.2);                                // two turns of a circle
+    const Real roll = during(t_s, 3.4, 4.2), pitch = during(t_s, 4.3, 5.1);  // tilt over x, then over z
+    const Real sway = math::sin(25.0 * t_s);                                 // 4 Hz, within the tilts
+    const Real height_m = kClearance_m * (1 - press) - 0.004 * press - 0.018 * deep + 0.03 * tap;  // above first touch
     const Real radius_m = 0.08 * size_m_ * slide, angle = 6.283185307179586 * t_s;
     Pose target;
-    target.position_m = touch_ + Vec3{radius_m * math::cos(angle), radius_m * math::sin(angle),
-                                      2.0 * kClearance_m - depth_m + 0.005 * (1.0 - press)};
-    target.orientation = small_rotation({0.3 * roll * sway, 0.3 * pitch * sway, 0.0});
+    target.position_m = touch_ + Vec3{radius_m * math::cos(angle), height_m, radius_m * math::sin(angle)};
+    target.orientation = small_rotation({0.3 * roll * sway, 0.0, 0.3 * pitch * sway});
     return target;
   }
 

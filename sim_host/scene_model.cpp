@@ -1,0 +1,30 @@
+#include "sim_host/scene_model.h"
+
+#include <fmt/format.h>
+
+#include <cstring>
+#include <stdexcept>
+
+#include "config/compile.h"
+#include "rt_core/image.h"
+
+namespace palpate {
+
+SceneModel::SceneModel(const std::string& path) {
+  if (!path.ends_with(".toml")) {
+    file_ = std::make_unique<ImageFile>(path);
+    return;
+  }
+  scene_ = load_scene(path);
+  const CompileResult compiled = compile_scene(*scene_);
+  const std::size_t size = compiled.bytes.size();
+  blocks_.resize((size + kImageAlignment - 1) / kImageAlignment);
+  std::memcpy(blocks_.data(), compiled.bytes.data(), size);
+  const ImageResult result = open_image({reinterpret_cast<const std::byte*>(blocks_.data()), size}, model_);
+  if (result.error != ImageError::kNone) {
+    throw std::runtime_error(fmt::format("{}: the compiled scene fails its own check: {}: {}", path, result.field,
+                                         describe(result.error)));
+  }
+}
+
+}  // namespace palpate

@@ -1,0 +1,77 @@
+// A synthetic model, state and scratch for the force stage: contacts are placed by hand, no mesh is needed.
+#pragma once
+
+#include <cstring>
+#include <memory>
+#include <vector>
+
+#include "rt_core/stages.h"
+
+namespace palpate {
+
+struct ForceScene {
+  Model model;
+  std::unique_ptr<State> state = std::make_unique<State>();
+  std::unique_ptr<Scratch> scratch = std::make_unique<Scratch>();
+
+  ForceScene() {
+    std::memset(static_cast<void*>(scratch.get()), 0xAB, sizeof(Scratch));  // nothing may depend on old scratch
+    ModelParams& p = model.params;
+    p = {};
+    p.contact_weight = static_cast<std::int32_t>(ContactWeight::kWinkler);
+    p.friction_law = static_cast<std::int32_t>(FrictionLaw::kReturnMap);
+    p.tangential_law = static_cast<std::int32_t>(TangentialLaw::kSeparable);
+    p.coupling_law = static_cast<std::int32_t>(CouplingLaw::kNone);
+    p.period_s = 1e-3;
+    p.k1_N_per_m = 40;  // the paper's coefficients (Luo & Xiao 2006), read as N and mm
+    p.k3_N_per_m3 = 3e8;
+    p.max_depth_m = 0.02;
+    p.friction_k_N = 0.8 * 1.4953487812212205;  // 0.8 * 5^0.25: f_max = 4 N at 5 N
+    p.friction_beta = 0.75;
+    p.friction_mu_dynamic = 0.5;
+    p.youngs_modulus_Pa = 3e6;
+    p.poisson_ratio = 0.47;
+    p.far_field_radius_m = 0.01;
+    p.surface_size_m = 0.1;
+    reset_state();
+    clear_contacts();
+  }
+
+  void reset_state() { *state = State{}; }
+  void clear_contacts() {
+    scratch->contact_count = 0;
+    scratch->status = 0;
+  }
+  void set_coupling(CouplingLaw law) { model.params.coupling_law = static_cast<std::int32_t>(law); }
+  void set_friction(FrictionLaw law) { model.params.friction_law = static_cast<std::int32_t>(law); }
+
+  // Opens region `slot` as find_regions would.
+  Region& open_region(std::int32_t slot, std::uint32_t id, std::uint32_t born_tick = 0) {
+    Region& region = state->region[slot];
+    region = Region{};
+    region.id = id;
+    region.born_tick = born_tick;
+    return region;
+  }
+  Contact& add_contact(std::int32_t slot, Vec3 position, Vec3 normal, double depth, double weight = 1.0) {
+    Contact& contact = scratch->contact[scratch->contact_count];
+    contact = Contact{};
+    contact.point = scratch->contact_count++;
+    contact.region = slot;
+    contact.position_w = position;
+    contact.normal_w = normal;
+    contact.depth_m = depth;
+    contact.weight = weight;
+    return contact;
+  }
+  void run() { compute_force(model, *state, *scratch); }
+  // Moves the tool; the next run sees the step from the present pose.
+  void move_tool(Pose pose) {
+    state->tool_previous_w = state->tool_w;
+    state->tool_w = pose;
+  }
+  Vec3 force() const { return scratch->contact_wrench_w.force_N; }
+  Vec3 torque() const { return scratch->contact_wrench_w.torque_Nm; }
+};
+
+}  // namespace palpate

@@ -1,0 +1,247 @@
+// Whole runs: the real controller and the simulated device as processes over the loopback, recorded and replayed. What
+// is checked is function, never time: on a loaded machine ticks come late and an overrun fault may latch, which must
+// then be in the recording, in the result and in the exit code alike.
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "sim_host/controller_link.h"
+#include "sim_host/device_process.h"
+#include "sim_host/hand_path_file.h"
+#include "sim_host/image_file.h"
+#include "sim_host/recorder.h"
+#include "sim_host/replay.h"
+#include "sim_host/run_session.h"
+
+namespace palpate {
+namespace {
+
+// The ball's lowest point is the origin, y is up: the tool touches it at y = 68 mm.
+constexpr char kScene[] = R"(
+name = "ball"
+[body]
+shape = "sphere"
+radius_mm = 30
+triangles = 500
+[[tool.piece]]
+shape = "sphere"
+radius_mm = 8
+[path]
+hand_stiffness_N_per_m = 500
+[[path.point]]
+time_s = 0
+position_mm = [0, 75, 0]
+[[path.point]]
+time_s = 0.4
+position_mm = [0, 65, 0]
+[[path.point]]
+time_s = 0.8
+position_mm = [5, 65, 0]
+)";
+
+class Run : public testing::Test {
+ protected:
+  Run() {
+    folder_ = std::filesystem::temp_directory_path() / ("palpate_run_" + std::to_string(getpid()));
+    std::filesystem::create_directories(folder_);
+    std::ofstream(folder_ / "ball.toml") << kScene;
+    options_.scene = (folder_ / "ball.toml").string();
+    options_.record = (folder_ / "run.plr").string();
+    options_.device = "loopback";
+    options_.duration_s = 1.0;
+    options_.priority = 0;  // works without privileges
+    options_.quiet = true;
+    options_.program_folder =
+        (std::filesystem::read_symlink("/proc/self/exe").parent_path().parent_path() / "bin").string();
+  }
+  ~Run() override { std::filesystem::remove_all(folder_); }
+
+  // Every record of the finished run is there and replays to the same bits.
+  void expect_whole_and_identical(std::uint64_t ticks) {
+    const MappedFile file(options_.record);
+    RecordingReader reader(file.bytes());
+    const ImageFile image(reader.header().image_path);
+    const ReplayResult replayed = replay(reader, image.model());
+    EXPECT_TRUE(replayed.identical()) << replayed.tick << " " << replayed.stage << " " << replayed.field << " "
+                                      << replayed.damage << " " << replayed.lost;
+    EXPECT_EQ(replayed.ticks, ticks);
+  }
+
+  std::filesystem::path folder_;
+  RunOptions options_;
+};
+
+TEST_F(Run, RecordsAndReplaysToTheSameBits) {
+  const RunResult result = run_session(options_);
+  EXPECT_GT(result.summary.ticks, 0u);
+  EXPECT_EQ(result.lost, 0u);
+  EXPECT_EQ(result.recorder_error, "");
+  EXPECT_EQ(result.controller_exit, result.faulted() ? 1 : 0);
+  EXPECT_EQ(result.summary.fault & ~Fault::kOverrun & ~Fault::kDeviceSilent, 0u);
+  EXPECT_TRUE(result.faulted() || result.summary.contact_force_max_N > 0.05) << "the hand must have touched the ball";
+  expect_whole_and_identical(result.summary.ticks);
+  const std::string text = summary_text(result.summary, result.lost);
+  EXPECT_NE(text.find("wake-up latency"), std::string::npos);
+  EXPECT_NE(text.find("collide"), std::string::npos);
+}
+
+TEST_F(Run, EndsWithZeroForceEvenWhenInterrupted) {
+  options_.duration_s = 60;
+  std::thread interrupt([] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(700));
+    kill(getpid(), SIGINT);
+  });
+  const RunResult result = run_session(options_);
+  interrupt.join();
+  EXPECT_TRUE(result.interrupted || result.faulted());
+  expect_whole_and_identical(result.summary.ticks);
+  const MappedFile file(options_.record);
+  RecordingReader reader(file.bytes());
+  TickRecord last{}, record;
+  while (reader.next(record)) last = record;
+  EXPECT_EQ(last.output.device_w, Wrench{});
+  EXPECT_TRUE(last.output.mode == Mode::kIdle || last.output.mode == Mode::kFault);
+}
+
+TEST_F(Run, ClassicFramesWorkAsWell) {
+  options_.device = "loopback,classic";
+  options_.duration_s = 0.5;
+  const RunResult result = run_session(options_);
+  EXPECT_GT(result.summary.ticks, 0u);
+  expect_whole_and_identical(result.summary.ticks);
+}
+
+TEST_F(Run, MissingPathUnknownDeviceAndBrokenSceneAreNamed) {
+  const auto error_of = [&](auto change) {
+    RunOptions options = options_;
+    change(options);
+    try {
+      run_session(options);
+    } catch (const std::exception& error) {
+      return std::string(error.what());
+    }
+    return std::string("no error");
+  };
+  EXPECT_NE(error_of([](RunOptions& o) { o.device = "serial:3"; }).find("can:IFACE"), std::string::npos);
+  EXPECT_NE(error_of([](RunOptions& o) { o.scene += "x.toml"; }).find("x.toml"), std::string::npos);
+  run_session(options_);
+  EXPECT_NE(error_of([&](RunOptions& o) { o.scene = (folder_ / "ball.pal").string(); }).find("--path"),
+            std::string::npos);
+  EXPECT_NE(error_of([&](RunOptions& o) { o.program_folder = "/nonexistent"; }).find("/nonexistent"),
+            std::string::npos);
+  std::ofstream(folder_ / "broken.pal") << "not an image";
+  EXPECT_NE(error_of([&](RunOptions& o) {
+              o.scene = (folder_ / "broken.pal").string();
+              o.path = (folder_ / "p.csv").string();
+              std::ofstream(o.path) << "0,0,0,45\n";
+            }).find("controller did not start"),
+            std::string::npos);
+}
+
+TEST_F(Run, ControllerKilledInTheMiddleLeavesEverythingBeforeInTheRecording) {
+  const SceneImage scene = prepare_scene(options_.scene, "", options_.record);
+  DeviceProcess device(options_.program_folder + "/palpate-device", scene, "", "loopback", 0);
+  ControllerLink link(options_.program_folder + "/palpate-rt",
+                      {"--image", scene.image_path, "--device", "loopback", "--device-fd", "4", "--priority", "0"},
+                      device.controller_end());
+  device.close_controller_end();
+  const TelemetryHeader& header = link.telemetry().header;
+  RecordingWriter file(options_.record, recording_header(header), header.initial_state);
+  Recorder recorder(link.telemetry(), &file, {});
+  recorder.start();
+  TelemetryReader reader(link.telemetry());
+  TickRecord newest{};
+  for (int i = 0; i < 500 && newest.sequence < 100; ++i) {
+    link.mailbox().beat();
+    reader.newest(newest);
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  EXPECT_GE(newest.sequence, 100u);
+  link.process().signal(SIGKILL);
+  EXPECT_TRUE(link.process().wait(2000));
+  EXPECT_EQ(link.process().exit_code(), 128 + SIGKILL);
+  const std::uint64_t last = link.telemetry().newest.load();
+  recorder.stop();
+  EXPECT_EQ(recorder.lost(), 0u);
+  EXPECT_EQ(recorder.records(), last);
+  expect_whole_and_identical(last);
+}
+
+TEST_F(Run, ControllerWhoseHostDiesStopsByItself) {
+  const SceneImage scene = prepare_scene(options_.scene, "", options_.record);
+  DeviceProcess device(options_.program_folder + "/palpate-device", scene, "", "loopback", 0);
+  ControllerLink link(options_.program_folder + "/palpate-rt",
+                      {"--image", scene.image_path, "--device", "loopback", "--device-fd", "4", "--priority", "0"},
+                      device.controller_end());
+  device.close_controller_end();
+  link.mailbox().set(Command::kArm, false);
+  EXPECT_TRUE(link.process().wait(20'000));  // no heartbeat: silent after 2 s
+  EXPECT_EQ(link.process().exit_code(), 1);
+  TelemetryReader reader(link.telemetry());
+  TickRecord last{};
+  ASSERT_TRUE(reader.newest(last));
+  EXPECT_NE(last.output.fault, 0u);
+  EXPECT_EQ(last.output.device_w, Wrench{});
+}
+
+TEST_F(Run, DeviceThatNeverSpeaksIsNamedByItsExitCode) {
+  const SceneImage scene = prepare_scene(options_.scene, "", options_.record);
+  int pair[2];
+  ASSERT_EQ(socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, pair), 0);
+  ControllerLink link(options_.program_folder + "/palpate-rt",
+                      {"--image", scene.image_path, "--device", "loopback", "--device-fd", "4", "--priority", "0"},
+                      pair[0]);
+  for (int i = 0; i < 2000 && !link.process().wait(10); ++i) link.mailbox().beat();
+  EXPECT_EQ(link.process().exit_code(), 4);
+  close(pair[0]);
+  close(pair[1]);
+}
+
+TEST(RunPath, CsvIsReadAndItsErrorsNameTheLine) {
+  const std::string path = (std::filesystem::temp_directory_path() / (std::to_string(getpid()) + "_path.csv")).string();
+  std::vector<HandPose> poses;
+  std::string error;
+  const auto read = [&](const char* text) {
+    std::ofstream(path) << text;
+    return read_hand_path(path, poses, error);
+  };
+  ASSERT_TRUE(read("time_s,x_mm,y_mm,z_mm\n# a comment\n0, 1, 2, 3\n\n0.5,4,5,6\r\n")) << error;
+  ASSERT_EQ(poses.size(), 2u);
+  EXPECT_EQ(poses[1].time_s, 0.5);
+  EXPECT_EQ(poses[1].pose.position_m, (Vec3{4e-3, 5e-3, 6e-3}));
+  ASSERT_TRUE(read("0,0,0,0,0,0,90\n")) << error;
+  EXPECT_NEAR(rotate(poses[0].pose.orientation, {1, 0, 0}).y, 1.0, 1e-12);
+  EXPECT_FALSE(read("0,1,2,3\n1,2,3\n"));
+  EXPECT_NE(error.find(":2: expected time_s"), std::string::npos) << error;
+  EXPECT_FALSE(read("0,1,2,nan\n"));
+  EXPECT_FALSE(read("0,1,2,3x\n"));
+  EXPECT_FALSE(read("0,1,2,3\n0,1,2,3\n"));
+  EXPECT_NE(error.find("must rise"), std::string::npos) << error;
+  EXPECT_FALSE(read("time_s\n"));
+  EXPECT_NE(error.find("no poses"), std::string::npos) << error;
+  std::filesystem::remove(path);
+  EXPECT_FALSE(read_hand_path("/nonexistent.csv", poses, error));
+}
+
+TEST(RunPath, SceneMotionSurvivesTheTripThroughCsv) {
+  PathDesc scene;
+  scene.point = {{0, {0.001, 0.002, 0.003}, {}}, {1.25, {0.1, -0.2, 0.3}, {0, 0.5, 0}}};
+  const std::string path = (std::filesystem::temp_directory_path() / (std::to_string(getpid()) + "_trip.csv")).string();
+  std::ofstream(path) << path_csv(scene);
+  std::vector<HandPose> poses;
+  std::string error;
+  ASSERT_TRUE(read_hand_path(path, poses, error)) << error;
+  std::filesystem::remove(path);
+  ASSERT_EQ(poses.size(), 2u);
+  EXPECT_NEAR(norm(poses[1].pose.position_m - scene.point[1].position_m), 0, 1e-15);
+  EXPECT_NEAR(norm(rotation_vector(poses[1].pose.orientation) - scene.point[1].rotation_rad), 0, 1e-12);
+}
+
+}  // namespace
+}  // namespace palpate
