@@ -200,9 +200,8 @@ void persistent_points(const Rings& rings, const std::vector<double>& f, double 
     }
   }
   if (!vertices.empty()) {
-    const auto [low, high] = std::minmax_element(vertices.begin(), vertices.end(), [&](std::int32_t a, std::int32_t b) {
-      return f[at(a)] < f[at(b)];
-    });
+    const auto [low, high] = std::minmax_element(vertices.begin(), vertices.end(),
+                                                 [&](std::int32_t a, std::int32_t b) { return f[at(a)] < f[at(b)]; });
     found.push_back({at(vertices.front()), f[at(*high)] - f[at(*low)]});
   }
 }
@@ -251,7 +250,8 @@ std::vector<AnchorPoint> curvature_anchors(const SurfaceMesh& mesh, const std::v
     std::vector<Critical> found;
     persistent_points(rings, f, 1, vertices, kPersistence * span, found);
     persistent_points(rings, f, -1, vertices, kPersistence * span, found);
-    for (const Critical& c : found) anchors.push_back({mesh.vertex_m[c.vertex], normal[c.vertex], c.persistence / span});
+    for (const Critical& c : found)
+      anchors.push_back({mesh.vertex_m[c.vertex], normal[c.vertex], c.persistence / span});
   }
   return anchors;
 }

@@ -17,8 +17,7 @@ std::vector<AnchorPoint> axis_ends(Vec3 half) {
   const Vec3 axis[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   const double length[3] = {half.x, half.y, half.z};
   for (std::size_t a = 0; a < 3; ++a)
-    for (const double s : {1.0, -1.0})
-      anchors.push_back({centre + (s * length[a]) * axis[a], s * axis[a], length[a]});
+    for (const double s : {1.0, -1.0}) anchors.push_back({centre + (s * length[a]) * axis[a], s * axis[a], length[a]});
   return anchors;
 }
 

@@ -56,9 +56,9 @@ PrincipalExtents principal_extents(const SurfaceMesh& mesh) {
   std::vector<double> weight(mesh.triangle.size());
   for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
     const Corners& c = mesh.triangle[t];
-    centre[t] = (1.0 / 3) * (mesh.vertex_m[static_cast<std::size_t>(c[0])] +
-                             mesh.vertex_m[static_cast<std::size_t>(c[1])] +
-                             mesh.vertex_m[static_cast<std::size_t>(c[2])]);
+    centre[t] =
+        (1.0 / 3) * (mesh.vertex_m[static_cast<std::size_t>(c[0])] + mesh.vertex_m[static_cast<std::size_t>(c[1])] +
+                     mesh.vertex_m[static_cast<std::size_t>(c[2])]);
     weight[t] = norm(triangle_cross(mesh, t));
     sum += weight[t] * centre[t];
     area += weight[t];
@@ -75,8 +75,8 @@ PrincipalExtents principal_extents(const SurfaceMesh& mesh) {
     const Eigen::Vector3d v = solver.eigenvectors().col(2 - k);  // largest first
     Vec3 axis{v.x(), v.y(), v.z()};
     const double largest = std::abs(axis.x) >= std::abs(axis.y) && std::abs(axis.x) >= std::abs(axis.z) ? axis.x
-                           : std::abs(axis.y) >= std::abs(axis.z)                                     ? axis.y
-                                                                                                      : axis.z;
+                           : std::abs(axis.y) >= std::abs(axis.z)                                       ? axis.y
+                                                                                                        : axis.z;
     if (largest < 0) axis = -axis;  // the solver's sign is arbitrary
     double low = kHuge, high = -kHuge;
     for (const Vec3& p : mesh.vertex_m) {
@@ -102,8 +102,7 @@ std::vector<AnchorPoint> mesh_anchors(const SurfaceMesh& mesh) {
   return anchors;
 }
 
-void limit_anchors(const SurfaceMesh& mesh, std::int32_t fewest, std::int32_t most,
-                   std::vector<AnchorPoint>& anchors) {
+void limit_anchors(const SurfaceMesh& mesh, std::int32_t fewest, std::int32_t most, std::vector<AnchorPoint>& anchors) {
   sort_by_rank(anchors);
   if (anchors.size() > static_cast<std::size_t>(most)) anchors.resize(static_cast<std::size_t>(most));
   if (anchors.size() >= static_cast<std::size_t>(fewest)) return;

@@ -5,6 +5,8 @@
 #include <limits>
 #include <numeric>
 
+#include "config/bvh_clearance.h"
+
 namespace palpate {
 
 namespace {
@@ -256,7 +258,9 @@ class Builder {
 }  // namespace
 
 BvhBuild build_bvh(std::span<const Vec3> vertex_m, std::span<const Triangle> triangle) {
-  return Builder(vertex_m, triangle).build();
+  BvhBuild bvh = Builder(vertex_m, triangle).build();
+  measure_clearance(vertex_m, bvh);
+  return bvh;
 }
 
 }  // namespace palpate

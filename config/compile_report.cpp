@@ -14,17 +14,16 @@ void line(std::string& text, const char* pattern, Values... values) {
   text += '\n';
 }
 
-const char* reason(const StiffnessBound& bound) {
-  return bound.by_damping ? "2b / (T + 2 tau)" : "2 f_c / Delta";
-}
+const char* reason(const StiffnessBound& bound) { return bound.by_damping ? "2b / (T + 2 tau)" : "2 f_c / Delta"; }
 
 }  // namespace
 
 std::string report_text(const CompileReport& r) {
   std::string text;
   line(text, "scene      %s, image of %.3f MB", r.name.c_str(), 1e-6 * static_cast<double>(r.image_bytes));
-  line(text, "surface    %lld vertices, %lld triangles, %.4g cm3, %.4g cm2, %.4g kg", static_cast<long long>(r.vertices),
-       static_cast<long long>(r.triangles), 1e6 * r.volume_m3, 1e4 * r.surface_m2, r.mass_kg);
+  line(text, "surface    %lld vertices, %lld triangles, %.4g cm3, %.4g cm2, %.4g kg",
+       static_cast<long long>(r.vertices), static_cast<long long>(r.triangles), 1e6 * r.volume_m3, 1e4 * r.surface_m2,
+       r.mass_kg);
   line(text, "hierarchy  %d nodes, %d levels, traversal stack at most %d of %d", r.bvh_nodes, r.bvh_depth,
        r.traversal_stack, kMaxTraversalStack);
   line(text, "skeleton   %d anchors (%s), %d fixed, beam radius %.4g mm", r.anchors,

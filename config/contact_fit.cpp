@@ -42,8 +42,7 @@ ContactCoefficients contact_coefficients(const SceneDesc& scene) {
     case ContactLaw::kHertz: {
       const double nu = effective_poisson_ratio(scene.material);
       const double depth = scene.hertz.fit_depth_m, radius = scene.hertz.tool_radius_m;
-      const double factor =
-          4.0 / 3.0 * scene.material.youngs_modulus_Pa / (1 - nu * nu) * square_root(radius);
+      const double factor = 4.0 / 3.0 * scene.material.youngs_modulus_Pa / (1 - nu * nu) * square_root(radius);
       c.k1_N_per_m = 0.75 * factor * square_root(depth);
       c.k3_N_per_m3 = 0.25 * factor / (depth * square_root(depth));
       c.derivation = format("Hertz, sphere of %.4g mm, value and slope matched at %.4g mm (%.4g N)", 1e3 * radius,

@@ -12,13 +12,13 @@ std::string image_markdown() {
   PALPATE_MODEL_SIZES(PALPATE_FIELD)
 #undef PALPATE_FIELD
   text += "\n### Parameters\n\n| parameter | type | unit | range | meaning |\n|---|---|---|---|---|\n";
-#define PALPATE_FIELD(type, name, unit, lowest, highest, meaning)                                        \
+#define PALPATE_FIELD(type, name, unit, lowest, highest, meaning)                                         \
   text += "| `" #name "` | " #type " | " unit " | " + number_text(static_cast<double>(lowest)) + " to " + \
           number_text(static_cast<double>(highest)) + " | " meaning " |\n";
   PALPATE_MODEL_PARAMS(PALPATE_FIELD)
 #undef PALPATE_FIELD
   text += "\n### Arrays\n\n| array | element | bytes each | count | frame | meaning |\n|---|---|---|---|---|---|\n";
-#define PALPATE_FIELD(type, name, count, frame, meaning)                                                       \
+#define PALPATE_FIELD(type, name, count, frame, meaning) \
   text += "| `" #name "` | " #type " | " + std::to_string(sizeof(type)) + " | " #count " | " frame " | " meaning " |\n";
   PALPATE_MODEL_ARRAYS(PALPATE_FIELD)
 #undef PALPATE_FIELD

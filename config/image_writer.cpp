@@ -34,8 +34,8 @@ std::vector<std::byte> write_image(const ImageContents& contents) {
 
   std::vector<std::byte> bytes(offset[kArrayCount], std::byte{0});
   std::size_t index = 0;
-#define PALPATE_FIELD(type, name, count, frame, meaning)                                    \
-  if (!contents.name.empty())                                                               \
+#define PALPATE_FIELD(type, name, count, frame, meaning)                                                  \
+  if (!contents.name.empty())                                                                             \
     std::memcpy(bytes.data() + offset[index], contents.name.data(), contents.name.size() * sizeof(type)); \
   ++index;
   PALPATE_MODEL_ARRAYS(PALPATE_FIELD)

@@ -43,7 +43,8 @@ void check_scale(const SurfaceMesh& mesh, const std::string& label) {
   if (size >= kSmallestBody_m && size <= kLargestBody_m) return;
   char text[160];
   std::snprintf(text, sizeof text,
-                ": the mesh is %.4g m across; allowed 0.001 to 10 m. Set body.scale (0.001 if the file is in mm)", size);
+                ": the mesh is %.4g m across; allowed 0.001 to 10 m. Set body.scale (0.001 if the file is in mm)",
+                size);
   throw ConfigError(label + text);
 }
 

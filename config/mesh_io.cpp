@@ -1,9 +1,8 @@
 #include "config/mesh_io.h"
 
+#include <assimp/scene.h>
 #include <algorithm>
 #include <assimp/Importer.hpp>
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
 #include <cmath>
 #include <filesystem>
 #include <unordered_map>
@@ -33,7 +32,27 @@ void check_file(const std::string& path) {
   if (std::filesystem::file_size(path, error) == 0) throw ConfigError(path + ": the mesh file is empty");
 }
 
-// Appends every triangle of the assimp scene. OBJ, STL and PLY have no node transforms, so meshes are in file space.
+// Splits a polygon into the fan about one of its corners whose triangles all face the polygon's way; false when there
+// is none (a strongly concave polygon). assimp's own triangulation is not used: Debian's build aborts the process on
+// files cut in the middle of a face (assertion in TriangulateProcess, assimp 5.2.5).
+bool add_fan(const std::vector<std::int32_t>& polygon, SurfaceMesh& mesh) {
+  const std::size_t n = polygon.size();
+  const auto point = [&](std::size_t k) { return mesh.vertex_m[at(polygon[k % n])]; };
+  Vec3 normal;  // Newell's: twice the area vector
+  for (std::size_t k = 1; k + 1 < n; ++k) normal += cross(point(k) - point(0), point(k + 1) - point(0));
+  for (std::size_t start = 0; start < n; ++start) {
+    bool convex = true;
+    for (std::size_t k = 1; k + 1 < n && convex; ++k)
+      convex = n == 3 || dot(cross(point(start + k) - point(start), point(start + k + 1) - point(start)), normal) > 0;
+    if (!convex) continue;
+    for (std::size_t k = 1; k + 1 < n; ++k)
+      mesh.triangle.push_back({polygon[start], polygon[(start + k) % n], polygon[(start + k + 1) % n]});
+    return true;
+  }
+  return false;
+}
+
+// Appends every face of the assimp mesh. OBJ, STL and PLY have no node transforms, so meshes are in file space.
 void append(const aiMesh& part, double scale, const std::string& path, SurfaceMesh& mesh) {
   const auto base = static_cast<std::int32_t>(mesh.vertex_m.size());
   for (unsigned i = 0; i < part.mNumVertices; ++i) {
@@ -43,15 +62,17 @@ void append(const aiMesh& part, double scale, const std::string& path, SurfaceMe
   }
   for (unsigned f = 0; f < part.mNumFaces; ++f) {
     const aiFace& face = part.mFaces[f];
-    if (face.mNumIndices != 3) continue;  // points and lines carry no surface
-    Corners c{};
-    for (unsigned k = 0; k < 3; ++k) {
+    std::vector<std::int32_t> polygon;
+    for (unsigned k = 0; k < face.mNumIndices; ++k) {
       if (face.mIndices[k] >= part.mNumVertices)
         throw ConfigError(path + ": face " + std::to_string(f) + " refers to vertex " +
                           std::to_string(face.mIndices[k]) + " of " + std::to_string(part.mNumVertices));
-      c[k] = base + static_cast<std::int32_t>(face.mIndices[k]);
+      polygon.push_back(base + static_cast<std::int32_t>(face.mIndices[k]));
     }
-    mesh.triangle.push_back(c);
+    if (polygon.size() < 3) continue;  // points and lines carry no surface
+    if (!add_fan(polygon, mesh))
+      throw ConfigError(path + ": face " + std::to_string(f) +
+                        " is a concave polygon; split faces into triangles in the modelling program");
   }
 }
 
@@ -134,9 +155,8 @@ void drop_unused(SurfaceMesh& mesh) {
 MeshFile read_mesh(const std::string& path, double scale) {
   check_file(path);
   Assimp::Importer importer;
-  // Only what turns polygons into triangles: welding, orientation and clean-up are ours, so that faults are reported
-  // and not silently repaired.
-  const aiScene* scene = importer.ReadFile(path, aiProcess_Triangulate);
+  // No post-processing: splitting, welding and checks are ours, so that faults are reported and not silently repaired.
+  const aiScene* scene = importer.ReadFile(path, 0);
   if (scene == nullptr)
     throw ConfigError(path + ": cannot read the mesh (truncated or damaged?): " + importer.GetErrorString());
   MeshFile file;

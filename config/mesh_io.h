@@ -9,7 +9,7 @@ namespace palpate {
 
 struct MeshFile {
   SurfaceMesh mesh;
-  std::int32_t welded_vertices = 0;    // vertices of the file that coincided with another
+  std::int32_t welded_vertices = 0;      // vertices of the file that coincided with another
   std::int32_t collapsed_triangles = 0;  // triangles dropped because two of their corners were welded together
 };
 

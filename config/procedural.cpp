@@ -42,9 +42,7 @@ class GeodesicSphere {
     raw_.push_back(p);
     mesh.vertex_m.push_back(unit_or(p, {}));
   }
-  bool joined(std::int32_t a, std::int32_t b) const {
-    return squared_norm(raw_[at(a)] - raw_[at(b)]) < 4.5;
-  }
+  bool joined(std::int32_t a, std::int32_t b) const { return squared_norm(raw_[at(a)] - raw_[at(b)]) < 4.5; }
   // Vertex at step k of f along the edge from corner a to corner b.
   std::int32_t on_edge(std::int32_t a, std::int32_t b, std::int32_t k) {
     if (k == 0) return a;
@@ -98,8 +96,7 @@ void stand(SurfaceMesh& mesh) {
 
 SurfaceMesh make_ellipsoid(Vec3 half_axes_m, std::int32_t triangles) {
   SurfaceMesh mesh = geodesic_sphere(triangles);
-  for (Vec3& p : mesh.vertex_m)
-    p = {half_axes_m.x * p.x, half_axes_m.y * (p.y + 1.0), half_axes_m.z * p.z};
+  for (Vec3& p : mesh.vertex_m) p = {half_axes_m.x * p.x, half_axes_m.y * (p.y + 1.0), half_axes_m.z * p.z};
   return mesh;
 }
 

@@ -31,6 +31,13 @@ ProfilePoint beyond(ProfilePoint a, ProfilePoint b) {
   return {2 * b.radius_m - a.radius_m, 2 * b.height_m - a.height_m};
 }
 
+// The point beyond the pole `b`: the mirror image of `a`, so that the surface is smooth there, unless the profile meets
+// its mirror image at a corner (a cone's apex).
+ProfilePoint beyond_pole(ProfilePoint a, ProfilePoint b) {
+  const double turn = 2 * std::atan2(std::abs(b.height_m - a.height_m), std::abs(b.radius_m - a.radius_m));
+  return turn > kCornerAngle_rad ? beyond(a, b) : ProfilePoint{-a.radius_m, a.height_m};
+}
+
 std::vector<ProfilePoint> closed_to_axis(const std::vector<ProfilePoint>& profile) {
   std::vector<ProfilePoint> closed = profile;
   if (closed.front().radius_m > 0) closed.insert(closed.begin(), {0, closed.front().height_m});
@@ -59,10 +66,8 @@ std::vector<ProfilePoint> refine_profile(const std::vector<ProfilePoint>& profil
   const auto sharp = [&](std::size_t i) { return std::binary_search(corner.begin(), corner.end(), i); };
   std::vector<ProfilePoint> out{p[0]};
   for (std::size_t i = 0; i + 1 < p.size(); ++i) {
-    // At a pole the curve continues as its mirror image, so that the surface is smooth there.
-    const auto mirror = [](ProfilePoint q) { return ProfilePoint{-q.radius_m, q.height_m}; };
-    const ProfilePoint before = i == 0 ? mirror(p[1]) : sharp(i) ? beyond(p[i + 1], p[i]) : p[i - 1];
-    const ProfilePoint after = i + 2 == p.size() ? mirror(p[i])
+    const ProfilePoint before = i == 0 ? beyond_pole(p[1], p[0]) : sharp(i) ? beyond(p[i + 1], p[i]) : p[i - 1];
+    const ProfilePoint after = i + 2 == p.size() ? beyond_pole(p[i], p[i + 1])
                                : sharp(i + 1)    ? beyond(p[i], p[i + 1])
                                                  : p[i + 2];
     const auto steps = static_cast<std::int32_t>(std::max(1.0, std::round(distance(p[i], p[i + 1]) / spacing_m)));

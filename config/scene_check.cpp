@@ -79,9 +79,9 @@ void check_body(const SceneDesc& scene) {
              " is thermodynamically impossible; allowed -0.999 to 0.5. For the printed 1.0 of Cui & Xiao 2008 set "
              "body.material.legacy_paper_material = true");
   if (scene.skeleton.anchors_min > scene.skeleton.anchors_max)
-    fail(scene, "skeleton.anchors_min", std::to_string(scene.skeleton.anchors_min) +
-                                            " is larger than skeleton.anchors_max = " +
-                                            std::to_string(scene.skeleton.anchors_max) + "; lower it");
+    fail(scene, "skeleton.anchors_min",
+         std::to_string(scene.skeleton.anchors_min) +
+             " is larger than skeleton.anchors_max = " + std::to_string(scene.skeleton.anchors_max) + "; lower it");
 }
 
 void check_contact(const SceneDesc& scene) {
@@ -148,8 +148,8 @@ void check_piece_sizes(const SceneDesc& scene, const PieceDesc& piece, const std
     fail(scene, label + ".vertices_mm", std::to_string(piece.vertices_m.size()) + " corners; allowed 1 to 64");
   if (piece.shape == PieceShape::kBox && piece.points > 0 && piece.points < 8)
     fail(scene, label + ".points", std::to_string(piece.points) + "; a box needs its 8 corners: allowed 0 or 8 to 128");
-  const bool has_ends = piece.shape == PieceShape::kCapsule || piece.shape == PieceShape::kCylinder ||
-                        piece.shape == PieceShape::kCone;
+  const bool has_ends =
+      piece.shape == PieceShape::kCapsule || piece.shape == PieceShape::kCylinder || piece.shape == PieceShape::kCone;
   if (piece.touches != TouchingEnd::kAll && !has_ends)
     fail(scene, label + ".touches", "this shape has no end face; remove it");
 }
@@ -176,8 +176,9 @@ void check_tool(const SceneDesc& scene) {
 void check_device_and_path(const SceneDesc& scene) {
   const DeviceDesc& d = scene.device;
   if (!(d.silence_hold_ticks <= d.silence_passive_ticks && d.silence_passive_ticks < d.silence_fault_ticks))
-    fail(scene, "device.silence_fault_ticks", "must be above silence_passive_ticks, and that not below "
-                                              "silence_hold_ticks");
+    fail(scene, "device.silence_fault_ticks",
+         "must be above silence_passive_ticks, and that not below "
+         "silence_hold_ticks");
   for (std::size_t i = 0; i < scene.path.point.size(); ++i) {
     const std::string key = "path.point[" + std::to_string(i) + "].time_s";
     const double time = scene.path.point[i].time_s;

@@ -123,7 +123,8 @@ const KeySpec kContact[] = {
 const KeySpec kDuffing[] = {
     number<&DuffingDesc::mass_kg>("mass_kg", 1e-6, 1e6, 1, "m; with the two below in mm and N: k1 = m omega0^2 N/mm"),
     number<&DuffingDesc::omega0>("omega0", 0, 1e3, 1, "omega0 of Luo & Xiao 2006"),
-    number<&DuffingDesc::beta0sq_eps>("beta0sq_eps", 0, 1e6, 1, "beta0^2 epsilon; k3 = coefficient m beta0^2 eps N/mm^3"),
+    number<&DuffingDesc::beta0sq_eps>("beta0sq_eps", 0, 1e6, 1,
+                                      "beta0^2 epsilon; k3 = coefficient m beta0^2 eps N/mm^3"),
     choice<&DuffingDesc::coefficient>("coefficient", "static|paper",
                                       "static: 1, the equilibrium under a constant force; paper: 3/4, the mean over an "
                                       "oscillation (Luo & Xiao 2006, eq. 3)"),
@@ -145,7 +146,8 @@ const KeySpec kFriction[] = {
                                           "static friction coefficient at the reference force, K = mu_ref F_ref^(1 - "
                                           "beta); auto: 0.5; not with k"),
     number<&FrictionDesc::reference_force_N>("reference_force_N", 1e-3, 1e4, 1, "F_ref"),
-    number_or_auto<&FrictionDesc::k>("k", 0, 1e6, 1, "K of the static limit K F^beta, in N^(1 - beta); not with mu_ref"),
+    number_or_auto<&FrictionDesc::k>("k", 0, 1e6, 1,
+                                     "K of the static limit K F^beta, in N^(1 - beta); not with mu_ref"),
     number<&FrictionDesc::beta>("beta", 0.5, 1, 1, "exponent of the static limit; 2/3 for truly elastic contact"),
     number_or_auto<&FrictionDesc::mu_dynamic>("mu_dynamic", 0, 10, 1,
                                               "sliding coefficient; auto: 0.8 of the static one at F_ref"),
@@ -182,9 +184,10 @@ const KeySpec kPiece[] = {
         "margin_mm", 0.01, 5000, kMilli,
         "rounding radius: part of the outer size of cylinders and boxes, added to cones and hulls; contact is exact "
         "while penetration stays below it; auto: a third of the smallest half size (cone, hull: 2 mm)"),
-    integer<&PieceDesc::points>("points", 0, kMaxToolPoints,
-                                "most tool points to spread; each costs about 800 instructions a tick; sphere: 1; box: 8 or more; "
-                                "0: never touches"),
+    integer<&PieceDesc::points>(
+        "points", 0, kMaxToolPoints,
+        "most tool points to spread; each costs about 800 instructions a tick; sphere: 1; box: 8 or more; "
+        "0: never touches"),
     integer<&PieceDesc::part>("part", 0, 1 << 20, "label in recordings"),
 };
 const KeySpec kDevice[] = {
@@ -201,7 +204,8 @@ const KeySpec kDevice[] = {
     number<&DeviceDesc::delay_s>("delay_ms", 0, 100, kMilli, "delay tau from sample to force, beyond the tick"),
     number<&DeviceDesc::force_max_N>("force_max_N", 0.01, 1000, 1, "largest force commanded"),
     number<&DeviceDesc::torque_max_Nm>("torque_max_Nm", 0, 100, 1, "largest torque commanded"),
-    number<&DeviceDesc::force_rate_max_N_per_s>("force_rate_max_N_per_s", 1, 1e7, 1, "fault limiter of the force change"),
+    number<&DeviceDesc::force_rate_max_N_per_s>("force_rate_max_N_per_s", 1, 1e7, 1,
+                                                "fault limiter of the force change"),
     number_or_auto<&DeviceDesc::coupling_N_per_m>(
         "coupling_N_per_m", 1, 1e6, 1,
         "virtual coupling; auto: 0.8 of what the device admits, min(2b / (T + 2 tau), 2 f_c / Delta)"),

@@ -16,11 +16,26 @@ namespace {
 // Unit of a key, from its suffix; empty for pure numbers.
 std::string unit_text(const std::string& key) {
   static const std::pair<const char*, const char*> kUnits[] = {
-      {"_Nms_per_rad", "N m s/rad"}, {"_Nm_per_rad", "N m/rad"}, {"_N_per_m3", "N/m^3"}, {"_N_per_s", "N/s"},
-      {"_Ns_per_m", "N s/m"},        {"_N_per_m", "N/m"},        {"_kg_per_m3", "kg/m^3"}, {"_kg_m2", "kg m^2"},
-      {"_m_per_s", "m/s"},           {"_mm2", "mm^2"},           {"_mm", "mm"},          {"_ms", "ms"},
-      {"_deg", "degrees"},           {"_rad", "rad"},            {"_Nm", "N m"},         {"_N", "N"},
-      {"_Pa", "Pa"},                 {"_kg", "kg"},              {"_s", "s"},            {"_ticks", "ticks"},
+      {"_Nms_per_rad", "N m s/rad"},
+      {"_Nm_per_rad", "N m/rad"},
+      {"_N_per_m3", "N/m^3"},
+      {"_N_per_s", "N/s"},
+      {"_Ns_per_m", "N s/m"},
+      {"_N_per_m", "N/m"},
+      {"_kg_per_m3", "kg/m^3"},
+      {"_kg_m2", "kg m^2"},
+      {"_m_per_s", "m/s"},
+      {"_mm2", "mm^2"},
+      {"_mm", "mm"},
+      {"_ms", "ms"},
+      {"_deg", "degrees"},
+      {"_rad", "rad"},
+      {"_Nm", "N m"},
+      {"_N", "N"},
+      {"_Pa", "Pa"},
+      {"_kg", "kg"},
+      {"_s", "s"},
+      {"_ticks", "ticks"},
   };
   for (const auto& [suffix, unit] : kUnits)
     if (key.ends_with(suffix)) return unit;
@@ -128,9 +143,7 @@ std::string schema_markdown() {
     SceneDesc defaults;
     void* fields = table.open(defaults);
     const std::string name = table.name;
-    text += name.empty()      ? "### Top level\n"
-            : table.is_array ? "### `[[" + name + "]]`\n"
-                             : "### `[" + name + "]`\n";
+    text += name.empty() ? "### Top level\n" : table.is_array ? "### `[[" + name + "]]`\n" : "### `[" + name + "]`\n";
     text += std::string(table.meaning) + "\n\n| key | default | allowed | meaning |\n|---|---|---|---|\n";
     for (const KeySpec& key : table.keys)
       text += "| `" + std::string(key.key) + "` | " + default_text(key, fields) + " | " + allowed_text(key) + " | " +

@@ -109,9 +109,7 @@ std::vector<Vec3> box_points(const PieceCore& core, std::int32_t count) {
     ++n[longest];
   }
   std::vector<Vec3> point;
-  const auto place = [&](std::size_t a, std::int32_t i) {
-    return core.half_extent_m[a] * (2.0 * i / (n[a] - 1) - 1);
-  };
+  const auto place = [&](std::size_t a, std::int32_t i) { return core.half_extent_m[a] * (2.0 * i / (n[a] - 1) - 1); };
   for (std::int32_t i = 0; i < n[0]; ++i)
     for (std::int32_t j = 0; j < n[1]; ++j)
       for (std::int32_t k = 0; k < n[2]; ++k)

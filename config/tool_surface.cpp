@@ -78,8 +78,8 @@ std::vector<SurfaceSample> revolved_samples(const PieceCore& core) {
     if (!(band.area_m2 > 0)) continue;
     for (std::int32_t k = 0; k < kAround; ++k) {
       const double phi = 2 * kPi * (k + 0.5) / kAround;
-      sample.push_back({{band.radius_m * math::cos(phi), band.radius_m * math::sin(phi), band.z_m},
-                        band.area_m2 / kAround});
+      sample.push_back(
+          {{band.radius_m * math::cos(phi), band.radius_m * math::sin(phi), band.z_m}, band.area_m2 / kAround});
     }
   }
   return sample;
@@ -91,8 +91,8 @@ constexpr std::int32_t kBoxArc = 8;
 // Offset surface of a box: for each of the 27 sign patterns, a face (one non-zero sign), edge (two) or corner (three).
 void add_box_patch(const PieceCore& core, const std::array<std::int32_t, 3>& sign, std::vector<SurfaceSample>& sample) {
   const double m = core.margin_m;
-  std::vector<Vec3> offset;       // of the rounding, with
-  std::vector<double> share;      // its area per unit length or area of the core
+  std::vector<Vec3> offset;   // of the rounding, with
+  std::vector<double> share;  // its area per unit length or area of the core
   const double s[3] = {static_cast<double>(sign[0]), static_cast<double>(sign[1]), static_cast<double>(sign[2])};
   std::vector<std::size_t> bent, flat;
   for (std::size_t a = 0; a < 3; ++a) (sign[a] != 0 ? bent : flat).push_back(a);

@@ -4,11 +4,13 @@
 
 #include "hal/loopback.h"
 #include "hal/socketcan.h"
+#include "hal/usb_hid.h"
 
 namespace palpate {
 namespace {
 
-constexpr const char* kAllowed = "use auto, can:IFACE or loopback[:NAME], with optional ,classic and ,node=1..15";
+constexpr const char* kAllowed =
+    "use auto, can:IFACE, usb:/dev/hidrawN or loopback[:NAME], with optional ,classic and ,node=1..15";
 
 bool parse_option(const std::string& option, DeviceAddress& address, std::string& error) {
   constexpr const char* kNode = "node=";
@@ -57,6 +59,10 @@ std::optional<DeviceAddress> parse_device_address(const std::string& text, std::
     address.kind = TransportKind::kCan;
     address.name = where.substr(4);
     line = "device: CAN interface " + address.name + " (as asked)";
+  } else if (where.rfind("usb:/", 0) == 0) {
+    address.kind = TransportKind::kUsb;
+    address.name = where.substr(4);
+    line = "device: USB HID " + address.name + " (as asked)";
   } else if (where == "loopback" || (where.rfind("loopback:", 0) == 0 && where.size() > 9)) {
     if (where.size() > 9) address.name = where.substr(9);
     line = "device: loopback " + address.name + " (as asked)";
@@ -73,6 +79,8 @@ std::unique_ptr<Transport> open_transport(const DeviceAddress& address, DeviceSi
   if (address.kind == TransportKind::kLoopback)
     return side == DeviceSide::kController ? accept_loopback(address.name, timeout_ms, error)
                                            : connect_loopback(address.name, timeout_ms, error);
+  if (address.kind == TransportKind::kUsb)
+    return open_usb_hid(address.name, side == DeviceSide::kController ? UsbSide::kController : UsbSide::kDevice, error);
   const WireIds ids = side == DeviceSide::kController ? status_ids(address.profile, address.node)
                                                       : command_ids(address.profile, address.node);
   const std::span<const std::uint32_t> wanted(ids.id, static_cast<std::size_t>(ids.count));

@@ -9,18 +9,18 @@
 
 namespace palpate {
 
-enum class TransportKind : int { kLoopback = 0, kCan = 1 };
+enum class TransportKind : int { kLoopback = 0, kCan = 1, kUsb = 2 };
 
 struct DeviceAddress {
   TransportKind kind = TransportKind::kLoopback;
-  std::string name = "palpate";  // CAN interface; loopback socket name (abstract) or path
+  std::string name = "palpate";  // CAN interface; loopback socket name (abstract) or path; HID device file
   WireProfile profile = WireProfile::kFd;
   int node = 1;
 };
 
-// Reads "auto", "can:IFACE" or "loopback[:NAME]", each with optional ",classic" and ",node=N" (1..15). "auto" takes a
-// CAN interface if there is one, else the loopback. Empty on bad text, with `error` saying what is allowed; otherwise
-// `line` says in one line what was chosen and why.
+// Reads "auto", "can:IFACE", "usb:/dev/hidrawN" or "loopback[:NAME]", each with optional ",classic" and ",node=N"
+// (1..15). "auto" takes a CAN interface if there is one, else the loopback. Empty on bad text, with `error` saying what
+// is allowed; otherwise `line` says in one line what was chosen and why.
 std::optional<DeviceAddress> parse_device_address(const std::string& text, std::string& line, std::string& error);
 
 enum class DeviceSide : int { kController = 0, kDevice = 1 };

@@ -66,6 +66,10 @@ struct ModelParams {
 struct Triangle {
   std::int32_t vertex[3];    // counter-clockwise seen from outside
   std::int32_t adjacent[3];  // triangle across edge (vertex[k], vertex[(k+1)%3])
+  // Clearance: outside the ring (the triangles that share a vertex with this one) no surface point is nearer than
+  // clear_radius_m to the point centroid + clear_scale_per_m * cross(edge 0, -edge 2). 0: unknown.
+  float clear_scale_per_m = 0;
+  float clear_radius_m = 0;
 };
 // Node of a 4-wide hierarchy over the triangles. Bounds are single precision, rounded outward. The normal cone of a child
 // (axis, tangent of its half-angle) holds the normals of all its triangles and of their neighbours across edges and

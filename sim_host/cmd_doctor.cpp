@@ -2,7 +2,7 @@
 #include <cstdio>
 #include <memory>
 
-#include "fmt/format.h"
+#include <fmt/format.h>
 #include "sim_host/cli.h"
 #include "sim_host/doctor.h"
 

@@ -24,6 +24,7 @@ struct PressOptions {
   std::string scene, path = "demo", out = "forces.csv", vtu, png, plot;
   int every = 1;
   bool resample = false;
+  double hand_N_per_m = -1;  // -1: the scene's for the demo, otherwise none
 };
 
 std::vector<TimedPose> poses_of(const PressOptions& options, const SceneModel& scene) {
@@ -35,6 +36,11 @@ std::vector<TimedPose> poses_of(const PressOptions& options, const SceneModel& s
   if (!scene.scene()) throw std::runtime_error("--path demo: an image holds no path; name the scene's .toml");
   if (scene.scene()->path.point.empty()) throw std::runtime_error("--path demo: the scene has no [[path.point]]");
   return scripted_poses(scene.scene()->path, period_s);
+}
+
+PressDrive drive_of(const PressOptions& options, const SceneModel& scene) {
+  if (options.hand_N_per_m >= 0) return {options.hand_N_per_m};
+  return {options.path == "demo" ? scene.scene()->path.hand_stiffness_N_per_m : 0.0};
 }
 
 // Rewrites one line of a terminal; silent when the output is not a terminal.
@@ -120,7 +126,7 @@ int run_press(const PressOptions& options) {
   Collected all;
   const Progress progress(poses.size());
   const auto state = std::make_unique<State>();
-  press(model, poses, *state, &counter, [&](const PressRow& row, const State& now, const Scratch&) {
+  press(model, poses, drive_of(options, scene), *state, &counter, [&](const PressRow& row, const State& now, const Scratch&) {
     all.add(row, now);
     csv.add(row);
     if (vtu && (all.rows - 1) % static_cast<std::uint64_t>(options.every) == 0) vtu->add(model, now, row.time_s);
@@ -148,6 +154,10 @@ void add_press_command(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(1, 1000000000));
   command->add_option("--png", options->png, "draw the deformed body at the largest force");
   command->add_option("--plot", options->plot, "draw the force history (.svg or .png)");
+  command->add_option("--hand", options->hand_N_per_m,
+                      "stiffness (N/m) of a hand that pulls the tool towards the poses; 0: the tool is at the poses; "
+                      "default: 0, or the scene's hand with `--path demo`")
+      ->check(CLI::Range(0.0, 1e6));
   command->add_flag("--resample", options->resample, "interpolate the poses by their time_s to one per tick period");
   command->footer(
       "One pose is one tick, friction history included. Columns of both tables: docs/press.md.\n"

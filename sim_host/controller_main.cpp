@@ -15,6 +15,7 @@
 #include <string>
 #include <thread>
 
+#include "hal/bus_budget.h"
 #include "hal/device_address.h"
 #include "hal/loop.h"
 #include "hal/loopback.h"
@@ -32,7 +33,8 @@ enum Exit { kOk = 0, kFaulted = 1, kUsage = 2, kUnavailable = 3, kSilentAtStart 
 constexpr char kHelp[] =
     "palpate-rt --image FILE --device ADDRESS [options]: the real-time controller\n"
     "  --image FILE        baked scene (palpate bake)\n"
-    "  --device ADDRESS    auto, can:IFACE or loopback[:NAME], each with optional ,classic and ,node=N\n"
+    "  --device ADDRESS    auto, can:IFACE, usb:/dev/hidrawN or loopback[:NAME], each with optional ,classic and "
+    ",node=N\n"
     "  --device-fd N       use the inherited socket N instead of opening the loopback\n"
     "  --control-fd N      inherited Unix socket to the host: telemetry and commands; default: none, arm at once\n"
     "  --duration S        stop after S seconds; default: when told to\n"
@@ -133,12 +135,23 @@ void connect_host(const Arguments& arguments, const Model& model, const State& i
   if (!send_descriptor(arguments.control_fd, 'T', host.telemetry.fd(), error)) throw Failure{kUnavailable, error};
 }
 
-std::unique_ptr<Transport> connect_device(const Arguments& arguments, DeviceAddress& address) {
+// A set-up that cannot carry its traffic in every period is refused before anything is sent, with the table.
+void check_bus(const DeviceAddress& address, double period_s) {
+  if (address.kind != TransportKind::kCan) return;
+  BusBudget budget = haptic_node_budget(address.profile == WireProfile::kFd);
+  budget.period_us = period_s * 1e6;
+  const BusVerdict verdict = check_bus_budget(budget);
+  std::fprintf(stderr, "%s", verdict.text.c_str());
+  if (!verdict.fits) throw Failure{kUnavailable, "the bus cannot carry this traffic in every period"};
+}
+
+std::unique_ptr<Transport> connect_device(const Arguments& arguments, double period_s, DeviceAddress& address) {
   std::string line, error;
   const std::optional<DeviceAddress> parsed = parse_device_address(arguments.device, line, error);
   if (!parsed) throw Failure{kUsage, error};
   address = *parsed;
   std::fprintf(stderr, "%s\n", line.c_str());
+  check_bus(address, period_s);
   std::unique_ptr<Transport> transport =
       arguments.device_fd >= 0 ? adopt_loopback(arguments.device_fd, error)
                                : open_transport(address, DeviceSide::kController, 5 * kSocketTimeout_ms, error);
@@ -202,7 +215,7 @@ int run(int argc, char** argv) {
   HostConnection host;
   if (arguments.control_fd >= 0) connect_host(arguments, model, core->state, host);
   DeviceAddress address;
-  const std::unique_ptr<Transport> transport = connect_device(arguments, address);
+  const std::unique_ptr<Transport> transport = connect_device(arguments, model.params.period_s, address);
   DeviceBus bus(*transport, address.profile, address.node);
   const LoopSummary summary = run_loop(arguments, model, *core, host, bus, interrupted);
   if (summary.end == LoopEnd::kSilentAtStart) {

@@ -1,7 +1,9 @@
-// The whole deformed surface of a body at one state, vertex by vertex: what pictures and ParaView files show. The
-// real-time core evaluates the same displacement field on demand only.
+// The whole deformed surface of a body at one state: what pictures and ParaView files show. The real-time core
+// evaluates the same displacement field on demand only.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <vector>
 
 #include "rt_core/model.h"
@@ -10,14 +12,20 @@
 namespace palpate {
 
 struct DeformedSurface {
-  std::vector<Vec3> displacement_m;  // world frame, per model vertex
-  std::vector<Vec3> position_m;      // rest position plus displacement
-  std::vector<Vec3> normal;          // of the deformed surface, angle-weighted, outward
+  std::vector<Vec3> rest_m;
+  std::vector<std::array<std::int32_t, 3>> triangle;  // counter-clockwise seen from outside
+  std::vector<Vec3> displacement_m;                   // world frame, per vertex
+  std::vector<Vec3> position_m;                       // rest position plus displacement
+  std::vector<Vec3> normal;                           // of the deformed surface, angle-weighted, outward
 };
 
-// From a given displacement field; `displacement_m` has one entry per model vertex.
+// On the model's vertices, with a given displacement for each.
 DeformedSurface deformed_surface(const Model& model, std::vector<Vec3> displacement_m);
-// From the shape models of the scene.
+// On the model's vertices, from the shape models of the scene.
 DeformedSurface deformed_surface(const Model& model, const State& state);
+// The same on a mesh refined for drawing, up to `most_triangles`: edges are halved and the new points rounded by the
+// vertex normals (Phong tessellation, Boubekeur & Alexa 2008), except across creases. Not refined where the shape law is
+// only known at the model's vertices (displacement angles).
+DeformedSurface refined_surface(const Model& model, const State& state, std::size_t most_triangles = 250'000);
 
 }  // namespace palpate

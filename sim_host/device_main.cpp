@@ -22,7 +22,7 @@ enum Exit { kOk = 0, kUsage = 2, kUnavailable = 3 };
 
 constexpr char kHelp[] =
     "palpate-device --device ADDRESS [options]: a simulated device and hand\n"
-    "  --device ADDRESS   can:IFACE or loopback[:NAME], each with optional ,classic and ,node=N\n"
+    "  --device ADDRESS   can:IFACE, usb:/dev/hidgN or loopback[:NAME], each with optional ,classic and ,node=N\n"
     "  --device-fd N      use the inherited socket N instead of opening the loopback\n"
     "  --path FILE        the hand's motion: time_s,x_mm,y_mm,z_mm[,rx_deg,ry_deg,rz_deg]; default: rests at the "
     "origin\n"
@@ -32,10 +32,11 @@ constexpr char kHelp[] =
     "  --set NAME=VALUE   a property of device or hand, repeatable; SI units:\n";
 
 // X(name): members of PlantOptions that --set reaches.
-#define PALPATE_PLANT_OPTIONS(X)                                                                                     \
-  X(mass_kg)                                                                                                         \
-  X(damping_N_s_per_m) X(friction_N) X(inertia_kg_m2) X(damping_Nm_s_per_rad) X(friction_Nm) X(encoder_m) X(noise_m) \
-      X(force_max_N) X(torque_max_Nm) X(hand_mass_kg) X(hand_stiffness_N_per_m) X(hand_damping_N_s_per_m)            \
+#define PALPATE_PLANT_OPTIONS(X)                                                                               \
+  X(mass_kg)                                                                                                   \
+  X(damping_N_s_per_m)                                                                                         \
+  X(friction_N) X(inertia_kg_m2) X(damping_Nm_s_per_rad) X(friction_Nm) X(encoder_m) X(noise_m) X(force_max_N) \
+      X(torque_max_Nm) X(hand_mass_kg) X(hand_stiffness_N_per_m) X(hand_damping_N_s_per_m)                     \
           X(hand_stiffness_Nm_per_rad) X(hand_damping_Nm_s_per_rad) X(period_s)
 
 struct Failure {

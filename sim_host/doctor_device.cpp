@@ -2,7 +2,7 @@
 #include <cctype>
 #include <nlohmann/json.hpp>
 
-#include "fmt/format.h"
+#include <fmt/format.h>
 #include "sim_host/doctor.h"
 #include "sim_host/doctor_files.h"
 

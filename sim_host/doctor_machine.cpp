@@ -3,7 +3,7 @@
 
 #include <cstdio>
 
-#include "fmt/format.h"
+#include <fmt/format.h>
 #include "sim_host/doctor.h"
 #include "sim_host/doctor_files.h"
 

@@ -99,9 +99,9 @@ void Renderer::draw_body() {
   mesh.position_m = surface_.position_m;
   mesh.normal = surface_.normal;
   for (const Vec3 d : surface_.displacement_m) mesh.value.push_back(norm(d));
-  for (const Triangle& t : model_.triangle) mesh.triangle.push_back({t.vertex[0], t.vertex[1], t.vertex[2]});
+  mesh.triangle = surface_.triangle;
   solid_.draw(mesh, projection_, kBody);
-  mesh.position_m.assign(model_.vertex_m.begin(), model_.vertex_m.end());
+  mesh.position_m = surface_.rest_m;
   rest_.draw(mesh, projection_, kBody);
 }
 
@@ -148,7 +148,7 @@ void Renderer::make_shadow() {
   RenderMesh body;
   body.position_m = surface_.position_m;
   body.normal = surface_.normal;
-  for (const Triangle& t : model_.triangle) body.triangle.push_back({t.vertex[0], t.vertex[1], t.vertex[2]});
+  body.triangle = surface_.triangle;
   layer.draw(body, Projection(above, kShadow, kShadow), kBody);
   shadow_.assign(kShadow * kShadow, 0.0f);
   for (int y = 0; y < kShadow; ++y) {
@@ -326,7 +326,7 @@ Canvas render_scene(const Model& model, const State& state, const DeformedSurfac
 }
 
 void save_picture(const std::string& path, const Model& model, const State& state, const PictureOptions& options) {
-  const Canvas canvas = render_scene(model, state, deformed_surface(model, state), options);
+  const Canvas canvas = render_scene(model, state, refined_surface(model, state), options);
   write_png(path, canvas.width(), canvas.height(), canvas.bytes());
 }
 

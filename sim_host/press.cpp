@@ -40,20 +40,40 @@ std::int64_t InstructionCounter::stop() {
   return read(fd_, &count, sizeof count) == static_cast<ssize_t>(sizeof count) ? count : -1;
 }
 
-void press(const Model& model, std::span<const TimedPose> poses, State& state, InstructionCounter* counter,
-           const PressListener& listen) {
+namespace {
+
+// Solves (K + h I) x = b for the symmetric 3x3 force block K of the contact's 6x6 stiffness, by Cramer's rule; h > 0
+// keeps it regular.
+Vec3 solve_with_hand(const double (&stiffness)[36], double h, Vec3 b) {
+  const Vec3 c0{stiffness[0] + h, stiffness[6], stiffness[12]};
+  const Vec3 c1{stiffness[1], stiffness[7] + h, stiffness[13]};
+  const Vec3 c2{stiffness[2], stiffness[8], stiffness[14] + h};
+  const double determinant = dot(c0, cross(c1, c2));
+  if (!(determinant > 1e-9 * h * h * h)) return (1 / h) * b;
+  return (1 / determinant) * Vec3{dot(b, cross(c1, c2)), dot(c0, cross(b, c2)), dot(c0, cross(c1, b))};
+}
+
+}  // namespace
+
+void press(const Model& model, std::span<const TimedPose> poses, const PressDrive& drive, State& state,
+           InstructionCounter* counter, const PressListener& listen) {
   reset(state);
   const auto scratch = std::make_unique<Scratch>();
   PressRow row;
   std::uint64_t sequence = 0;
+  Output output;
   for (const TimedPose& pose : poses) {
     row = {};
     row.time_s = pose.time_s;
     Input input;
     input.drive = Drive::kTool;
     input.pose_w = pose.tool_w;
+    if (drive.hand_N_per_m > 0 && sequence > 0) {
+      const Vec3 from = state.tool_w.position_m;
+      const Vec3 pull = drive.hand_N_per_m * (pose.tool_w.position_m - from) + output.contact_w.force_N;
+      input.pose_w.position_m = from + solve_with_hand(state.contact_stiffness, drive.hand_N_per_m, pull);
+    }
     input.commands = sequence == 0 ? Command::kArm : 0;
-    Output output;
     const auto begin = std::chrono::steady_clock::now();
     if (counter != nullptr) counter->start();
     tick(model, state, *scratch, input, output);

@@ -36,9 +36,17 @@ class InstructionCounter {
 // Called after every tick. `state` and `scratch` (the contacts) are the tick's; they change with the next one.
 using PressListener = std::function<void(const PressRow& row, const State& state, const Scratch& scratch)>;
 
-// Resets `state`, then renders every pose with Drive::kTool: the virtual coupling is bypassed, so output.contact_w is
-// the wrench of the object on the tool held at that pose. `counter` may be null.
-void press(const Model& model, std::span<const TimedPose> poses, State& state, InstructionCounter* counter,
-           const PressListener& listen);
+// How the poses move the tool.
+struct PressDrive {
+  // 0: the poses are the tool's own. Otherwise they are where a hand pulls the tool with this spring: each tick moves the
+  // tool to where spring and contact balance, by one Newton step with the last tick's tangent (massless, quasi-static;
+  // orientation as given). For motions scripted for a hand, which aim deep below the surface.
+  double hand_N_per_m = 0;
+};
+
+// Resets `state`, then renders one tick per pose with Drive::kTool: the virtual coupling is bypassed, so output.contact_w
+// is the wrench of the object on the tool held at that pose. `counter` may be null.
+void press(const Model& model, std::span<const TimedPose> poses, const PressDrive& drive, State& state,
+           InstructionCounter* counter, const PressListener& listen);
 
 }  // namespace palpate

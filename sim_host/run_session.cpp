@@ -26,7 +26,7 @@ using std::chrono::milliseconds;
 
 // The controller takes 2 s without a heartbeat for the death of its host.
 constexpr milliseconds kHeartbeatPeriod{50};
-// Fresh samples seen before arming, so that the force does not ramp in on the first, perhaps wild, ones.
+// Ticks before arming, so that the force does not ramp in on the first, perhaps wild, ones.
 constexpr std::uint64_t kTicksBeforeArming = 50;
 
 // The simulated device stands for hardware, which nothing delays; but the controller comes first.
@@ -100,9 +100,10 @@ class Watch {
   void look() {
     TickRecord newest;
     if (!reader_.newest(newest)) return;
-    if (!armed_ && newest.sequence >= kTicksBeforeArming && newest.input.stale_ticks == 0) {
-      link_.mailbox().set(Command::kArm, false);
-      armed_ = true;
+    // Arming is an edge, ignored by a tick that happens to have no fresh sample: offer edges until one is taken.
+    if (newest.output.mode == Mode::kIdle && newest.sequence >= kTicksBeforeArming) {
+      arming_ = !arming_;
+      link_.mailbox().set(arming_ ? Command::kArm : 0, false);
     }
     // A latched fault leaves only by an operator's reset; there is none to ask here, so the run is over.
     faulted_ = newest.output.mode == Mode::kFault;
@@ -114,7 +115,7 @@ class Watch {
   TelemetryReader reader_;
   StatusLine line_;
   bool show_;
-  bool armed_ = false;
+  bool arming_ = false;
   bool faulted_ = false;
 };
 

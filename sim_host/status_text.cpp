@@ -4,7 +4,7 @@ namespace palpate {
 
 namespace {
 
-#define PALPATE_TEXT(name, bit, meaning, remedy) {#name + 1, bit, meaning, remedy},  // without the k
+#define PALPATE_TEXT(name, bit, meaning, remedy) {&#name[1], bit, meaning, remedy},  // without the k
 constexpr BitText kStatusTexts[] = {PALPATE_STATUS_BITS(PALPATE_TEXT)};
 constexpr BitText kFaultTexts[] = {PALPATE_FAULT_BITS(PALPATE_TEXT)};
 #undef PALPATE_TEXT

@@ -1,12 +1,15 @@
 #include "rt_core/collide/closest_point.h"
 
 #include "rt_core/collide/node_test.h"
+#include "rt_core/collide/ring.h"
 
 namespace palpate {
 
 namespace {
 
 constexpr double kUnlimited_m = 1e9;
+// Rings a walk may cross before the hierarchy is asked: a tool at 1 m/s crosses 1 mm per tick.
+constexpr std::int32_t kMaxWalk = 4;
 
 // Nearest triangle so far; starts as "nothing within the search radius".
 struct Best {
@@ -172,6 +175,34 @@ Vec3 face_normal(const Model& model, std::int32_t triangle) PALPATE_RT {
   return cross(b - a, c - a);
 }
 
+// Whether every surface point as near to p as `triangle` (at the given distance) lies in its ring: the ball about p is
+// inside the ball about the triangle's clearance point, which holds no other surface.
+bool is_certified(const Model& model, Vec3 p, std::int32_t triangle, double distance) PALPATE_RT {
+  const Triangle& t = model.triangle[static_cast<std::size_t>(triangle)];
+  const double spare = static_cast<double>(t.clear_radius_m) - distance;
+  if (!(spare > 0)) return false;
+  const Vec3 a = model.vertex_m[static_cast<std::size_t>(t.vertex[0])];
+  const Vec3 b = model.vertex_m[static_cast<std::size_t>(t.vertex[1])];
+  const Vec3 c = model.vertex_m[static_cast<std::size_t>(t.vertex[2])];
+  const Vec3 clear = (1.0 / 3.0) * (a + b + c) + static_cast<double>(t.clear_scale_per_m) * cross(b - a, c - a);
+  // The shrinking covers the rounding of this test, so that a triangle outside the ring cannot even tie.
+  return squared_norm(p - clear) < (1 - 1e-9) * (spare * spare);
+}
+
+// Walks from the warm triangle to nearer neighbours. True when the best triangle is proven to be the nearest of all,
+// at a price that does not depend on the size of the mesh. Bound: kMaxWalk rings.
+bool walk(const Model& model, Vec3 p, Best& best) PALPATE_RT {
+  for (std::int32_t step = 0; step < kMaxWalk && best.triangle != INT32_MAX; ++step) {
+    const std::int32_t centre = best.triangle;
+    const bool certified = is_certified(model, p, centre, square_root(best.distance2));
+    const auto visit = [&](std::int32_t index) PALPATE_RT { consider(model, p, index, best); };
+    if (!for_each_in_ring(model.triangle, centre, visit)) return false;
+    if (certified) return true;
+    if (best.triangle == centre) return false;
+  }
+  return false;
+}
+
 }  // namespace
 
 Vec3 pseudo_normal(const Model& model, std::int32_t triangle, Feature feature) PALPATE_RT {
@@ -194,7 +225,11 @@ SurfacePoint closest_surface_point(const Model& model, Vec3 p, double search_rad
   best.distance2 = radius * radius;
   const auto triangles = static_cast<std::int32_t>(model.triangle.size());
   if (warm_triangle >= 0 && warm_triangle < triangles) consider(model, p, warm_triangle, best);
-  Descent(model, p, best).run(result);
+  if (walk(model, p, best)) {
+    result.lower_bound_m = square_root(best.distance2);
+  } else {
+    Descent(model, p, best).run(result);
+  }
   if (best.triangle == INT32_MAX) return result;
 
   result.found = true;

@@ -10,10 +10,6 @@ namespace {
 // size.
 constexpr Real kParallelSine = 1e-2;
 
-BeamSection section_of(const Anchor& anchor) PALPATE_RT {
-  return {anchor.section_area_m2, anchor.section_inertia_m4, anchor.section_radius_m};
-}
-
 void clear_forces(Skeleton& skeleton) PALPATE_RT {
   skeleton.degenerate = false;
   skeleton.minimum_norm = false;
@@ -128,19 +124,6 @@ bool solve_skeleton(const Model& model, std::span<const Vec3> offset_w, Vec3 con
     return distribute_by_ratios(model.params.youngs_modulus_Pa, force_on_body_w, skeleton);
   }
   return distribute_by_stiffness(force_on_body_w, skeleton);
-}
-
-SkeletonAnchor skeleton_anchor(const Skeleton& skeleton, const Anchor& anchor, Real poisson_ratio,
-                               std::int32_t index) PALPATE_RT {
-  SkeletonAnchor result;
-  const StraightBeam& beam = skeleton.beam[index];
-  const Vec3 force = skeleton.force_w[index];
-  result.stress = anchor_stress(beam, section_of(anchor), poisson_ratio, force);
-  if (anchor.fixed == 0) {
-    // K_i^-1 F_i: the skeleton's own displacement in the stiffness law, each beam's own in the paper's.
-    result.displacement_w = released_displacement(beam, beam_tip_displacement(beam, force), anchor.release_length_m);
-  }
-  return result;
 }
 
 }  // namespace palpate

@@ -21,6 +21,10 @@ struct Skeleton {
   Vec3 force_w[kMaxAnchors];  // on each beam's tip
 };
 
+inline BeamSection section_of(const Anchor& anchor) PALPATE_RT {
+  return {anchor.section_area_m2, anchor.section_inertia_m4, anchor.section_radius_m};
+}
+
 // Result of one anchor.
 struct SkeletonAnchor {
   BeamStress stress;
@@ -43,8 +47,9 @@ void build_skeleton(const SkeletonSetup& setup, std::span<const Anchor> anchor, 
                     Vec3 contact_w, Skeleton& skeleton) PALPATE_RT;
 
 // Stiffness law: K = sum K_i, d = K^-1 F, F_i = K_i d. Exact: sum F_i = F and F.d/2 = sum d.K_i d/2. K is factored by
-// Cholesky, not inverted by cofactors: a long thin beam alone has a condition number near 1e6, where cofactors lose ten
-// digits of sum F_i = F and Cholesky none. Returns false (and sets degenerate) when K is singular or F is not finite.
+// Cholesky, not inverted by cofactors: for one long thin beam (condition number near 1e6) the determinant is 1e-12 of
+// its terms, which leaves four digits; Cholesky keeps sum F_i = F. Returns false (and sets degenerate) when K is
+// singular or F is not finite.
 bool distribute_by_stiffness(Vec3 force_on_body_w, Skeleton& skeleton) PALPATE_RT;
 
 // The paper's ratios (Luo & Xiao 2006, equations (6), (7), (8)): F_i = alpha (S_i/l_i)(x_i.D) x_i +
@@ -59,7 +64,17 @@ bool solve_skeleton(const Model& model, std::span<const Vec3> offset_w, Vec3 con
                     Skeleton& skeleton) PALPATE_RT;
 
 // Stress and displacement of anchor `index` (< count) under its beam's share of the force.
-SkeletonAnchor skeleton_anchor(const Skeleton& skeleton, const Anchor& anchor, Real poisson_ratio,
-                               std::int32_t index) PALPATE_RT;
+inline SkeletonAnchor skeleton_anchor(const Skeleton& skeleton, const Anchor& anchor, Real poisson_ratio,
+                                      std::int32_t index) PALPATE_RT {
+  SkeletonAnchor result;
+  const StraightBeam& beam = skeleton.beam[index];
+  const Vec3 force = skeleton.force_w[index];
+  result.stress = anchor_stress(beam, section_of(anchor), poisson_ratio, force);
+  if (anchor.fixed == 0) {
+    // K_i^-1 F_i: the skeleton's own displacement in the stiffness law, each beam's own in the paper's.
+    result.displacement_w = released_displacement(beam, beam_tip_displacement(beam, force), anchor.release_length_m);
+  }
+  return result;
+}
 
 }  // namespace palpate

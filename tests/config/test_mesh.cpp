@@ -269,8 +269,7 @@ std::string stl_bytes(const SurfaceMesh& mesh) {
 std::string ply_text(const SurfaceMesh& mesh) {
   std::string text = "ply\nformat ascii 1.0\nelement vertex " + std::to_string(mesh.vertex_m.size()) +
                      "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
-                     std::to_string(mesh.triangle.size()) +
-                     "\nproperty list uchar int vertex_indices\nend_header\n";
+                     std::to_string(mesh.triangle.size()) + "\nproperty list uchar int vertex_indices\nend_header\n";
   char line[128];
   for (const Vec3& p : mesh.vertex_m) {
     std::snprintf(line, sizeof line, "%.9g %.9g %.9g\n", 1e3 * p.x, 1e3 * p.y, 1e3 * p.z);

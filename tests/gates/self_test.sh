@@ -60,6 +60,10 @@ source_gate fail words tests/a.cpp "GTEST_""SKIP();\n"
 source_gate fail words docs/a.md "see /wo""rk/main/run\n"
 source_gate fail words docs/a.md "see ../sha""red/notes\n"
 
+source_gate pass links docs/a.md '[a](a.md) [b](https://example.org/x.md) [c](a.md#part)\n'
+source_gate fail links docs/a.md '[a](missing.md)\n'
+source_gate fail links rt_core/a.cpp '// see docs/missing.md\n'
+
 compile() { "$compiler" -std=c++20 -O1 -fPIC "$@"; }
 archive() { # NAME TEXT
   printf '%b' "$2" >"$work/$1.cpp"
