@@ -40,7 +40,7 @@ class Clearance {
     ring_.clear();
     ring_.push_back(index);
     const auto add = [this](std::int32_t i) noexcept { ring_.push_back(i); };
-    if (!(length > 0) || !for_each_in_ring(bvh_.triangle, index, add)) return;
+    if (!(length > 0) || !for_each_in_ring(bvh_.triangle.data(), index, add)) return;
     double height = 0.25 * size_;
     for (int i = 0; i < kHeightsTried; ++i, height *= 0.5) {
       const float scale = static_cast<float>(height / length);

@@ -150,6 +150,7 @@ std::string schema_markdown() {
               key.meaning + " |\n";
     text += "\n";
   }
+  text.pop_back();  // no empty line at the end
   return text;
 }
 

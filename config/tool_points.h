@@ -23,7 +23,8 @@ Tool make_tool(const std::vector<PieceDesc>& pieces);
 
 // Core points of one piece, piece frame.
 std::vector<Vec3> core_points(const PieceCore& core, std::int32_t count);
-// Largest distance from a sample to the union of spheres about `point`.
+// Largest distance from a sample to the union of spheres about `point`; samples are 1/168 of a side apart, so the true
+// figure can be larger by about half of that.
 double coverage_gap_m(const std::vector<SurfaceSample>& sample, const std::vector<Vec3>& point, double margin_m);
 // Rotation by a rotation vector of any length.
 Quat rotation_of(Vec3 rotation_rad);

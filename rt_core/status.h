@@ -22,8 +22,7 @@ namespace palpate {
     "soften the object or raise device.force_max_N within the device's data sheet")                                  \
   X(kRateLimited, 6, "the force change per tick exceeded the fault limiter",                                         \
     "look for a jump in the device position; raise device.force_rate_max_N_per_s")                                   \
-  X(kInputHeld, 7, "no fresh device sample this tick; the last one is held",                                         \
-    "see docs/real_time_rules.md, missed samples")                                                                   \
+  X(kInputHeld, 7, "no fresh device sample this tick; the last one is held", "see docs/realtime.md, missed samples") \
   X(kInputRejected, 8, "a device sample was not finite or jumped further than the device can move",                  \
     "check encoder and bus")                                                                                         \
   X(kCouplingSingular, 9, "a small linear system was singular; the step was skipped", "report this scene")           \

@@ -49,7 +49,8 @@ int run_latency(const LatencyOptions& options) {
   if (!options.histfile.empty()) write_text(options.histfile, cyclictest_text(threads));
   if (!options.json.empty()) write_text(options.json, cyclictest_json(threads, run));
   if (!options.plot.empty()) {
-    const std::string machine = fmt::format("{} {}{}", run.sysname, run.release, run.realtime_kernel ? " PREEMPT_RT" : "");
+    const std::string machine =
+        fmt::format("{} {}{}", run.sysname, run.release, run.realtime_kernel ? " PREEMPT_RT" : "");
     latency_drawing(*data, fmt::format("{} ticks, {}", data->summary.ticks, machine)).save(options.plot);
     fmt::print("wrote   {}\n", options.plot);
   }
@@ -65,7 +66,8 @@ int run_latency(const LatencyOptions& options) {
 
 void add_latency_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<LatencyOptions>();
-  CLI::App* command = app.add_subcommand("latency", "Measure wake-up latency, or show where a recorded run's time went");
+  CLI::App* command =
+      app.add_subcommand("latency", "Measure wake-up latency, or show where a recorded run's time went");
   auto* recording = command->add_option("--recording", options->recording, "recording of `palpate run`");
   command->add_option("--duration", options->measure.duration_s, "seconds to measure")
       ->capture_default_str()

@@ -62,8 +62,9 @@ History read_history(const MappedFile& file) {
 void state_at(const MappedFile& file, const Model& model, std::uint64_t wanted, State& state) {
   RecordingReader recording(file.bytes());
   if (recording.header().scene_hash != model.scene_hash) {
-    throw std::runtime_error(fmt::format("recorded with scene {:016x}, but this image is {:016x}; name the right --image",
-                                         recording.header().scene_hash, model.scene_hash));
+    throw std::runtime_error(
+        fmt::format("recorded with scene {:016x}, but this image is {:016x}; name the right --image",
+                    recording.header().scene_hash, model.scene_hash));
   }
   state = recording.initial_state();
   const auto scratch = std::make_unique<Scratch>();
@@ -71,7 +72,8 @@ void state_at(const MappedFile& file, const Model& model, std::uint64_t wanted, 
   Output output;
   while (recording.next(record)) {
     if (record.tick != state.tick) {
-      throw std::runtime_error(fmt::format("tick {} is missing in the recording: nothing after it can be drawn", state.tick));
+      throw std::runtime_error(
+          fmt::format("tick {} is missing in the recording: nothing after it can be drawn", state.tick));
     }
     tick(model, state, *scratch, record.input, output);
     if (record.tick == wanted) return;
@@ -85,8 +87,8 @@ int draw_recording(const DrawOptions& options, const MappedFile& file) {
   const History history = read_history(file);
   const std::uint64_t wanted = options.tick >= 0 ? static_cast<std::uint64_t>(options.tick) : history.strongest_tick;
   if (wanted < history.first_tick || wanted > history.last_tick) {
-    throw std::runtime_error(fmt::format("--tick {}: the recording holds ticks {} to {}", wanted, history.first_tick,
-                                         history.last_tick));
+    throw std::runtime_error(
+        fmt::format("--tick {}: the recording holds ticks {} to {}", wanted, history.first_tick, history.last_tick));
   }
   const auto state = std::make_unique<State>();
   state_at(file, image.model(), wanted, *state);

@@ -53,7 +53,9 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
   void at(std::size_t done) const {
-    if (shown_ && done % 1000 == 0) fmt::print(stderr, "\r{:3.0f} % of {} poses", 100.0 * static_cast<double>(done) / static_cast<double>(total_), total_);
+    if (shown_ && done % 1000 == 0)
+      fmt::print(stderr, "\r{:3.0f} % of {} poses", 100.0 * static_cast<double>(done) / static_cast<double>(total_),
+                 total_);
   }
 
  private:
@@ -120,18 +122,20 @@ int run_press(const PressOptions& options) {
   if (!options.vtu.empty()) vtu.emplace(options.vtu);
   InstructionCounter counter;
   if (!counter.available()) {
-    fmt::print(stderr, "note: this kernel does not count instructions for us (perf_event_open: "
-                       "see /proc/sys/kernel/perf_event_paranoid); that column stays empty\n");
+    fmt::print(stderr,
+               "note: this kernel does not count instructions for us (perf_event_open: "
+               "see /proc/sys/kernel/perf_event_paranoid); that column stays empty\n");
   }
   Collected all;
   const Progress progress(poses.size());
   const auto state = std::make_unique<State>();
-  press(model, poses, drive_of(options, scene), *state, &counter, [&](const PressRow& row, const State& now, const Scratch&) {
-    all.add(row, now);
-    csv.add(row);
-    if (vtu && (all.rows - 1) % static_cast<std::uint64_t>(options.every) == 0) vtu->add(model, now, row.time_s);
-    progress.at(all.rows);
-  });
+  press(model, poses, drive_of(options, scene), *state, &counter,
+        [&](const PressRow& row, const State& now, const Scratch&) {
+          all.add(row, now);
+          csv.add(row);
+          if (vtu && (all.rows - 1) % static_cast<std::uint64_t>(options.every) == 0) vtu->add(model, now, row.time_s);
+          progress.at(all.rows);
+        });
   csv.finish();
   if (vtu) vtu->finish();
   print_summary(all, options);
@@ -154,9 +158,10 @@ void add_press_command(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(1, 1000000000));
   command->add_option("--png", options->png, "draw the deformed body at the largest force");
   command->add_option("--plot", options->plot, "draw the force history (.svg or .png)");
-  command->add_option("--hand", options->hand_N_per_m,
-                      "stiffness (N/m) of a hand that pulls the tool towards the poses; 0: the tool is at the poses; "
-                      "default: 0, or the scene's hand with `--path demo`")
+  command
+      ->add_option("--hand", options->hand_N_per_m,
+                   "stiffness (N/m) of a hand that pulls the tool towards the poses; 0: the tool is at the poses; "
+                   "default: 0, or the scene's hand with `--path demo`")
       ->check(CLI::Range(0.0, 1e6));
   command->add_flag("--resample", options->resample, "interpolate the poses by their time_s to one per tick period");
   command->footer(

@@ -176,6 +176,16 @@ struct Core {
   Scratch scratch;
 };
 
+// What the device sent before the loop started is old, and reading it all would make the first tick late.
+void drain(DeviceBus& bus) {
+  constexpr int kMostReads = 16;  // 1024 frames: more than a socket holds
+  DeviceSample sample;
+  for (int i = 0; i < kMostReads; ++i) {
+    bus.receive(sample);
+    if (!sample.fresh) return;
+  }
+}
+
 // The real-time thread: set-up, system-call filter, loop. Prints only before the filter is in place.
 LoopSummary run_loop(const Arguments& arguments, const Model& model, Core& core, HostConnection& host, DeviceBus& bus,
                      const std::atomic<bool>& interrupted) {
@@ -198,6 +208,7 @@ LoopSummary run_loop(const Arguments& arguments, const Model& model, Core& core,
     std::fprintf(stderr, "%s%s\n", setup.text().c_str(),
                  filtered ? "ok       system-call filter: only what the loop needs"
                           : ("REFUSED  system-call filter: " + reason).c_str());
+    drain(bus);
     Loop loop(device, clock, controller, sink, port, kinematics, loop_options(model, arguments), stop);
     summary = loop.run();
     summary.faults |= port.faults();

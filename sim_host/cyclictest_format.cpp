@@ -64,11 +64,16 @@ std::string cyclictest_text(const std::vector<MicrosecondHistogram>& threads) {
     for (const MicrosecondHistogram& thread : threads) text += fmt::format(" {:0{}}", value(thread), width);
     text += '\n';
   };
-  line("Total", [](const auto& thread) { return thread.cycles - thread.overflows; }, 9);
-  line("Min Latencies", [](const auto& thread) { return thread.min_us; }, 5);
-  line("Avg Latencies", [](const auto& thread) { return std::lround(std::floor(mean_us(thread))); }, 5);
-  line("Max Latencies", [](const auto& thread) { return thread.max_us; }, 5);
-  line("Histogram Overflows", [](const auto& thread) { return thread.overflows; }, 5);
+  line(
+      "Total", [](const auto& thread) { return thread.cycles - thread.overflows; }, 9);
+  line(
+      "Min Latencies", [](const auto& thread) { return thread.min_us; }, 5);
+  line(
+      "Avg Latencies", [](const auto& thread) { return std::lround(std::floor(mean_us(thread))); }, 5);
+  line(
+      "Max Latencies", [](const auto& thread) { return thread.max_us; }, 5);
+  line(
+      "Histogram Overflows", [](const auto& thread) { return thread.overflows; }, 5);
   text += "# Histogram Overflow at cycle number:\n";
   for (std::size_t t = 0; t < threads.size(); ++t) {
     text += fmt::format("# Thread {}:", t);

@@ -10,7 +10,7 @@
 
 namespace palpate {
 
-inline constexpr std::int32_t kCyclictestBins = 2000;        // one per microsecond
+inline constexpr std::int32_t kCyclictestBins = 2000;         // one per microsecond
 inline constexpr std::int32_t kCyclictestOverflowsKept = 64;  // cycle numbers of the first overflows
 
 // What one cyclictest thread keeps. Plain data; `add` may run in the real-time loop.
@@ -26,7 +26,8 @@ inline void add(MicrosecondHistogram& histogram, std::int64_t value_ns) PALPATE_
   if (us < kCyclictestBins) {
     histogram.count[us] += 1;
   } else {
-    if (histogram.overflows < kCyclictestOverflowsKept) histogram.overflow_cycle[histogram.overflows] = histogram.cycles;
+    if (histogram.overflows < kCyclictestOverflowsKept)
+      histogram.overflow_cycle[histogram.overflows] = histogram.cycles;
     histogram.overflows += 1;
   }
   if (histogram.cycles == 0 || us < histogram.min_us) histogram.min_us = us;

@@ -61,7 +61,8 @@ void refine(DeformedSurface& surface, std::vector<Vec3>& normal) {
   constexpr double kRounding = 0.75;
   std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> middles;
   const auto middle = [&](std::int32_t a, std::int32_t b) {
-    const auto [entry, is_new] = middles.try_emplace(std::minmax(a, b), static_cast<std::int32_t>(surface.rest_m.size()));
+    const auto [entry, is_new] =
+        middles.try_emplace(std::minmax(a, b), static_cast<std::int32_t>(surface.rest_m.size()));
     if (is_new) {
       const Vec3 p = 0.5 * (surface.rest_m[at(a)] + surface.rest_m[at(b)]), na = normal[at(a)], nb = normal[at(b)];
       const Vec3 lift = dot(surface.rest_m[at(a)] - p, na) * na + dot(surface.rest_m[at(b)] - p, nb) * nb;
@@ -102,8 +103,8 @@ DeformedSurface refined_surface(const Model& model, const State& state, std::siz
   while (everywhere && 4 * surface.triangle.size() <= most_triangles) refine(surface, normal);
   displace(model, state, surface);
   finish(surface);
-  // Rounded points are not quite smooth across the old edges. So only the turn of the normal by the deformation is taken
-  // from the points, and the normal at rest from the interpolation, except at creases.
+  // Rounded points are not quite smooth across the old edges. So only the turn of the normal by the deformation is
+  // taken from the points, and the normal at rest from the interpolation, except at creases.
   const std::vector<Vec3> at_rest = mesh_normals(surface.rest_m, surface.triangle);
   for (std::size_t i = 0; i < normal.size(); ++i) {
     if (dot(normal[i], at_rest[i]) < 0.97) continue;

@@ -32,12 +32,23 @@ constexpr char kHelp[] =
     "  --set NAME=VALUE   a property of device or hand, repeatable; SI units:\n";
 
 // X(name): members of PlantOptions that --set reaches.
-#define PALPATE_PLANT_OPTIONS(X)                                                                               \
-  X(mass_kg)                                                                                                   \
-  X(damping_N_s_per_m)                                                                                         \
-  X(friction_N) X(inertia_kg_m2) X(damping_Nm_s_per_rad) X(friction_Nm) X(encoder_m) X(noise_m) X(force_max_N) \
-      X(torque_max_Nm) X(hand_mass_kg) X(hand_stiffness_N_per_m) X(hand_damping_N_s_per_m)                     \
-          X(hand_stiffness_Nm_per_rad) X(hand_damping_Nm_s_per_rad) X(period_s)
+#define PALPATE_PLANT_OPTIONS(X) \
+  X(mass_kg)                     \
+  X(damping_N_s_per_m)           \
+  X(friction_N)                  \
+  X(inertia_kg_m2)               \
+  X(damping_Nm_s_per_rad)        \
+  X(friction_Nm)                 \
+  X(encoder_m)                   \
+  X(noise_m)                     \
+  X(force_max_N)                 \
+  X(torque_max_Nm)               \
+  X(hand_mass_kg)                \
+  X(hand_stiffness_N_per_m)      \
+  X(hand_damping_N_s_per_m)      \
+  X(hand_stiffness_Nm_per_rad)   \
+  X(hand_damping_Nm_s_per_rad)   \
+  X(period_s)
 
 struct Failure {
   int exit_code;

@@ -21,10 +21,17 @@ std::string escaped(const std::string& text) {
   std::string out;
   for (const char c : text) {
     switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      default: out += c;
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      default:
+        out += c;
     }
   }
   return out;
@@ -60,9 +67,10 @@ std::string Drawing::svg() const {
       width_, height_);
   const Overloaded write{
       [&out](const Line& line) {
-        out += fmt::format("<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"{:.3g}\" stroke-linejoin=\"round\"{} "
-                           "points=\"",
-                           hex(line.c), line.width, opacity_attribute(line.opacity));
+        out += fmt::format(
+            "<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"{:.3g}\" stroke-linejoin=\"round\"{} "
+            "points=\"",
+            hex(line.c), line.width, opacity_attribute(line.opacity));
         for (const Point2 p : line.points) out += fmt::format("{:.2f},{:.2f} ", p.x, p.y);
         out += "\"/>\n";
       },
@@ -72,11 +80,13 @@ std::string Drawing::svg() const {
       },
       [&out](const Text& t) {
         static constexpr const char* kAnchor[] = {"start", "middle", "end"};
-        const std::string turn = t.quarter_turn ? fmt::format(" transform=\"rotate(-90 {:.2f} {:.2f})\"", t.x, t.y) : "";
-        out += fmt::format("<text x=\"{:.2f}\" y=\"{:.2f}\" font-size=\"{:.3g}\" fill=\"{}\" text-anchor=\"{}\"{}{}>{}"
-                           "</text>\n",
-                           t.x, t.y, t.size, hex(t.c), kAnchor[static_cast<int>(t.align)],
-                           t.bold ? " font-weight=\"bold\"" : "", turn, escaped(t.text));
+        const std::string turn =
+            t.quarter_turn ? fmt::format(" transform=\"rotate(-90 {:.2f} {:.2f})\"", t.x, t.y) : "";
+        out += fmt::format(
+            "<text x=\"{:.2f}\" y=\"{:.2f}\" font-size=\"{:.3g}\" fill=\"{}\" text-anchor=\"{}\"{}{}>{}"
+            "</text>\n",
+            t.x, t.y, t.size, hex(t.c), kAnchor[static_cast<int>(t.align)], t.bold ? " font-weight=\"bold\"" : "", turn,
+            escaped(t.text));
       }};
   for (const auto& item : items_) std::visit(write, item);
   return out + "</svg>\n";
@@ -85,19 +95,18 @@ std::string Drawing::svg() const {
 Canvas Drawing::raster(double scale) const {
   Canvas canvas(static_cast<int>(std::lround(width_ * scale)), static_cast<int>(std::lround(height_ * scale)),
                 colour(0xffffff));
-  const Overloaded paint{[&](const Line& line) {
-                           Stroke scaled = line.points;
-                           for (Point2& p : scaled) p = {p.x * scale, p.y * scale};
-                           canvas.polyline(scaled, line.width * scale, line.c, line.opacity);
-                         },
-                         [&](const Rectangle& r) {
-                           canvas.rectangle(r.x * scale, r.y * scale, r.width * scale, r.height * scale, r.c,
-                                            r.opacity);
-                         },
-                         [&](const Text& t) {
-                           canvas.text(t.x * scale, t.y * scale, t.text, t.size * scale, t.c, t.align, t.quarter_turn,
-                                       t.bold);
-                         }};
+  const Overloaded paint{
+      [&](const Line& line) {
+        Stroke scaled = line.points;
+        for (Point2& p : scaled) p = {p.x * scale, p.y * scale};
+        canvas.polyline(scaled, line.width * scale, line.c, line.opacity);
+      },
+      [&](const Rectangle& r) {
+        canvas.rectangle(r.x * scale, r.y * scale, r.width * scale, r.height * scale, r.c, r.opacity);
+      },
+      [&](const Text& t) {
+        canvas.text(t.x * scale, t.y * scale, t.text, t.size * scale, t.c, t.align, t.quarter_turn, t.bold);
+      }};
   for (const auto& item : items_) std::visit(paint, item);
   return canvas;
 }

@@ -1,5 +1,6 @@
-// Fixed-memory log-linear histogram of durations: every value below 128 ns has its own bucket, above that each octave is
-// split into 64, so a bucket is never wider than 1/64 (1.6 %) of its value. Plain data: the real-time loop may own one.
+// Fixed-memory log-linear histogram of durations: every value below 128 ns has its own bucket, above that each octave
+// is split into 64, so a bucket is never wider than 1/64 (1.6 %) of its value. Plain data: the real-time loop may own
+// one.
 #pragma once
 
 #include <cstdint>

@@ -58,7 +58,8 @@ std::string array_row(const char* name, std::span<const T> values, const char* f
 std::string image_dump(const ImageHeader& header, const Model& model) {
   const std::string_view name(header.name, strnlen(header.name, sizeof header.name));
   std::string text = fmt::format(
-      "scene         {}\nversion       {}\nbytes         {}\nlayout hash   {:016x}\nchecksum      {:016x}\n\nparameters\n",
+      "scene         {}\nversion       {}\nbytes         {}\nlayout hash   {:016x}\nchecksum      "
+      "{:016x}\n\nparameters\n",
       name, header.version, header.total_bytes, header.layout_hash, header.checksum);
   const auto out = std::back_inserter(text);
 #define PALPATE_ROW(type, field, unit, lowest, highest, meaning) \

@@ -29,8 +29,8 @@ void add_wake(LatencyData& data, std::int64_t late_ns, std::uint64_t tick) {
 
 void row(std::string& text, const char* name, const Histogram& h) {
   if (h.total == 0 || h.max_ns == 0) return;
-  fmt::format_to(std::back_inserter(text), "  {:<14}{:>10.1f}{:>10.1f}{:>10.1f}{:>10}\n", name, us(percentile_ns(h, 0.5)),
-                 us(percentile_ns(h, 0.999)), us(h.max_ns), h.cycle_of_max);
+  fmt::format_to(std::back_inserter(text), "  {:<14}{:>10.1f}{:>10.1f}{:>10.1f}{:>10}\n", name,
+                 us(percentile_ns(h, 0.5)), us(percentile_ns(h, 0.999)), us(h.max_ns), h.cycle_of_max);
 }
 
 // The part of the worst tick that took longest, in words.
@@ -44,8 +44,8 @@ std::string worst_part(const TickTiming& t) {
                         {t.compute_ns, "computing"},
                         {t.transmit_ns, "sending to the device"},
                         {t.publish_ns, "publishing telemetry"}};
-  const Part& worst = *std::max_element(std::begin(parts), std::end(parts),
-                                        [](const Part& a, const Part& b) { return a.ns < b.ns; });
+  const Part& worst =
+      *std::max_element(std::begin(parts), std::end(parts), [](const Part& a, const Part& b) { return a.ns < b.ns; });
   return fmt::format("{:.0f} µs of it {}", us(worst.ns), worst.name);
 }
 
@@ -66,9 +66,10 @@ std::string verdict(const LatencyData& data) {
     text += fmt::format("Longest tick: number {}, {:.0f} µs, {}.\n", data.worst_tick, us(data.busy.max_ns),
                         worst_part(data.worst));
     if (data.summary.compute.total > 0 && data.busy.sum_ns > 0) {
-      text += fmt::format("On average {:.0f} % of a tick's time is waiting to wake up, {:.0f} % computing.\n",
-                          100.0 * static_cast<double>(data.summary.wake.sum_ns) / static_cast<double>(data.busy.sum_ns),
-                          100.0 * static_cast<double>(data.summary.compute.sum_ns) / static_cast<double>(data.busy.sum_ns));
+      text +=
+          fmt::format("On average {:.0f} % of a tick's time is waiting to wake up, {:.0f} % computing.\n",
+                      100.0 * static_cast<double>(data.summary.wake.sum_ns) / static_cast<double>(data.busy.sum_ns),
+                      100.0 * static_cast<double>(data.summary.compute.sum_ns) / static_cast<double>(data.busy.sum_ns));
     }
   }
   if (data.summary.missed_ticks > 0 || share >= 50) {
@@ -98,7 +99,8 @@ LatencyData latency_of_recording(const std::string& path) {
   TickRecord record;
   while (recording.next(record)) add(data, record);
   data.damage = recording.error();
-  if (data.damage.empty() && recording.lost() > 0) data.damage = fmt::format("{} records are missing", recording.lost());
+  if (data.damage.empty() && recording.lost() > 0)
+    data.damage = fmt::format("{} records are missing", recording.lost());
   return data;
 }
 
@@ -120,7 +122,8 @@ LatencyData measure_wake_up(const MeasureOptions& options, std::string& verdicts
       clock.wait_until(deadline_ns);
       const std::int64_t late_ns = clock.now_ns() - deadline_ns;
       add_wake(*data, late_ns, tick);
-      const std::int64_t missed = late_ns / options.period_ns;  // whole slots that passed: skipped, as the controller does
+      const std::int64_t missed =
+          late_ns / options.period_ns;  // whole slots that passed: skipped, as the controller does
       data->summary.missed_ticks += static_cast<std::uint64_t>(missed);
       deadline_ns += (missed + 1) * options.period_ns;
       ++data->summary.ticks;

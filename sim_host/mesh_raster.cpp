@@ -166,11 +166,8 @@ RenderMesh arrow_mesh(Vec3 tail_w, Vec3 tip_w, double shaft_radius_m) {
   const double length = norm(tip_w - tail_w);
   const double head = std::min(0.5 * length, 5 * shaft_radius_m);
   const Pose pose{tail_w, rotation_between({0, 0, 1}, unit_or(tip_w - tail_w, {0, 0, 1}))};
-  const Point2 profile[] = {{0, 0},
-                            {shaft_radius_m, 0},
-                            {shaft_radius_m, length - head},
-                            {2.2 * shaft_radius_m, length - head},
-                            {0, length}};
+  const Point2 profile[] = {
+      {0, 0}, {shaft_radius_m, 0}, {shaft_radius_m, length - head}, {2.2 * shaft_radius_m, length - head}, {0, length}};
   return revolved_mesh(pose, profile, 0);
 }
 

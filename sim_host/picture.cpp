@@ -41,7 +41,8 @@ class Renderer {
     choose_scale();
     draw_body();
     draw_anchors();
-    for (const ToolPiece& piece : model_.piece) tool_.draw(piece_mesh(model_, piece, state_.tool_w), projection_, kTool);
+    for (const ToolPiece& piece : model_.piece)
+      tool_.draw(piece_mesh(model_, piece, state_.tool_w), projection_, kTool);
     draw_arrows();
     make_shadow();
     Canvas canvas = resolve();
@@ -193,7 +194,8 @@ Colour Renderer::shade(Colour base, const Surfel& surfel, int x, int y, float gl
   const Vec3 back = -projection_.forward();
   const Vec3 key = unit_or(-0.55 * projection_.right() + 0.75 * projection_.up() + 0.55 * back, view);
   const Vec3 fill = unit_or(0.8 * projection_.right() + 0.1 * projection_.up() + 0.5 * back, view);
-  const double light = 0.44 + 0.50 * std::max(0.0, dot(n, key)) + 0.14 * std::max(0.0, dot(n, fill)) + 0.10 * dot(n, kWorldUp);
+  const double light =
+      0.44 + 0.50 * std::max(0.0, dot(n, key)) + 0.14 * std::max(0.0, dot(n, fill)) + 0.10 * dot(n, kWorldUp);
   const double highlight = std::pow(std::max(0.0, dot(n, unit_or(key + view, view))), 48.0);
   const auto lit = static_cast<float>(light), shine = gloss * static_cast<float>(highlight);
   return {base.r * lit + shine, base.g * lit + shine, base.b * lit + shine};
@@ -206,7 +208,8 @@ Colour Renderer::solid_colour(int x, int y) const {
   const Colour c = shade(displacement_colour(static_cast<double>(surfel.value) / scale_top_m_), surfel, x, y, 0.16f);
   // Contour line where a neighbour lies beyond another legend tick.
   const auto band = [this](const Surfel& s) {
-    return std::upper_bound(legend_mm_.begin(), legend_mm_.end(), static_cast<double>(s.value) * 1e3) - legend_mm_.begin();
+    return std::upper_bound(legend_mm_.begin(), legend_mm_.end(), static_cast<double>(s.value) * 1e3) -
+           legend_mm_.begin();
   };
   for (const int step : {1, 2}) {
     if (x + step < solid_.width() && solid_.at(x + step, y).material == kBody &&
@@ -267,7 +270,8 @@ Canvas Renderer::resolve() const {
       Colour sum{};
       for (int k = 0; k < samples_ * samples_; ++k) {
         const Colour c = sample(x * samples_ + k % samples_, y * samples_ + k / samples_);
-        sum.r += std::clamp(c.r, 0.0f, 1.0f), sum.g += std::clamp(c.g, 0.0f, 1.0f), sum.b += std::clamp(c.b, 0.0f, 1.0f);
+        sum.r += std::clamp(c.r, 0.0f, 1.0f), sum.g += std::clamp(c.g, 0.0f, 1.0f),
+            sum.b += std::clamp(c.b, 0.0f, 1.0f);
       }
       canvas.set_pixel(x, y, {sum.r * share, sum.g * share, sum.b * share});
     }

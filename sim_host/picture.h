@@ -17,11 +17,11 @@ inline constexpr Vec3 kWorldUp{0, 1, 0};
 
 struct PictureOptions {
   int width = 1200, height = 900;
-  int supersampling = 2;           // samples per pixel and axis, 1..4
-  std::optional<Camera> camera;    // otherwise `default_camera`
-  std::string title;               // otherwise the scene's name
-  double displacement_max_m = 0;   // top of the colour scale; 0: the largest displacement, rounded up
-  double force_max_N = 0;          // force of the longest arrow; 0: the largest region's
+  int supersampling = 2;          // samples per pixel and axis, 1..4
+  std::optional<Camera> camera;   // otherwise `default_camera`
+  std::string title;              // otherwise the scene's name
+  double displacement_max_m = 0;  // top of the colour scale; 0: the largest displacement, rounded up
+  double force_max_N = 0;         // force of the longest arrow; 0: the largest region's
 };
 
 // Sees the whole body, slightly from above, from the side on which the contacts are.

@@ -46,8 +46,10 @@ RenderMesh piece_mesh(const Model& model, const ToolPiece& piece, const Pose& to
   const double* half = piece.half_extent_m;
   const double r = half[0], h = half[2];
   switch (static_cast<PieceShape>(piece.shape)) {
-    case PieceShape::kSphere: return sphere_mesh(pose, piece.margin_m);
-    case PieceShape::kCapsule: return revolved_mesh(pose, std::array<Point2, 2>{{{0, -h}, {0, h}}}, piece.margin_m);
+    case PieceShape::kSphere:
+      return sphere_mesh(pose, piece.margin_m);
+    case PieceShape::kCapsule:
+      return revolved_mesh(pose, std::array<Point2, 2>{{{0, -h}, {0, h}}}, piece.margin_m);
     case PieceShape::kCylinder:
       return revolved_mesh(pose, std::array<Point2, 4>{{{0, -h}, {r, -h}, {r, h}, {0, h}}}, piece.margin_m);
     case PieceShape::kCone:

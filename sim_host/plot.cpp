@@ -117,7 +117,8 @@ std::vector<double> axis_ticks(double low, double high, int wanted) {
   const double step = power * (raw / power < 1.5 ? 1 : raw / power < 3.5 ? 2 : raw / power < 7.5 ? 5 : 10);
   std::vector<double> ticks;
   const double first = std::ceil(low / step - 1e-9);
-  for (int k = 0; k <= 10 * wanted && (first + k) * step <= high + 1e-9 * step; ++k) ticks.push_back((first + k) * step);
+  for (int k = 0; k <= 10 * wanted && (first + k) * step <= high + 1e-9 * step; ++k)
+    ticks.push_back((first + k) * step);
   return ticks;
 }
 
@@ -131,10 +132,9 @@ Drawing force_history_plot(std::span<const ForceSample> samples, const std::stri
   drawing.text(kLeft, 32, title, 18, kInk, Align::kStart, false, true);
   const double t0 = samples.empty() ? 0 : samples.front().time_s;
   const double t1 = samples.size() < 2 ? t0 + 1 : std::max(samples.back().time_s, t0 + 1e-9);
-  const Value values[] = {[](const ForceSample& s) { return s.force_N.x; },
-                          [](const ForceSample& s) { return s.force_N.y; },
-                          [](const ForceSample& s) { return s.force_N.z; },
-                          [](const ForceSample& s) { return norm(s.force_N); }};
+  const Value values[] = {
+      [](const ForceSample& s) { return s.force_N.x; }, [](const ForceSample& s) { return s.force_N.y; },
+      [](const ForceSample& s) { return s.force_N.z; }, [](const ForceSample& s) { return norm(s.force_N); }};
   const Value depth = [](const ForceSample& s) { return s.penetration_m * 1e3; };
   const Range force = range_of(samples, values), mm = range_of(samples, std::span<const Value>(&depth, 1));
   int most_regions = 1;
@@ -154,7 +154,8 @@ Drawing force_history_plot(std::span<const ForceSample> samples, const std::stri
   draw_legend(drawing, kWidth - kRight, 32, legend);
   if (samples.empty()) return drawing;
   drawing.line({{top.x(t0), top.y(0)}, {top.x(t1), top.y(0)}}, 1, kGrey);
-  for (int k : {3, 0, 1, 2}) drawing.line(trace(samples, top, values[k]), k == 3 ? 2.6 : 1.6, kSeries[k], k == 3 ? 0.85 : 1);
+  for (int k : {3, 0, 1, 2})
+    drawing.line(trace(samples, top, values[k]), k == 3 ? 2.6 : 1.6, kSeries[k], k == 3 ? 0.85 : 1);
   drawing.line(trace(samples, middle, depth), 1.8, kSeries[5]);
   draw_regions(drawing, bottom, samples);
   return drawing;
@@ -207,10 +208,12 @@ Drawing latency_plot(std::span<const LatencySeries> series, const std::string& t
   }
   const double x_low = std::floor(std::log10(smallest_us)), x_high = std::ceil(std::log10(largest_us * 1.05));
   const double legend_height = 22 * static_cast<double>(series.size());
-  const Panel panel{kLeft, 56 + legend_height, kWidth - kLeft - kRight, 330, x_low, x_high, 0, std::ceil(std::log10(most)) + 0.2};
+  const Panel panel{
+      kLeft, 56 + legend_height, kWidth - kLeft - kRight, 330, x_low, x_high, 0, std::ceil(std::log10(most)) + 0.2};
   const auto decades = [&drawing, &panel](bool horizontal, double low, double high) {
     for (double d = low; d <= high; d += 1) {
-      const std::string label = d < 0 ? fmt::format("{:g}", std::pow(10.0, d)) : fmt::format("{:.0f}", std::pow(10.0, d));
+      const std::string label =
+          d < 0 ? fmt::format("{:g}", std::pow(10.0, d)) : fmt::format("{:.0f}", std::pow(10.0, d));
       const double x = panel.x(d), y = panel.y(d);
       if (horizontal) {
         drawing.line({{x, panel.top}, {x, panel.top + panel.height}}, 0.8, kFaint);

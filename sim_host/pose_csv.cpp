@@ -79,7 +79,8 @@ Header read_header(std::string_view text, const std::string& name, int line) {
   all_or_none(kX, kZ, true);
   all_or_none(kRx, kRz, false);
   all_or_none(kQw, kQz, false);
-  if (header.has[kRx] && header.has[kQw]) refuse(name, line, "both a rotation vector and a quaternion; give one of them");
+  if (header.has[kRx] && header.has[kQw])
+    refuse(name, line, "both a rotation vector and a quaternion; give one of them");
   return header;
 }
 
@@ -98,7 +99,8 @@ Row read_row(std::string_view text, const Header& header, const std::string& nam
     double value = 0;
     const char* end = cells[i].data() + cells[i].size();
     const auto [stop, error] = std::from_chars(cells[i].data(), end, value);
-    if (error != std::errc{} || stop != end) refuse(name, line, fmt::format("{}: '{}' is not a number", label, cells[i]));
+    if (error != std::errc{} || stop != end)
+      refuse(name, line, fmt::format("{}: '{}' is not a number", label, cells[i]));
     if (!std::isfinite(value)) refuse(name, line, fmt::format("{}: '{}' is not finite", label, cells[i]));
     if (column >= kX && column <= kZ && std::abs(value) > kFarthest_mm) {
       refuse(name, line, fmt::format("{}: {:g} is outside -1e5 to 1e5 mm; check the unit", label, value));

@@ -12,7 +12,7 @@ namespace palpate {
 
 struct PressRow {
   double time_s = 0;
-  TickRecord record;               // inputs, outputs, regions and state hash of this tick
+  TickRecord record{};             // inputs, outputs, regions and state hash of this tick
   std::int64_t compute_ns = 0;     // of tick(), on this machine, now: not repeatable
   std::int64_t instructions = -1;  // of tick() in user space; -1 where the kernel does not count them
 };
@@ -38,14 +38,14 @@ using PressListener = std::function<void(const PressRow& row, const State& state
 
 // How the poses move the tool.
 struct PressDrive {
-  // 0: the poses are the tool's own. Otherwise they are where a hand pulls the tool with this spring: each tick moves the
-  // tool to where spring and contact balance, by one Newton step with the last tick's tangent (massless, quasi-static;
-  // orientation as given). For motions scripted for a hand, which aim deep below the surface.
+  // 0: the poses are the tool's own. Otherwise they are where a hand pulls the tool with this spring: each tick moves
+  // the tool to where spring and contact balance, by one Newton step with the last tick's tangent (massless,
+  // quasi-static; orientation as given). For motions scripted for a hand, which aim deep below the surface.
   double hand_N_per_m = 0;
 };
 
-// Resets `state`, then renders one tick per pose with Drive::kTool: the virtual coupling is bypassed, so output.contact_w
-// is the wrench of the object on the tool held at that pose. `counter` may be null.
+// Resets `state`, then renders one tick per pose with Drive::kTool: the virtual coupling is bypassed, so
+// output.contact_w is the wrench of the object on the tool held at that pose. `counter` may be null.
 void press(const Model& model, std::span<const TimedPose> poses, const PressDrive& drive, State& state,
            InstructionCounter* counter, const PressListener& listen);
 

@@ -16,14 +16,20 @@ SceneModel::SceneModel(const std::string& path) {
     return;
   }
   scene_ = load_scene(path);
+  compile();
+}
+
+SceneModel::SceneModel(const SceneDesc& scene) : scene_(scene) { compile(); }
+
+void SceneModel::compile() {
   const CompileResult compiled = compile_scene(*scene_);
   const std::size_t size = compiled.bytes.size();
   blocks_.resize((size + kImageAlignment - 1) / kImageAlignment);
   std::memcpy(blocks_.data(), compiled.bytes.data(), size);
   const ImageResult result = open_image({reinterpret_cast<const std::byte*>(blocks_.data()), size}, model_);
   if (result.error != ImageError::kNone) {
-    throw std::runtime_error(fmt::format("{}: the compiled scene fails its own check: {}: {}", path, result.field,
-                                         describe(result.error)));
+    throw std::runtime_error(fmt::format("{}: the compiled scene fails its own check: {}: {}", scene_->name,
+                                         result.field, describe(result.error)));
   }
 }
 

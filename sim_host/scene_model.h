@@ -16,11 +16,13 @@ class SceneModel {
  public:
   // Throws ConfigError or std::runtime_error, naming the file and what is wrong with it.
   explicit SceneModel(const std::string& path);
+  explicit SceneModel(const SceneDesc& scene);
   const Model& model() const { return file_ ? file_->model() : model_; }
   // The description, known only for a .toml.
   const std::optional<SceneDesc>& scene() const { return scene_; }
 
  private:
+  void compile();
   struct alignas(kImageAlignment) Block {
     std::byte bytes[kImageAlignment];
   };

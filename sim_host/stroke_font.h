@@ -1,5 +1,5 @@
-// A small stroke font of our own (ASCII letters, digits, common signs, the micro sign), so that pictures carry text on a
-// machine without any installed font.
+// A small stroke font of our own (ASCII letters, digits, common signs, the micro sign), so that pictures carry text on
+// a machine without any installed font.
 #pragma once
 
 #include <string_view>

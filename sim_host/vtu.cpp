@@ -23,8 +23,8 @@ std::string encoded(const std::vector<T>& values) {
 
 template <typename T>
 std::string array(const char* type, const char* name, int components, const std::vector<T>& values) {
-  return fmt::format("<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"binary\">{}</DataArray>\n", type,
-                     name, components, encoded(values));
+  return fmt::format("<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"binary\">{}</DataArray>\n",
+                     type, name, components, encoded(values));
 }
 
 void append(std::vector<float>& list, Vec3 v) {
@@ -129,7 +129,8 @@ void VtuSeries::add(const Model& model, const State& state, double time_s) {
 void VtuSeries::finish() const {
   for (const char* name : {"surface", "anchors"}) {
     std::string text =
-        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n";
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" "
+        "byte_order=\"LittleEndian\">\n<Collection>\n";
     for (std::size_t n = 0; n < times_s_.size(); ++n) {
       text += fmt::format("<DataSet timestep=\"{:.9g}\" part=\"0\" file=\"{}_{:06}.vtu\"/>\n", times_s_[n], name, n);
     }

@@ -16,15 +16,16 @@ struct Best {
   double distance2 = 0;
   std::int32_t triangle = INT32_MAX;
   TrianglePoint at;
-  // A triangle whose corners v all have dot(v, outward) <= ceiling is farther than this one: see raise_ceiling.
+  // Dismissal of triangles without measuring them: see raise_ceiling.
   Vec3 outward{};
   double ceiling = -1;
+  std::int32_t shared[2] = {-1, -1};  // vertices of the edge or vertex the closest point lies on
   // Single-precision bound no admissible box may exceed: 2^-20 covers the rounding of box_distance2 and of this
   // conversion, the constant (0.1 nm squared) the rounding of the exact distances themselves for bodies up to 100 m.
   float bound() const PALPATE_RT { return static_cast<float>(distance2 * (1 + 0x1p-20) + 1e-20); }
 };
 
-// Shortest distance from a point with these barycentric weights to the triangle's edges, squared, at least.
+// Squared distance of the point p of triangle abc from the triangle's edges, at least.
 double edge_clearance2(Vec3 p, Vec3 a, Vec3 b, Vec3 c) PALPATE_RT {
   const Vec3 ab = b - a, bc = c - b, ca = a - c, n = cross(ab, ca);
   const double wa = abs_of(dot(cross(bc, p - b), n)), wb = abs_of(dot(cross(ca, p - c), n));
@@ -37,37 +38,64 @@ double edge_clearance2(Vec3 p, Vec3 a, Vec3 b, Vec3 c) PALPATE_RT {
 
 // With c the closest point and n = p - c, a triangle with no corner above the plane through c with normal n is no
 // nearer than c: on a convex surface this dismisses all triangles but the nearest for a third of the price of measuring
-// them. The plane is raised by the rounding of the heights, 1e-14 |n| (|c| + |n|), so that coplanar neighbours go too;
-// that no neighbour can tie is ensured by asking c to be well inside its face.
-void raise_ceiling(Vec3 p, Vec3 a, Vec3 b, Vec3 c, Best& best) PALPATE_RT {
-  best.outward = {};
-  best.ceiling = -1;
-  if (best.at.feature != Feature::kFace) return;
+// them. The plane is raised by the rounding of the heights, 1e-14 |n| (|c| + |n|), so that coplanar neighbours go too.
+// A triangle can tie only by holding c: those that share its edge or vertex are always measured, and where c is so near
+// the border of its feature that rounding could move it to the next one nothing is dismissed.
+void raise_ceiling(Vec3 p, const Triangle& t, const Vec3* vertex, Best& best) PALPATE_RT {
   const double distance = square_root(best.distance2);
   const double rounding = 1e-14 * distance * (norm(best.at.point) + distance);
-  const double clearance2 = edge_clearance2(best.at.point, a, b, c);
-  if (!(clearance2 > 4 * rounding && clearance2 > 1e-10 * best.distance2)) return;
-  best.outward = p - best.at.point;
-  best.ceiling = dot(best.at.point, best.outward) + rounding;
+  const double least2 = max_of(4 * rounding + 1e-16, 1e-10 * best.distance2);
+  const auto code = static_cast<std::int32_t>(best.at.feature);
+  double clearance2 = kHuge;
+  if (best.at.feature == Feature::kFace) {
+    best.shared[0] = best.shared[1] = -1;
+    clearance2 = edge_clearance2(best.at.point, vertex[t.vertex[0]], vertex[t.vertex[1]], vertex[t.vertex[2]]);
+  } else if (best.at.feature >= Feature::kVertex0) {
+    best.shared[0] = best.shared[1] = t.vertex[code - 4];
+  } else {
+    best.shared[0] = t.vertex[code - 1];
+    best.shared[1] = t.vertex[code % 3];
+    clearance2 = min_of(squared_norm(best.at.point - vertex[best.shared[0]]),
+                        squared_norm(best.at.point - vertex[best.shared[1]]));
+  }
+  const bool usable = clearance2 > least2;
+  best.outward = usable ? p - best.at.point : Vec3{};
+  best.ceiling = usable ? dot(best.at.point, best.outward) + rounding : -1.0;
 }
 
-inline void consider(const Model& model, const Vec3& p, std::int32_t index, Best& best) PALPATE_RT {
-  const Triangle& t = model.triangle[static_cast<std::size_t>(index)];
-  const Vec3& a = model.vertex_m[static_cast<std::size_t>(t.vertex[0])];
-  const Vec3& b = model.vertex_m[static_cast<std::size_t>(t.vertex[1])];
-  const Vec3& c = model.vertex_m[static_cast<std::size_t>(t.vertex[2])];
-  if (dot(a, best.outward) <= best.ceiling && dot(b, best.outward) <= best.ceiling &&
-      dot(c, best.outward) <= best.ceiling) {
-    return;
-  }
-  const TrianglePoint at = closest_on_triangle(p, a, b, c);
+inline bool has_vertex(const Triangle& t, std::int32_t v) PALPATE_RT {
+  return (t.vertex[0] == v) | (t.vertex[1] == v) | (t.vertex[2] == v);
+}
+
+// The surface a query runs over, as plain pointers: the compiler need not reload them.
+struct Surface {
+  const Triangle* triangle;
+  const Vec3* vertex;
+};
+
+void measure(const Surface& surface, const Vec3& p, std::int32_t index, Best& best) PALPATE_RT {
+  const Triangle& t = surface.triangle[index];
+  const Vec3* vertex = surface.vertex;
+  const TrianglePoint at = closest_on_triangle(p, vertex[t.vertex[0]], vertex[t.vertex[1]], vertex[t.vertex[2]]);
   const double distance2 = squared_norm(p - at.point);
   if (distance2 < best.distance2 || (distance2 == best.distance2 && index < best.triangle)) {
     best.distance2 = distance2;
     best.triangle = index;
     best.at = at;
-    raise_ceiling(p, a, b, c, best);
+    raise_ceiling(p, t, vertex, best);
   }
+}
+
+inline void consider(const Surface& surface, const Vec3& p, std::int32_t index, Best& best) PALPATE_RT {
+  const Triangle& t = surface.triangle[index];
+  const Vec3 n = best.outward;
+  const double ceiling = best.ceiling;
+  if (dot(surface.vertex[t.vertex[0]], n) <= ceiling && dot(surface.vertex[t.vertex[1]], n) <= ceiling &&
+      dot(surface.vertex[t.vertex[2]], n) <= ceiling &&
+      !(has_vertex(t, best.shared[0]) && has_vertex(t, best.shared[1]))) {
+    return;
+  }
+  measure(surface, p, index, best);
 }
 
 struct Pending {
@@ -78,11 +106,12 @@ struct Pending {
 // Depth-first descent, nearest child first, over a bounded stack.
 class Descent {
  public:
-  Descent(const Model& model, Vec3 p, Best& best) PALPATE_RT : model_(model),
-                                                               p_(p),
-                                                               query_(node_query(p)),
-                                                               best_(best),
-                                                               bound_(best.bound()) {}
+  Descent(const Model& model, const Surface& surface, Vec3 p, Best& best) PALPATE_RT : model_(model),
+                                                                                       surface_(surface),
+                                                                                       p_(p),
+                                                                                       query_(node_query(p)),
+                                                                                       best_(best),
+                                                                                       bound_(best.bound()) {}
 
   void run(SurfacePoint& result) PALPATE_RT {
     Pending next{0, 0};
@@ -136,7 +165,7 @@ class Descent {
   }
 
   void measure_leaf(std::int32_t first, std::int32_t count) PALPATE_RT {
-    for (std::int32_t i = 0; i < count; ++i) consider(model_, p_, first + i, best_);  // bound: 4
+    for (std::int32_t i = 0; i < count; ++i) consider(surface_, p_, first + i, best_);  // bound: 4
     bound_ = best_.bound();
   }
 
@@ -158,6 +187,7 @@ class Descent {
   }
 
   const Model& model_;
+  const Surface& surface_;
   const Vec3 p_;
   const NodeQuery query_;
   Best& best_;
@@ -191,12 +221,12 @@ bool is_certified(const Model& model, Vec3 p, std::int32_t triangle, double dist
 
 // Walks from the warm triangle to nearer neighbours. True when the best triangle is proven to be the nearest of all,
 // at a price that does not depend on the size of the mesh. Bound: kMaxWalk rings.
-bool walk(const Model& model, Vec3 p, Best& best) PALPATE_RT {
+bool walk(const Model& model, const Surface& surface, Vec3 p, Best& best) PALPATE_RT {
   for (std::int32_t step = 0; step < kMaxWalk && best.triangle != INT32_MAX; ++step) {
     const std::int32_t centre = best.triangle;
     const bool certified = is_certified(model, p, centre, square_root(best.distance2));
-    const auto visit = [&](std::int32_t index) PALPATE_RT { consider(model, p, index, best); };
-    if (!for_each_in_ring(model.triangle, centre, visit)) return false;
+    const auto visit = [&](std::int32_t index) PALPATE_RT { consider(surface, p, index, best); };
+    if (!for_each_in_ring(surface.triangle, centre, visit)) return false;
     if (certified) return true;
     if (best.triangle == centre) return false;
   }
@@ -223,12 +253,13 @@ SurfacePoint closest_surface_point(const Model& model, Vec3 p, double search_rad
   Best best;
   const double radius = search_radius_m < kUnlimited_m ? max_of(search_radius_m, 0.0) : 2 * kHuge;
   best.distance2 = radius * radius;
+  const Surface surface{model.triangle.data(), model.vertex_m.data()};
   const auto triangles = static_cast<std::int32_t>(model.triangle.size());
-  if (warm_triangle >= 0 && warm_triangle < triangles) consider(model, p, warm_triangle, best);
-  if (walk(model, p, best)) {
+  if (warm_triangle >= 0 && warm_triangle < triangles) measure(surface, p, warm_triangle, best);
+  if (walk(model, surface, p, best)) {
     result.lower_bound_m = square_root(best.distance2);
   } else {
-    Descent(model, p, best).run(result);
+    Descent(model, surface, p, best).run(result);
   }
   if (best.triangle == INT32_MAX) return result;
 

@@ -39,10 +39,10 @@ TEST(CubicLaw, InverseOverAllScales) {
   for (int i = 0; i < 20000; ++i) {
     const CubicLaw law{std::pow(10, k1(random)), std::pow(10, k3(random)), kHuge};
     const Real target = std::pow(10, force(random));
-    const long double d = law_depth_m(law, target);
+    const auto d = static_cast<long double>(law_depth_m(law, target)), f = static_cast<long double>(target);
     // Error of the root = residual over slope, in extended precision.
-    const long double p = law.k1_N_per_m, q = law.k3_N_per_m3;
-    const long double error = (p * d + q * d * d * d - target) / (p + 3 * q * d * d) / d;
+    const auto p = static_cast<long double>(law.k1_N_per_m), q = static_cast<long double>(law.k3_N_per_m3);
+    const long double error = (p * d + q * d * d * d - f) / (p + 3 * q * d * d) / d;
     worst = std::max(worst, static_cast<Real>(std::abs(error)));
   }
   EXPECT_LT(worst, 1e-15);                                                  // five Newton steps reach rounding: 4 ulp

@@ -124,7 +124,8 @@ TEST(Math, SineAndCosine) {
   for (const Real range : {1.0, 100.0, 1e4}) {
     for (const Real x : dense_and_random(-range, range, 20000, 8)) {
       const long double s = std::sin(static_cast<long double>(x)), c = std::cos(static_cast<long double>(x));
-      worst_absolute = std::max({worst_absolute, std::abs(math::sin(x) - s), std::abs(math::cos(x) - c)});
+      worst_absolute = std::max({worst_absolute, std::abs(static_cast<long double>(math::sin(x)) - s),
+                                 std::abs(static_cast<long double>(math::cos(x)) - c)});
       worst_relative = std::max({worst_relative, relative_error(math::sin(x), s), relative_error(math::cos(x), c)});
     }
   }

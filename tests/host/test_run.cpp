@@ -7,8 +7,10 @@
 
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <thread>
 
 #include "sim_host/controller_link.h"
@@ -107,6 +109,28 @@ TEST_F(Run, EndsWithZeroForceEvenWhenInterrupted) {
   while (reader.next(record)) last = record;
   EXPECT_EQ(last.output.device_w, Wrench{});
   EXPECT_TRUE(last.output.mode == Mode::kIdle || last.output.mode == Mode::kFault);
+}
+
+TEST_F(Run, ReplayCommandExitCodes) {
+  run_session(options_);
+  const std::string palpate = options_.program_folder + "/palpate";
+  const auto exit_code_of = [&](const std::string& arguments) {
+    const int status =
+        std::system((palpate + " replay " + arguments + " > " + (folder_ / "out.txt").string() + " 2>&1").c_str());
+    return WEXITSTATUS(status);
+  };
+  const auto output = [&] {
+    std::ifstream file(folder_ / "out.txt");
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  };
+  EXPECT_EQ(exit_code_of(options_.record + " --dump " + (folder_ / "run.csv").string()), 0);
+  EXPECT_EQ(output().rfind("identical: ", 0), 0u) << output();
+  EXPECT_GT(std::filesystem::file_size(folder_ / "run.csv"), 1000u);
+  EXPECT_EQ(exit_code_of((folder_ / "missing.plr").string()), 2);
+  EXPECT_NE(output().find("missing.plr"), std::string::npos) << output();
+  std::filesystem::resize_file(options_.record, std::filesystem::file_size(options_.record) - 3);
+  EXPECT_EQ(exit_code_of(options_.record), 1);
+  EXPECT_NE(output().find("damaged recording: offset"), std::string::npos) << output();
 }
 
 TEST_F(Run, ClassicFramesWorkAsWell) {

@@ -3,12 +3,15 @@
 #include <gtest/gtest.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 
 #include "hal/shared_memory.h"
+#include "rt_core/telemetry.h"
 
 namespace palpate {
 namespace {
@@ -123,6 +126,44 @@ TEST(SharedMemory, SilentDeadOrConfusedPeerIsNamed) {
   pair.end[0] = -1;
   EXPECT_EQ(receive_descriptor(pair.end[1], 'C', 10, error), -1);
   EXPECT_NE(error.find("closed"), std::string::npos) << error;
+}
+
+// A reader process that is stopped, then killed in the middle of reading: the writer and another reader do not notice.
+TEST(SharedMemory, StoppedAndKilledReaderDisturbsNobody) {
+  std::string error;
+  SharedMemory owner = SharedMemory::create("telemetry", sizeof(TelemetryRegion), error);
+  ASSERT_TRUE(owner) << error;
+  auto& region = *static_cast<TelemetryRegion*>(owner.data());
+  TelemetryWriter writer;
+  Model model;
+  writer.open(region, model, State{}, 1'000'000, "build", "image");
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    const SharedMemory peer = SharedMemory::open_peer(dup(owner.fd()), sizeof(TelemetryRegion), error);
+    if (!peer) _exit(1);
+    TelemetryReader reader(*static_cast<const TelemetryRegion*>(peer.data()));
+    for (TickRecord record;;) reader.next(record);
+  }
+  TelemetryReader reader(region);
+  TickRecord record{};
+  std::uint64_t received = 0;
+  const auto write_some = [&] {
+    for (int i = 0; i < 3000; ++i) {
+      writer.write(record);
+      received += reader.next(record) ? 1 : 0;
+    }
+  };
+  write_some();
+  kill(child, SIGSTOP);
+  write_some();
+  kill(child, SIGKILL);
+  write_some();
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFSIGNALED(status));
+  EXPECT_EQ(received, 9000u);
+  EXPECT_EQ(reader.lost(), 0u);
 }
 
 }  // namespace

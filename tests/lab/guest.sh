@@ -43,6 +43,7 @@ pack() {
   mkdir -p "$out/root"/{bin,mod,proc,sys,dev,lab,tmp,lib64,lib/x86_64-linux-gnu,usr/lib/x86_64-linux-gnu}
   cp /bin/busybox "$out/root/bin/busybox"
   copy_program /sbin/ip "$out/root/bin/ip.real"
+  copy_program "$(command -v chrt)" "$out/root/bin/chrt"
   for tool in cyclictest candump cangen cansend canplayer; do copy_program "$cache/x/usr/bin/$tool" "$out/root/bin/$tool"; done
   : > "$out/root/mod/order"
   for module in $modules; do

@@ -1,0 +1,240 @@
+// Presses through the whole tick(): action equals reaction, nothing pushes without contact, and the table says so.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+
+#include "sim_host/force_csv.h"
+#include "sim_host/press.h"
+#include "sim_host/scene_model.h"
+
+namespace palpate {
+namespace {
+
+std::string scene_path(const std::string& name) {
+  return std::string(PALPATE_SOURCE_DIR) + "/config/scenes/" + name + ".toml";
+}
+
+// The forces of a press, added up on both sides by hand.
+struct Balance {
+  double force_N = 0, moment_Nm = 0;     // largest sum of tool side and body side
+  double regions_N = 0, regions_Nm = 0;  // largest difference of the regions' sum and the whole
+  double force_max_N = 0;
+  int loaded = 0, regions_max = 0;
+};
+
+void check_row(const PressRow& row, const State& state, const Scratch& scratch, Balance& worst) {
+  const Output& output = row.record.output;
+  const Vec3 origin = output.tool_w.position_m;
+  // Body side, about the world's origin: every contact pushes the body inward at its surface point; friction acts on it
+  // at the centre of its region.
+  Vec3 force, moment;
+  for (std::int32_t i = 0; i < scratch.contact_count; ++i) {
+    const Contact& contact = scratch.contact[i];
+    const Vec3 f = -(contact.force_N * contact.normal_w);
+    force += f;
+    moment += cross(contact.position_w, f);
+  }
+  Wrench regions;
+  int count = 0;
+  for (const Region& region : state.region) {
+    if (region.id == 0 || region.lost_ticks > 0) continue;
+    force += -region.friction_force_w;
+    moment += cross(region.centre_w, -region.friction_force_w);
+    regions.force_N += region.wrench_w.force_N;
+    regions.torque_Nm += region.wrench_w.torque_Nm;
+    ++count;
+  }
+  const Wrench tool = output.contact_w;
+  worst.force_N = std::max(worst.force_N, norm(force + tool.force_N));
+  worst.moment_Nm = std::max(worst.moment_Nm, norm(moment + tool.torque_Nm + cross(origin, tool.force_N)));
+  worst.regions_N = std::max(worst.regions_N, norm(regions.force_N - tool.force_N));
+  worst.regions_Nm = std::max(worst.regions_Nm, norm(regions.torque_Nm - tool.torque_Nm));
+  worst.force_max_N = std::max(worst.force_max_N, norm(tool.force_N));
+  worst.loaded += norm(tool.force_N) > 0 ? 1 : 0;
+  worst.regions_max = std::max(worst.regions_max, count);
+  if (output.contacts == 0) {
+    EXPECT_EQ(tool, Wrench{}) << "a force without contact at tick " << row.record.tick;
+    EXPECT_EQ(output.energy_J, 0.0);
+    EXPECT_EQ(output.regions, 0);
+  }
+  EXPECT_EQ(output.regions, count);
+  EXPECT_EQ(row.record.region_count, count);
+}
+
+Balance balance_of(const std::string& name) {
+  const SceneModel scene(scene_path(name));
+  const double period_s = scene.model().params.period_s;
+  const auto poses = scripted_poses(scene.scene()->path, period_s);
+  Balance worst;
+  const auto state = std::make_unique<State>();
+  const PressDrive drive{scene.scene()->path.hand_stiffness_N_per_m};
+  press(scene.model(), poses, drive, *state, nullptr,
+        [&](const PressRow& row, const State& now, const Scratch& scratch) { check_row(row, now, scratch, worst); });
+  return worst;
+}
+
+// 1e-9 N: rounding of some 40 contacts of up to 10 N is 1e-13; anything structural is far larger.
+constexpr double kForceTolerance_N = 1e-9, kMomentTolerance_Nm = 1e-10;
+
+class PressScene : public ::testing::TestWithParam<const char*> {};
+TEST_P(PressScene, ActionEqualsReactionAndMomentsBalance) {
+  const Balance worst = balance_of(GetParam());
+  EXPECT_GT(worst.loaded, 1000);
+  EXPECT_GT(worst.force_max_N, 1.0);
+  EXPECT_LT(worst.force_N, kForceTolerance_N);
+  EXPECT_LT(worst.moment_Nm, kMomentTolerance_Nm);
+  EXPECT_LT(worst.regions_N, kForceTolerance_N);
+  EXPECT_LT(worst.regions_Nm, kMomentTolerance_Nm);
+  RecordProperty("largest_force_imbalance_N", std::to_string(worst.force_N));
+  if (std::string(GetParam()) == "heart_compass") {
+    EXPECT_EQ(worst.regions_max, 2);
+  }
+}
+INSTANTIATE_TEST_SUITE_P(AllScenes, PressScene,
+                         ::testing::Values("ellipsoid_mallet", "ellipsoid_mallet_paper", "heart_compass"));
+
+// A sphere held against the side of a ball: force along the line of centres, of the size the law says.
+SceneDesc ball_scene() {
+  return parse_scene(R"(
+name = "ball"
+[body]
+shape = "sphere"
+radius_mm = 30
+triangles = 20000
+[body.material]
+youngs_modulus_Pa = 3e6
+poisson_ratio = 0.47
+density_kg_per_m3 = 1100
+[contact]
+law = "cubic"
+weight = "paper"
+[contact.cubic]
+k1_N_per_m = 40
+k3_N_per_m3 = 3e8
+[coupling]
+law = "none"
+[friction]
+law = "none"
+[[tool.piece]]
+shape = "sphere"
+radius_mm = 10
+points = 1
+)",
+                     "ball.toml");
+}
+
+TEST(Press, OnePointGivesTheLawsForce) {
+  const SceneModel scene(ball_scene());
+  for (const double depth_m : {0.5e-3, 1e-3, 2e-3, 3e-3, 5e-3}) {
+    const std::vector<TimedPose> poses = {{0, {{0, 0.030 + 0.030 + 0.010 - depth_m, 0}, {}}}};
+    const auto state = std::make_unique<State>();
+    press(scene.model(), poses, {}, *state, nullptr, [&](const PressRow& row, const State&, const Scratch&) {
+      const Output& output = row.record.output;
+      // The mesh touches the sphere only at its vertices; its depth is measured, the law is exact.
+      const double depth = output.penetration_m;
+      EXPECT_NEAR(depth, depth_m, 3e-5);
+      EXPECT_NEAR(output.contact_w.force_N.y, 40 * depth + 3e8 * depth * depth * depth, 1e-9);
+      EXPECT_NEAR(output.energy_J, 20 * depth * depth + 0.75e8 * depth * depth * depth * depth, 1e-12);
+      EXPECT_LT(norm(cross(output.contact_w.force_N, {0, 1, 0})), 0.02 * norm(output.contact_w.force_N));
+      EXPECT_EQ(output.status & ~Status::kForceClamped & ~Status::kRamping, 0u);
+    });
+  }
+}
+
+TEST(Press, HandSpringSettlesInEquilibrium) {
+  const SceneModel scene(ball_scene());
+  std::vector<TimedPose> poses;
+  for (int n = 0; n < 400; ++n) {
+    poses.push_back({1e-3 * n, {{0.002, 0.075 - 0.01 * std::min(1.0, n / 300.0), 0}, {}}});
+  }
+  const auto state = std::make_unique<State>();
+  const double hand_N_per_m = 800;
+  double left_N = 1e9, force_N = 0;
+  press(scene.model(), poses, {hand_N_per_m}, *state, nullptr, [&](const PressRow& row, const State&, const Scratch&) {
+    const Output& output = row.record.output;
+    const Vec3 pull = hand_N_per_m * (poses[row.record.tick].tool_w.position_m - output.tool_w.position_m);
+    left_N = norm(pull + output.contact_w.force_N);
+    force_N = norm(output.contact_w.force_N);
+  });
+  EXPECT_GT(force_N, 1.0);
+  EXPECT_LT(left_N, 1e-9);  // Newton converges quadratically; the target has rested for 100 ticks
+}
+
+TEST(Press, TheSamePosesGiveTheSameBits) {
+  const SceneModel scene(scene_path("heart_compass"));
+  const auto poses = scripted_poses(scene.scene()->path, 5e-3);
+  std::vector<std::uint64_t> first, second;
+  const auto state = std::make_unique<State>();
+  for (std::vector<std::uint64_t>* hashes : {&first, &second}) {
+    press(scene.model(), poses, {800}, *state, nullptr,
+          [&](const PressRow& row, const State&, const Scratch&) { hashes->push_back(row.record.state_hash); });
+  }
+  EXPECT_EQ(first, second);
+}
+
+TEST(Press, CountsInstructionsOrSaysItCannot) {
+  InstructionCounter counter;
+  counter.start();
+  volatile double sum = 0;
+  for (int i = 0; i < 1000; ++i) sum = sum + i;
+  const std::int64_t count = counter.stop();
+  if (counter.available()) {
+    EXPECT_GT(count, 1000);
+  } else {
+    EXPECT_EQ(count, -1);
+  }
+}
+
+std::size_t cells(const std::string& line) {
+  return static_cast<std::size_t>(std::count(line.begin(), line.end(), ',')) + 1;
+}
+
+TEST(ForceCsv, EveryRowHasTheHeadersColumns) {
+  PressRow row;
+  for (int regions = 0; regions <= 7; ++regions) {
+    row.record.region_count = regions;
+    for (int k = 0; k < regions; ++k) {
+      row.record.region[k] = {static_cast<std::uint32_t>(k + 1), 3, {1e-3, 2e-3, 3e-3}, {4, 5, 6}, 7e-3, 2, 0};
+    }
+    EXPECT_EQ(cells(force_csv_row(row)), cells(force_csv_header())) << regions;
+  }
+  const std::string text = force_csv_row(row);
+  EXPECT_NE(text.find(",4,1,2,3,4,5,6,7,slip,3,"), std::string::npos) << text;
+  EXPECT_TRUE(text.ends_with(",5 1 2 3 4 5 6 7 slip 3;6 1 2 3 4 5 6 7 slip 3;7 1 2 3 4 5 6 7 slip 3")) << text;
+}
+
+TEST(ForceCsv, NamesStatusAndLeavesMissingCostEmpty) {
+  PressRow row;
+  row.record.output.status = Status::kDepthBeyondRange | Status::kForceClamped;
+  row.record.output.fault = Fault::kNotFinite;
+  row.compute_ns = 1234;
+  EXPECT_NE(force_csv_row(row).find(",0x00000030,DepthBeyondRange ForceClamped,0x00000001,NotFinite,1234,,"),
+            std::string::npos)
+      << force_csv_row(row);
+  row.instructions = 5678;
+  EXPECT_NE(force_csv_row(row).find(",1234,5678,"), std::string::npos);
+}
+
+TEST(ForceCsv, WritesAFileAndReportsFailure) {
+  const std::filesystem::path path =
+      std::filesystem::temp_directory_path() / ("palpate_forces_" + std::to_string(getpid()) + ".csv");
+  {
+    ForceCsv csv(path.string());
+    csv.add({});
+    csv.finish();
+  }
+  std::ifstream file(path);
+  std::string header, row, extra;
+  EXPECT_TRUE(std::getline(file, header) && std::getline(file, row));
+  EXPECT_FALSE(std::getline(file, extra));
+  EXPECT_EQ(header, force_csv_header());
+  std::filesystem::remove(path);
+  EXPECT_THROW(ForceCsv("/nonexistent_folder/forces.csv"), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace palpate
