@@ -75,7 +75,7 @@ void DeviceNode::send_status() noexcept {
     status.flags = flags();
     status.buttons = buttons_;
     status.error = error_;
-    status.time_us = static_cast<std::uint32_t>(static_cast<std::uint64_t>(1e6 * plant_.time_s() + 0.5));
+    status.time_us = static_cast<std::uint32_t>(static_cast<std::uint64_t>(1e6 * (plant_.time_s() - started_s_) + 0.5));
     wire::set_pose(status, position_m, orientation);
     count = make_status_frames(options_.node, status, frames);
   } else {
@@ -91,9 +91,22 @@ void DeviceNode::send_status() noexcept {
   if (transport_.send({frames, static_cast<std::size_t>(count)}) != count) counters_.send_dropped += 1;
 }
 
+void DeviceNode::set_powered(bool powered) noexcept {
+  if (powered && !powered_) {
+    status_sequence_ = 0;
+    started_s_ = plant_.time_s();
+    sequence_ = SequenceTracker(options_.profile == WireProfile::kFd ? 16 : 8);
+    command_ = {};
+    has_pending_ = false;
+    expired_ = true;
+  }
+  powered_ = powered;
+}
+
 void DeviceNode::step(std::int64_t now_ns) noexcept {
   Frame frames[kMaxFramesPerReceive];
   const int count = transport_.receive(frames);
+  if (!powered_) return plant_.step({});  // the hand still moves the handle
   for (int i = 0; i < count; ++i) take(frames[i], now_ns);  // bound: kMaxFramesPerReceive
   if (!expired_ && now_ns - last_command_ns_ > options_.watchdog_ns) {
     expired_ = true;
@@ -102,7 +115,11 @@ void DeviceNode::step(std::int64_t now_ns) noexcept {
   if (expired_) command_ = {};
   const bool halted = stop_pressed_ || error_ != 0;
   plant_.step(halted ? DeviceCommand{} : command_);
-  send_status();
+  if (!silent_) {
+    send_status();
+  } else {
+    status_sequence_ = (status_sequence_ + 1) & 0xFFFFu;
+  }
 }
 
 }  // namespace palpate

@@ -37,6 +37,11 @@ class DeviceNode {
   void press_stop(bool pressed) noexcept { stop_pressed_ = pressed; }  // the device's emergency stop: zero force
   void set_error(std::uint8_t code) noexcept { error_ = code; }        // 0 clears
   void set_buttons(std::uint32_t buttons) noexcept { buttons_ = buttons; }
+  // Misbehaviour on purpose: sends nothing; numbers its samples from 0 again; loses power (no force, deaf and mute) and
+  // begins anew when it comes back, with numbers, clock and watchdog as at the start.
+  void set_silent(bool silent) noexcept { silent_ = silent; }
+  void reset_sequence() noexcept { status_sequence_ = 0; }
+  void set_powered(bool powered) noexcept;
   DevicePlant& plant() noexcept { return plant_; }
   const NodeCounters& counters() const noexcept { return counters_; }
   const DeviceCommand& command() const noexcept { return command_; }  // being obeyed
@@ -62,6 +67,9 @@ class DeviceNode {
   std::uint8_t error_ = 0;
   std::uint32_t buttons_ = 0;
   bool stop_pressed_ = false;
+  bool silent_ = false;
+  bool powered_ = true;
+  double started_s_ = 0;  // plant time at which the device's clock was 0
 };
 
 }  // namespace palpate

@@ -51,6 +51,7 @@ PlantOptions checked(PlantOptions o) {
 DevicePlant::DevicePlant(const PlantOptions& options, HandPath path)
     : options_(checked(options)), path_(std::move(path)), random_(options.noise_seed) {
   pose_ = path_.at(0).pose;
+  last_measured_m_ = pose_.position_m;
 }
 
 void DevicePlant::drive(const DeviceCommand& command) noexcept {
@@ -101,14 +102,16 @@ double DevicePlant::noise() noexcept {
 }
 
 Vec3 DevicePlant::measured_m() noexcept {
-  Vec3 p = pose_.position_m;
+  if (frozen_) return last_measured_m_;
+  Vec3 p = pose_.position_m + encoder_shift_m_;
   if (options_.noise_m > 0) {
     p.x += options_.noise_m * noise();
     p.y += options_.noise_m * noise();
     p.z += options_.noise_m * noise();
   }
   const double q = options_.encoder_m;
-  return {quantised(p.x, q), quantised(p.y, q), quantised(p.z, q)};
+  last_measured_m_ = {quantised(p.x, q), quantised(p.y, q), quantised(p.z, q)};
+  return last_measured_m_;
 }
 
 SimulatedDevice::SimulatedDevice(const PlantOptions& options, HandPath path, const VirtualClock& clock)

@@ -46,6 +46,8 @@ class DevicePlant {
   Vec3 velocity_m_per_s() const noexcept { return velocity_; }
   Vec3 spin_rad_per_s() const noexcept { return spin_; }
   Vec3 measured_m() noexcept;                       // with noise and encoder quantum; draws noise
+  void freeze_encoder(bool frozen) noexcept { frozen_ = frozen; }               // repeats the last measurement
+  void shift_encoder(Vec3 offset_m) noexcept { encoder_shift_m_ += offset_m; }  // lost counts
   Wrench motor() const noexcept { return motor_; }  // rendered in the last period
   bool saturated() const noexcept { return saturated_; }
   double time_s() const noexcept { return static_cast<double>(ticks_) * options_.period_s; }
@@ -67,6 +69,8 @@ class DevicePlant {
   DeviceCommand delay_[kDelaySlots];
   std::uint64_t ticks_ = 0;
   std::uint64_t random_;
+  bool frozen_ = false;
+  Vec3 encoder_shift_m_, last_measured_m_;
 };
 
 // The plant as a Device in virtual time: each receive() first lets it run up to the clock, holding the last command, so

@@ -9,6 +9,7 @@
 
 #include "sim_host/cli.h"
 #include "sim_host/latency.h"
+#include "sim_host/recording.h"
 
 namespace palpate {
 
@@ -91,7 +92,14 @@ void add_latency_command(CLI::App& app, int& exit_code) {
       "Examples:\n"
       "  palpate latency --duration 60 --cpu 3 --priority 80 --json latency.json --plot latency.svg\n"
       "  palpate latency --recording run.plr --histfile run.hist --plot run_latency.png");
-  command->callback([options, &exit_code] { exit_code = run_latency(*options); });
+  command->callback([options, &exit_code] {
+    try {
+      exit_code = run_latency(*options);
+    } catch (const RecordingError& error) {
+      const std::string what = error.what();
+      throw std::runtime_error(what.starts_with(options->recording) ? what : options->recording + ": " + what);
+    }
+  });
 }
 
 }  // namespace palpate

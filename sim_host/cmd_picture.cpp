@@ -144,7 +144,14 @@ void add_picture_command(CLI::App& app, int& exit_code) {
       "Examples:\n"
       "  palpate picture run.plr -o deformed.png --plot forces.svg\n"
       "  palpate picture config/scenes/heart_compass.toml -o scene.png");
-  command->callback([options, &exit_code] { exit_code = run_picture(*options); });
+  command->callback([options, &exit_code] {
+    try {
+      exit_code = run_picture(*options);
+    } catch (const RecordingError& error) {
+      const std::string what = error.what();
+      throw std::runtime_error(what.starts_with(options->source) ? what : options->source + ": " + what);
+    }
+  });
 }
 
 }  // namespace palpate

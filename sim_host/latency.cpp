@@ -52,7 +52,7 @@ std::string worst_part(const TickTiming& t) {
 std::string verdict(const LatencyData& data) {
   const Histogram& h = data.bare_loop ? data.summary.wake : data.busy;
   const double share = 100.0 * static_cast<double>(h.max_ns) / static_cast<double>(data.period_ns);
-  const char* what = data.bare_loop ? "latest wake-up" : "longest tick, wake-up included";
+  const char* what = data.bare_loop ? "latest wake-up" : "longest tick (wake-up included)";
   std::string text;
   if (data.summary.missed_ticks > 0) {
     text = fmt::format("BAD: {} deadlines missed in {} ticks", data.summary.missed_ticks, data.summary.ticks);

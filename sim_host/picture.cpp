@@ -88,7 +88,7 @@ void Renderer::choose_scale() {
     for (const Vec3 d : surface_.displacement_m) largest = std::max(largest, norm(d));
   }
   const double top_mm = largest > 1e-7 ? largest * 1e3 : 1.0;
-  legend_mm_ = axis_ticks(0, top_mm, 5);
+  legend_mm_ = axis_ticks(0, top_mm, 4);
   if (legend_mm_.size() > 1 && legend_mm_.back() < top_mm * (1 - 1e-9) && !(options_.displacement_max_m > 0)) {
     legend_mm_.push_back(2 * legend_mm_.back() - legend_mm_[legend_mm_.size() - 2]);
   }

@@ -26,7 +26,7 @@ Camera default_camera(const Model& model, const State& state) {
   const Vec3 direction{std::cos(kElevation) * std::sin(azimuth), std::sin(kElevation),
                        std::cos(kElevation) * std::cos(azimuth)};
   Camera camera;
-  camera.target_m = centre + 0.28 * radius * kWorldUp;  // room for the tool above
+  camera.target_m = centre + 0.38 * radius * kWorldUp;  // room for the tool above
   camera.eye_m = camera.target_m + (1.32 * radius / std::tan(0.5 * kFov)) * direction;
   camera.up = kWorldUp;
   camera.vertical_fov_rad = kFov;

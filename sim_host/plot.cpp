@@ -197,6 +197,7 @@ Stroke outline(const Histogram& histogram, const Panel& panel) {
 }  // namespace
 
 Drawing latency_plot(std::span<const LatencySeries> series, const std::string& title) {
+  static constexpr std::size_t kOrder[] = {2, 4, 6, 0, 3, 5, 1, 7};  // neighbours differ most
   Drawing drawing(kWidth, 460 + 22 * static_cast<double>(series.size()));
   drawing.text(kLeft, 32, title, 18, kInk, Align::kStart, false, true);
   double largest_us = 10, smallest_us = 10, most = 10;
@@ -230,7 +231,7 @@ Drawing latency_plot(std::span<const LatencySeries> series, const std::string& t
   draw_x_labels(drawing, panel, {}, "duration (µs)");
   for (std::size_t i = 0; i < series.size(); ++i) {
     const Histogram& h = *series[i].histogram;
-    const Colour c = kSeries[(2 * i + 2) % std::size(kSeries)];
+    const Colour c = kSeries[kOrder[i % std::size(kOrder)]];
     const double row = 60 + 22 * static_cast<double>(i);
     drawing.line({{kLeft, row - 4.5}, {kLeft + 20, row - 4.5}}, 3.5, c);
     drawing.text(kLeft + 30, row, series[i].name, 13, kInk);

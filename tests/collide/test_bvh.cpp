@@ -115,7 +115,8 @@ TEST(Bvh, ConesHoldTheNormalsOfTheWholeNeighbourhood) {
   int cones = 0;
   for (const BvhNode& n : body.model.bvh) {
     for (int k = 0; k < 4; ++k) {
-      const Vec3 axis{n.cone_axis[0][k], n.cone_axis[1][k], n.cone_axis[2][k]};
+      const auto component = [&](int i) { return static_cast<Real>(n.cone_axis[i][k]); };
+      const Vec3 axis{component(0), component(1), component(2)};
       if (n.child[k] >= 0 || squared_norm(axis) == 0) continue;
       ++cones;
       EXPECT_NEAR(norm(axis), 1, 1e-6);

@@ -86,7 +86,7 @@ TEST(Latency, SaysWhereTheTimeWent) {
   for (std::uint64_t tick = 0; tick < 1000; ++tick) add(*data, tick_record(tick, 10'000, 20'000, 0));
   add(*data, tick_record(1000, 150'000, 20'000, 0));
   const std::string text = latency_text(*data);
-  EXPECT_NE(text.find("GOOD: no deadline missed; the longest tick, wake-up included used 17.0 % of the period"),
+  EXPECT_NE(text.find("GOOD: no deadline missed; the longest tick (wake-up included) used 17.0 % of the period"),
             std::string::npos)
       << text;
   EXPECT_NE(text.find("Longest tick: number 1000, 170 µs, 150 µs of it waking up"), std::string::npos) << text;
