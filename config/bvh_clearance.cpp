@@ -27,6 +27,7 @@ class Clearance {
       upper = {std::max(upper.x, v.x), std::max(upper.y, v.y), std::max(upper.z, v.z)};
     }
     size_ = std::max({upper.x - lower.x, upper.y - lower.y, upper.z - lower.z});
+    ring_.reserve(1 + 3 * kMaxFan);  // for_each_in_ring is real-time code: what it calls must not allocate
     // Children come after their parent, so going backwards every child is bounded before its parent.
     for (std::size_t n = bvh.node.size(); n-- > 0;)
       for (int k = 0; k < 4; ++k) bound_child(n, k);

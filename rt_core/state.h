@@ -43,6 +43,8 @@ struct Region {
   double far_field_m = 0;         // how far the other regions (and its own far field) move the surface inward here
   double energy_J = 0;
   double tangent_N_per_m = 0;  // normal stiffness
+  Vec3 lean_tool_m;  // centre of the region's far field and its direction, set at first touch and fixed to the tool
+  Vec3 lean_normal_tool;  // from then on; zero: not set
   // friction memory
   Vec3 stretch_w;                   // tangential elastic stretch: material point minus origin of deformation
   double tangential_k_N_per_m = 0;  // Mindlin variant: stiffness of the last tick
