@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "rt_core/collide/closest_point.h"
 #include "rt_core/collide/ring.h"
 #include "rt_core/collide/triangle.h"
 
@@ -27,6 +28,7 @@ class Clearance {
       upper = {std::max(upper.x, v.x), std::max(upper.y, v.y), std::max(upper.z, v.z)};
     }
     size_ = std::max({upper.x - lower.x, upper.y - lower.y, upper.z - lower.z});
+    farthest_ = std::max(norm(lower), norm(upper));
     ring_.reserve(1 + 3 * kMaxFan);  // for_each_in_ring is real-time code: what it calls must not allocate
     // Children come after their parent, so going backwards every child is bounded before its parent.
     for (std::size_t n = bvh.node.size(); n-- > 0;)
@@ -40,7 +42,7 @@ class Clearance {
     const double length = norm(normal);
     ring_.clear();
     ring_.push_back(index);
-    const auto add = [this](std::int32_t i) noexcept { ring_.push_back(i); };
+    const auto add = [this](std::int32_t i, std::int32_t) { ring_.push_back(i); };
     if (!(length > 0) || !for_each_in_ring(bvh_.triangle.data(), index, add)) return;
     double height = 0.25 * size_;
     for (int i = 0; i < kHeightsTried; ++i, height *= 0.5) {
@@ -50,6 +52,7 @@ class Clearance {
       if (!(clear > height)) continue;
       t.clear_scale_per_m = scale;
       t.clear_radius_m = static_cast<float>(kShrink * clear);
+      t.ring_convex = is_ring_convex(t) ? 1 : 0;
       return;
     }
   }
@@ -62,6 +65,28 @@ class Clearance {
   };
 
   Vec3 corner(const Triangle& t, int k) const { return vertex_[static_cast<std::size_t>(t.vertex[k])]; }
+
+  // Whether all vertices of the ring (ring_) lie in or below the planes of t and its three edge neighbours, up to the
+  // rounding of coordinates, and these four are large enough for kSafeInset to keep features apart: the distance it
+  // keeps, squared, against what rounding does to a squared distance.
+  bool is_ring_convex(const Triangle& t) const {
+    const double reach = static_cast<double>(t.clear_radius_m);
+    const double rounding2 = 4e-14 * reach * (farthest_ + reach) + 1e-16 * kSafeInset;
+    for (int plane = 0; plane < 4; ++plane) {
+      const Triangle& f = plane == 3 ? t : bvh_.triangle[static_cast<std::size_t>(t.adjacent[plane])];
+      const Vec3 a = corner(f, 0), b = corner(f, 1), c = corner(f, 2), normal = cross(b - a, c - a);
+      const double length = norm(normal), longest = std::max({norm(b - a), norm(c - b), norm(a - c)});
+      const double kept = kSafeInset * length / longest;  // length / longest: the least altitude
+      if (!(kept * kept > rounding2)) return false;
+      for (const std::int32_t i : ring_) {
+        for (int k = 0; k < 3; ++k) {
+          const double height = dot(corner(bvh_.triangle[static_cast<std::size_t>(i)], k) - a, normal) / length;
+          if (!(height <= 1e-15 * farthest_)) return false;
+        }
+      }
+    }
+    return true;
+  }
 
   // First and last triangle under a child; leaves under a node are contiguous.
   std::array<std::int32_t, 2> extent(std::size_t n, int k) const {
@@ -165,7 +190,7 @@ class Clearance {
   std::vector<std::array<Disc, 4>> disc_;
   std::vector<std::int32_t> ring_;
   std::vector<Pending> stack_;
-  double size_ = 0, best2_ = 0;
+  double size_ = 0, farthest_ = 0, best2_ = 0;
 };
 
 }  // namespace

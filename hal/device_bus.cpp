@@ -26,7 +26,15 @@ SequenceTracker::Step SequenceTracker::follow(std::uint32_t sequence, std::uint3
   const std::uint32_t behind = (last_ - sequence) & mask;
   missing = 0;
   if (started_ && ahead == 0) return Step::kDuplicate;
-  if (started_ && behind <= (mask >> 2)) return Step::kReordered;
+  if (started_ && behind <= (mask >> 2)) {
+    old_run_ = old_run_ > 0 && sequence == ((old_ + 1) & mask) ? old_run_ + 1 : 1;
+    old_ = sequence;
+    if (old_run_ < kRestartAfter) return Step::kReordered;
+    last_ = sequence & mask;
+    old_run_ = 0;
+    return Step::kRestart;
+  }
+  old_run_ = 0;
   const bool loss = started_ && ahead <= (mask >> 1);
   const Step step = loss || !started_ ? Step::kNew : Step::kRestart;
   if (loss) missing = ahead - 1;

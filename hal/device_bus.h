@@ -29,7 +29,8 @@ struct BusCounters {
 };
 
 // Follows a wrapping sequence number. A step forward of up to half the window is loss; a step back of up to a quarter
-// is reordering; anything else means the sender restarted.
+// is reordering, unless kRestartAfter such numbers come one after the other: a late burst is short, a sender that
+// started again goes on. Anything else means the sender restarted.
 class SequenceTracker {
  public:
   enum class Step { kNew, kDuplicate, kReordered, kRestart };
@@ -38,10 +39,14 @@ class SequenceTracker {
   Step follow(std::uint32_t sequence, std::uint32_t& missing) noexcept;
   std::uint32_t last() const noexcept { return last_; }
 
+  static constexpr int kRestartAfter = 4;
+
  private:
   int bits_;
   bool started_ = false;
   std::uint32_t last_ = 0;
+  std::uint32_t old_ = 0;  // newest number taken for reordered, and how many came in a row
+  int old_run_ = 0;
 };
 
 class DeviceBus {

@@ -106,7 +106,7 @@ void DeviceNode::set_powered(bool powered) noexcept {
 void DeviceNode::step(std::int64_t now_ns) noexcept {
   Frame frames[kMaxFramesPerReceive];
   const int count = transport_.receive(frames);
-  if (!powered_) return plant_.step({});  // the hand still moves the handle
+  if (!powered_) return plant_.step({});                    // the hand still moves the handle
   for (int i = 0; i < count; ++i) take(frames[i], now_ns);  // bound: kMaxFramesPerReceive
   if (!expired_ && now_ns - last_command_ns_ > options_.watchdog_ns) {
     expired_ = true;

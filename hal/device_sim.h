@@ -45,10 +45,10 @@ class DevicePlant {
   Pose pose() const noexcept { return pose_; }  // exact, device frame
   Vec3 velocity_m_per_s() const noexcept { return velocity_; }
   Vec3 spin_rad_per_s() const noexcept { return spin_; }
-  Vec3 measured_m() noexcept;                       // with noise and encoder quantum; draws noise
-  void freeze_encoder(bool frozen) noexcept { frozen_ = frozen; }               // repeats the last measurement
+  Vec3 measured_m() noexcept;                                      // with noise and encoder quantum; draws noise
+  void freeze_encoder(bool frozen) noexcept { frozen_ = frozen; }  // repeats the last measurement
   void shift_encoder(Vec3 offset_m) noexcept { encoder_shift_m_ += offset_m; }  // lost counts
-  Wrench motor() const noexcept { return motor_; }  // rendered in the last period
+  Wrench motor() const noexcept { return motor_; }                              // rendered in the last period
   bool saturated() const noexcept { return saturated_; }
   double time_s() const noexcept { return static_cast<double>(ticks_) * options_.period_s; }
   std::uint64_t ticks() const noexcept { return ticks_; }

@@ -14,9 +14,7 @@ std::uint64_t FaultPlayer::after(double seconds) const noexcept {
   return tick_ + static_cast<std::uint64_t>(std::llround(seconds / period_s_));
 }
 
-std::int64_t FaultPlayer::period_ns() const noexcept {
-  return std::llround(1e9 * period_s_ / (1 + 1e-6 * drift_ppm_));
-}
+std::int64_t FaultPlayer::period_ns() const noexcept { return std::llround(1e9 * period_s_ / (1 + 1e-6 * drift_ppm_)); }
 
 void FaultPlayer::begin(const FaultLine& line) {
   const int count = static_cast<int>(line.value);

@@ -1,4 +1,5 @@
-// Plays a fault script on a simulated device: at the tick a line names, the node, what it sends or its cable misbehaves.
+// Plays a fault script on a simulated device: at the tick a line names, the node, what it sends or its cable
+// misbehaves.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +24,7 @@ class FaultPlayer {
   // Length of the device's next period in true time: its nominal period, as its drifting clock measures it.
   std::int64_t period_ns() const noexcept;
   // True while a cable is out that will be put back: no reason for the device to end.
-  bool unplugged() const noexcept { return replug_tick_ > tick_; }
+  bool unplugged() const noexcept { return replug_tick_ > 0 && tick_ <= replug_tick_; }
 
  private:
   static constexpr std::uint64_t kNever = ~std::uint64_t{0};

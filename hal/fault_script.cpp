@@ -16,8 +16,7 @@ struct Kind {
 };
 
 constexpr Kind kKinds[] = {
-#define PALPATE_KIND(kind, word, value, lowest, highest, what) \
-  {DeviceFault::kind, word, value, lowest, highest, what},
+#define PALPATE_KIND(kind, word, value, lowest, highest, what) {DeviceFault::kind, word, value, lowest, highest, what},
     PALPATE_DEVICE_FAULTS(PALPATE_KIND)
 #undef PALPATE_KIND
 };
@@ -76,8 +75,7 @@ bool parse_fault_script(const std::string& text, std::vector<FaultLine>& lines, 
     }
     lines.push_back(line);
   }
-  std::stable_sort(lines.begin(), lines.end(),
-                   [](const FaultLine& a, const FaultLine& b) { return a.at_s < b.at_s; });
+  std::stable_sort(lines.begin(), lines.end(), [](const FaultLine& a, const FaultLine& b) { return a.at_s < b.at_s; });
   return true;
 }
 

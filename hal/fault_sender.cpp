@@ -10,9 +10,7 @@ void FaultSender::hold(std::span<const Frame> frames) noexcept {
 }
 
 void FaultSender::release() noexcept {
-  inner_.send({held_, static_cast<std::size_t>(std::min(held_count_, 2))});  // a sample at a time, as it was made
-  for (int i = 2; i < held_count_; i += 2)
-    inner_.send({held_ + i, static_cast<std::size_t>(std::min(held_count_ - i, 2))});
+  for (int i = 0; i < held_count_; ++i) inner_.send({held_ + i, 1});
   held_count_ = 0;
 }
 

@@ -15,7 +15,7 @@ class FaultSender : public Transport {
   void lose(int samples) noexcept { lose_ = samples; }
   void duplicate(int samples) noexcept { duplicate_ = samples; }
   void reorder(int samples) noexcept { reorder_ = samples; }  // each is sent after the one that follows
-  void delay(int ticks) noexcept { delay_ = ticks; }  // samples wait, then go all at once and in order
+  void delay(int ticks) noexcept { delay_ = ticks; }          // samples wait, then go all at once and in order
   void corrupt(int samples) noexcept { corrupt_ = samples; }
 
   int send(std::span<const Frame> frames) noexcept override;

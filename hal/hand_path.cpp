@@ -1,5 +1,6 @@
 #include "hal/hand_path.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace palpate {
@@ -34,11 +35,12 @@ HandPath::HandPath(std::vector<HandPose> poses) : poses_(std::move(poses)) {
 HandTarget HandPath::at(double time_s) const noexcept {
   if (poses_.empty()) return {};
   if (!(time_s > poses_.front().time_s)) return {poses_.front().pose, {}, {}};
-  std::size_t next = 1;  // bound: number of poses
-  while (next < poses_.size() && poses_[next].time_s <= time_s) ++next;
-  const HandPose& from = poses_[next - 1];
-  if (next == poses_.size()) return {from.pose, {}, {}};
-  const HandPose& to = poses_[next];
+  // Binary search: a motion repeated for hours has thousands of poses.
+  const auto next = std::upper_bound(poses_.begin() + 1, poses_.end(), time_s,
+                                     [](double time, const HandPose& pose) { return time < pose.time_s; });
+  const HandPose& from = *(next - 1);
+  if (next == poses_.end()) return {from.pose, {}, {}};
+  const HandPose& to = *next;
   const double span_s = to.time_s - from.time_s;
   const double u = (time_s - from.time_s) / span_s;
   const double s = u * u * u * (10 + u * (-15 + 6 * u));

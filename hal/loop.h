@@ -114,7 +114,11 @@ class Loop {
   void wait() noexcept {
     slots_.skip(clock_.now_ns());
     clock_.wait_until(slots_.deadline_ns());
-    if (slots_.skip(clock_.now_ns())) clock_.wait_until(slots_.deadline_ns());
+    woke_ns_ = clock_.now_ns();
+    if (slots_.skip(woke_ns_)) {
+      clock_.wait_until(slots_.deadline_ns());
+      woke_ns_ = clock_.now_ns();
+    }
     slots_.start();
   }
 
@@ -158,8 +162,7 @@ class Loop {
   void one_tick(bool receive, bool stopping) noexcept {
     TickTiming& timing = record_.timing;
     timing.deadline_ns = slots_.deadline_ns();
-    const std::int64_t start_ns = clock_.now_ns();
-    timing.wake_latency_ns = brief(start_ns - timing.deadline_ns);
+    timing.wake_latency_ns = brief(woke_ns_ - timing.deadline_ns);
     if (receive) device_.receive(sample_);
     const std::int64_t received_ns = clock_.now_ns();
     make_input(stopping);
@@ -169,7 +172,7 @@ class Loop {
     const std::int64_t computed_ns = clock_.now_ns();
     send(to_command(kinematics_, output_, CommandFlag::kEnable));
     const std::int64_t sent_ns = clock_.now_ns();
-    timing.receive_ns = brief(received_ns - start_ns);
+    timing.receive_ns = brief(received_ns - woke_ns_);
     timing.compute_ns = brief(computed_ns - received_ns);
     timing.transmit_ns = brief(sent_ns - computed_ns);
     timing.publish_ns = publish_ns_;
@@ -252,6 +255,7 @@ class Loop {
   Stamps stamps_{};
   LoopSummary summary_;
   std::uint32_t stale_ = 0;
+  std::int64_t woke_ns_ = 0;
   std::int32_t publish_ns_ = 0;
 };
 

@@ -115,10 +115,10 @@ std::string RtSetup::text() const {
   return text;
 }
 
-PageFaults thread_page_faults() {
+ThreadUsage thread_usage() {
   rusage usage{};
   ::getrusage(RUSAGE_THREAD, &usage);
-  return {usage.ru_minflt, usage.ru_majflt};
+  return {usage.ru_minflt, usage.ru_majflt, usage.ru_nvcsw, usage.ru_nivcsw};
 }
 
 const std::atomic<bool>& install_stop_signals() {

@@ -42,11 +42,16 @@ class RtSetup {
   std::vector<RtVerdict> verdicts_;
 };
 
-// Page faults of the calling thread since it started (getrusage): the difference over a run must be zero.
-struct PageFaults {
-  long minor = 0, major = 0;
+// What the kernel counted for the calling thread since it started (getrusage). Over a run no page fault may be added;
+// waits are the sleeps of the loop, preemptions are what ran at a higher priority: interrupt threads.
+struct ThreadUsage {
+  long minor_faults = 0, major_faults = 0, waits = 0, preemptions = 0;
 };
-PageFaults thread_page_faults();
+ThreadUsage thread_usage();
+inline ThreadUsage operator-(const ThreadUsage& a, const ThreadUsage& b) {
+  return {a.minor_faults - b.minor_faults, a.major_faults - b.major_faults, a.waits - b.waits,
+          a.preemptions - b.preemptions};
+}
 
 // SIGINT and SIGTERM set the flag returned here instead of ending the process; SIGPIPE and SIGTSTP are ignored (a
 // stopped controller would leave the device waiting). Call once at start-up.

@@ -35,11 +35,12 @@ bool unpack(const std::uint8_t (&report)[kReportBytes], Frame& frame) noexcept {
 }  // namespace
 
 UsbHid::~UsbHid() {
+  writer_.reset();  // it writes to fd_
   if (fd_ >= 0) ::close(fd_);
 }
 
 void UsbHid::take_failure(int error) noexcept {
-  if (error == EAGAIN || error == EWOULDBLOCK || error == EINTR) return;
+  if (error == 0 || error == EAGAIN || error == EWOULDBLOCK || error == EINTR) return;
   if (error == ENODEV || error == EIO || error == ESHUTDOWN || error == EPIPE || error == ECONNRESET) {
     state_ = TransportState::kDown;  // unplugged
     return;
@@ -47,7 +48,21 @@ void UsbHid::take_failure(int error) noexcept {
   counters_.failures += 1;
 }
 
+int UsbHid::hand_over(std::span<const Frame> frames) noexcept {
+  static_assert(sizeof(ReportWriter::Report) == 1 + kReportBytes);
+  take_failure(writer_->take_error());
+  ReportWriter::Report reports[ReportWriter::kMostReports] = {};  // each begins with the number 0: none
+  const auto count = std::min(frames.size(), static_cast<std::size_t>(ReportWriter::kMostReports));
+  for (std::size_t i = 0; i < count; ++i)
+    pack(frames[i], reinterpret_cast<std::uint8_t(&)[kReportBytes]>(reports[i][1]));
+  const bool free = writer_->put(reports, static_cast<int>(count));
+  if (!free) counters_.send_dropped += count;  // the ones before: the bus did not take them in time
+  counters_.sent += count;
+  return free && state_ == TransportState::kUp ? static_cast<int>(count) : 0;
+}
+
 int UsbHid::send(std::span<const Frame> frames) noexcept {
+  if (writer_) return hand_over(frames);
   int sent = 0;
   for (const Frame& frame : frames) {  // bound: 2 frames a tick
     std::uint8_t report[1 + kReportBytes] = {};
@@ -101,7 +116,9 @@ std::unique_ptr<Transport> open_usb_hid(const std::string& path, UsbSide side, s
     ::close(fd);
     return nullptr;
   }
-  return std::make_unique<UsbHid>(fd, side);
+  auto transport = std::make_unique<UsbHid>(fd, side);
+  if (side == UsbSide::kController) transport->write_in_background();
+  return transport;
 }
 
 }  // namespace palpate

@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 
+#include "hal/report_writer.h"
 #include "hal/transport.h"
 
 namespace palpate {
@@ -29,6 +30,9 @@ class UsbHid : public Transport {
   UsbHid(const UsbHid&) = delete;
   UsbHid& operator=(const UsbHid&) = delete;
 
+  // From now on send() hands reports to a thread that waits for the bus in its place. For the controller's side.
+  void write_in_background() { writer_ = std::make_unique<ReportWriter>(fd_); }
+
   int send(std::span<const Frame> frames) noexcept override;
   int receive(std::span<Frame> frames) noexcept override;
   TransportState state() const noexcept override { return state_; }
@@ -36,11 +40,13 @@ class UsbHid : public Transport {
 
  private:
   void take_failure(int error) noexcept;
+  int hand_over(std::span<const Frame> frames) noexcept;
 
   int fd_;
   UsbSide side_;
   TransportState state_ = TransportState::kUp;
   TransportCounters counters_;
+  std::unique_ptr<ReportWriter> writer_;
 };
 
 // Opens /dev/hidrawN (controller) or /dev/hidgN (device). Null, with a reason that says what to do, when it is missing,

@@ -70,6 +70,8 @@ struct Triangle {
   // clear_radius_m to the point centroid + clear_scale_per_m * cross(edge 0, -edge 2). 0: unknown.
   float clear_scale_per_m = 0;
   float clear_radius_m = 0;
+  // 1: no vertex of the ring lies above the plane of this triangle or of one across an edge of it.
+  std::int32_t ring_convex = 0;
 };
 // Node of a 4-wide hierarchy over the triangles. Bounds are single precision, rounded outward. The normal cone of a child
 // (axis, tangent of its half-angle) holds the normals of all its triangles and of their neighbours across edges and

@@ -36,17 +36,30 @@ int report(const ReplayResult& result) {
   return result.identical() ? kExitOk : kExitFailed;
 }
 
+// A slice without its initial state: its ticks can be shown, but nothing verified.
+int list_only(RecordingReader& recording, RecordCsv* csv) {
+  TickRecord record;
+  while (recording.next(record)) {
+    if (csv != nullptr) csv->add(record);
+  }
+  fmt::print("listed: {} ticks from number {} on; not verified, the state before them is unknown\n{}",
+             recording.records(), recording.first_sequence(),
+             recording.error().empty() ? "" : "damaged recording: " + recording.error() + "\n");
+  return kExitFailed;
+}
+
 int run_replay(const ReplayOptions& options) {
   const MappedFile file(options.recording);
   RecordingReader recording(file.bytes());
   const RecordingHeader& header = recording.header();
+  std::unique_ptr<RecordCsv> csv;
+  if (!options.dump.empty()) csv = std::make_unique<RecordCsv>(options.dump);
+  if (!recording.state_known()) return list_only(recording, csv.get());
   const ImageFile image(options.image.empty() ? header.image_path : options.image);
   if (std::strcmp(header.build_id, kBuildId) != 0) {
     fmt::print("recorded by another build, verifying all the same\n  recorded {}\n  this one {}\n", header.build_id,
                kBuildId);
   }
-  std::unique_ptr<RecordCsv> csv;
-  if (!options.dump.empty()) csv = std::make_unique<RecordCsv>(options.dump);
   return report(replay(recording, image.model(), [&](const TickRecord& recorded, const TickRecord&) {
     if (csv) csv->add(recorded);
   }));
@@ -62,7 +75,8 @@ void add_replay_command(CLI::App& app, int& exit_code) {
   command->add_option("--dump", options->dump, "write one row per recorded tick to this CSV file");
   command->footer(
       "Prints `identical: N ticks` and exits with 0, or names the first tick, stage and field that differ and exits\n"
-      "with 1. A damaged or incomplete recording is verified as far as it goes, and exits with 1.\n"
+      "with 1. A damaged or incomplete recording is verified as far as it goes, and exits with 1. Black boxes\n"
+      "(RECORD.fault-N.plr) are slices of a run: they replay from the state before their first tick.\n"
       "Examples:\n"
       "  palpate replay run.plr\n"
       "  palpate replay run.plr --image mallet.pal --dump run.csv");

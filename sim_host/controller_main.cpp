@@ -194,7 +194,7 @@ constexpr bool kSanitized = false;
 
 // The real-time thread: set-up, system-call filter, loop. Prints only before the filter is in place.
 LoopSummary run_loop(const Arguments& arguments, const Model& model, Core& core, HostConnection& host, DeviceBus& bus,
-                     const std::atomic<bool>& interrupted) {
+                     const std::atomic<bool>& interrupted, ThreadUsage& usage) {
   std::atomic<bool> stop{false};
   const auto* mailbox = static_cast<const MailboxRegion*>(host.mailbox.data());
   HostPort port(mailbox, static_cast<std::uint32_t>(kHostSilence_s / model.params.period_s), interrupted, stop);
@@ -215,8 +215,10 @@ LoopSummary run_loop(const Arguments& arguments, const Model& model, Core& core,
                  filtered ? "ok       system-call filter: only what the loop needs"
                           : ("REFUSED  system-call filter: " + reason).c_str());
     drain(bus);
+    const ThreadUsage before = thread_usage();
     Loop loop(device, clock, controller, sink, port, kinematics, loop_options(model, arguments), stop);
     summary = loop.run();
+    usage = thread_usage() - before;
     summary.faults |= port.faults();
   });
   thread.join();
@@ -234,13 +236,16 @@ int run(int argc, char** argv) {
   DeviceAddress address;
   const std::unique_ptr<Transport> transport = connect_device(arguments, model.params.period_s, address);
   DeviceBus bus(*transport, address.profile, address.node);
-  const LoopSummary summary = run_loop(arguments, model, *core, host, bus, interrupted);
+  ThreadUsage usage;
+  const LoopSummary summary = run_loop(arguments, model, *core, host, bus, interrupted, usage);
   if (summary.end == LoopEnd::kSilentAtStart) {
     throw Failure{kSilentAtStart, "the device sent nothing at start: check power, cable, bus and node number"};
   }
   std::fprintf(stderr, "controller: %llu ticks, %llu missed, %llu without a fresh sample, faults 0x%x\n",
                static_cast<unsigned long long>(summary.ticks), static_cast<unsigned long long>(summary.missed_slots),
                static_cast<unsigned long long>(summary.stale_ticks), summary.faults);
+  std::fprintf(stderr, "loop thread: %ld minor and %ld major page faults, %ld waits, %ld preemptions\n",
+               usage.minor_faults, usage.major_faults, usage.waits, usage.preemptions);
   return summary.faults != 0 ? kFaulted : kOk;
 }
 

@@ -32,6 +32,8 @@ std::vector<DoctorItem> examine_machine(const DoctorSources& sources);
 std::vector<DoctorItem> examine_device(const DoctorSources& sources, const std::string& device);
 // A table for the terminal, one item a line, remedies indented below what failed.
 std::string doctor_table(const std::vector<DoctorItem>& items);
+// Names of the items that fail, separated by commas; empty when none does.
+std::string failing_items(const std::vector<DoctorItem>& items);
 // DoctorSources that read this machine.
 DoctorSources this_machine();
 

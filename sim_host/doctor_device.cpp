@@ -104,6 +104,14 @@ std::vector<DoctorItem> examine_device(const DoctorSources& s, const std::string
   return {judged("device " + device, true, "simulated: nothing to check on a bus", "")};
 }
 
+std::string failing_items(const std::vector<DoctorItem>& items) {
+  std::string text;
+  for (const DoctorItem& item : items) {
+    if (item.verdict == Verdict::kFail) text += (text.empty() ? "" : ", ") + item.name;
+  }
+  return text;
+}
+
 std::string doctor_table(const std::vector<DoctorItem>& items) {
   std::string table;
   for (const DoctorItem& item : items) {

@@ -18,10 +18,6 @@ namespace {
 
 double us(std::int64_t ns) { return 1e-3 * static_cast<double>(ns); }
 
-std::int64_t busy_ns(const TickTiming& t) {
-  return std::int64_t{t.wake_latency_ns} + t.receive_ns + t.compute_ns + t.transmit_ns + t.publish_ns;
-}
-
 void add_wake(LatencyData& data, std::int64_t late_ns, std::uint64_t tick) {
   add(data.wake, late_ns);
   add(data.summary.wake, late_ns, tick);
@@ -50,7 +46,7 @@ std::string worst_part(const TickTiming& t) {
 }
 
 std::string verdict(const LatencyData& data) {
-  const Histogram& h = data.bare_loop ? data.summary.wake : data.busy;
+  const Histogram& h = data.bare_loop ? data.summary.wake : data.summary.busy;
   const double share = 100.0 * static_cast<double>(h.max_ns) / static_cast<double>(data.period_ns);
   const char* what = data.bare_loop ? "latest wake-up" : "longest tick (wake-up included)";
   std::string text;
@@ -63,13 +59,13 @@ std::string verdict(const LatencyData& data) {
   }
   text += ".\n";
   if (!data.bare_loop) {
-    text += fmt::format("Longest tick: number {}, {:.0f} µs, {}.\n", data.worst_tick, us(data.busy.max_ns),
-                        worst_part(data.worst));
-    if (data.summary.compute.total > 0 && data.busy.sum_ns > 0) {
-      text +=
-          fmt::format("On average {:.0f} % of a tick's time is waiting to wake up, {:.0f} % computing.\n",
-                      100.0 * static_cast<double>(data.summary.wake.sum_ns) / static_cast<double>(data.busy.sum_ns),
-                      100.0 * static_cast<double>(data.summary.compute.sum_ns) / static_cast<double>(data.busy.sum_ns));
+    text += fmt::format("Longest tick: number {}, {:.0f} µs, {}.\n", data.summary.busy.cycle_of_max,
+                        us(data.summary.busy.max_ns), worst_part(data.summary.worst.record[0].timing));
+    if (data.summary.compute.total > 0 && data.summary.busy.sum_ns > 0) {
+      text += fmt::format(
+          "On average {:.0f} % of a tick's time is waiting to wake up, {:.0f} % computing.\n",
+          100.0 * static_cast<double>(data.summary.wake.sum_ns) / static_cast<double>(data.summary.busy.sum_ns),
+          100.0 * static_cast<double>(data.summary.compute.sum_ns) / static_cast<double>(data.summary.busy.sum_ns));
     }
   }
   if (data.summary.missed_ticks > 0 || share >= 50) {
@@ -83,12 +79,6 @@ std::string verdict(const LatencyData& data) {
 void add(LatencyData& data, const TickRecord& record) {
   add(data.summary, record);
   add(data.wake, record.timing.wake_latency_ns);
-  const std::int64_t busy = busy_ns(record.timing);
-  if (data.busy.total == 0 || busy > data.busy.max_ns) {
-    data.worst = record.timing;
-    data.worst_tick = record.tick;
-  }
-  add(data.busy, busy, record.tick);
 }
 
 LatencyData latency_of_recording(const std::string& path) {
@@ -133,7 +123,7 @@ LatencyData measure_wake_up(const MeasureOptions& options, std::string& verdicts
   return *data;
 }
 
-std::string latency_text(const LatencyData& data) {
+std::string latency_text(const LatencyData& data, int worst) {
   std::string text = fmt::format("{} ticks of {:.0f} µs\n  {:<14}{:>10}{:>10}{:>10}{:>10}\n", data.summary.ticks,
                                  us(data.period_ns), "µs", "   median", "99.9 %", "max", "at tick");
   const RunSummary& s = data.summary;
@@ -146,23 +136,23 @@ std::string latency_text(const LatencyData& data) {
     }
     row(text, "transmit", s.transmit);
     row(text, "publish", s.publish);
-    row(text, "whole tick", data.busy);
+    row(text, "whole tick", s.busy);
+    text += worst_ticks_text(s.worst, worst);
   }
   if (!data.damage.empty()) text += "note: the recording is incomplete: " + data.damage + '\n';
   return text + (data.summary.ticks > 0 ? verdict(data) : "No ticks to judge.\n");
 }
 
-Drawing latency_drawing(const LatencyData& data, const std::string& title) {
+Drawing latency_drawing(const LatencyData& data, const std::string& title, std::span<const LatencySeries> overlay) {
   const RunSummary& s = data.summary;
-  if (data.bare_loop) {
-    const LatencySeries one[] = {{"wake-up latency", &s.wake}};
-    return latency_plot(one, title);
+  std::vector<LatencySeries> series{{"wake-up latency", &s.wake}};
+  series.insert(series.end(), overlay.begin(), overlay.end());
+  if (!data.bare_loop) {
+    series.insert(series.end(), {{"receive from device", &s.receive},
+                                 {"compute (tick)", &s.compute},
+                                 {"transmit to device", &s.transmit},
+                                 {"whole tick, wake-up included", &s.busy}});
   }
-  const LatencySeries series[] = {{"wake-up latency", &s.wake},
-                                  {"receive from device", &s.receive},
-                                  {"compute (tick)", &s.compute},
-                                  {"transmit to device", &s.transmit},
-                                  {"whole tick, wake-up included", &data.busy}};
   return latency_plot(series, title);
 }
 

@@ -13,10 +13,7 @@ namespace palpate {
 struct LatencyData {
   std::int64_t period_ns = 1'000'000;
   RunSummary summary;         // of a bare loop only `ticks`, `missed_ticks` and `wake` are filled
-  Histogram busy;             // wake-up latency plus all work of a tick: what must stay below the period
   MicrosecondHistogram wake;  // for the cyclictest formats
-  TickTiming worst{};         // of the tick with the largest busy time
-  std::uint64_t worst_tick = 0;
   bool bare_loop = false;
   std::string damage;  // not empty: the recording is incomplete or damaged, and how
 };
@@ -35,8 +32,10 @@ struct MeasureOptions {
 // receives one line per real-time measure. SIGINT ends it early.
 LatencyData measure_wake_up(const MeasureOptions& options, std::string& verdicts);
 
-// Table per stage (median, 99.9 %, maximum and its tick), then a verdict in plain words with what to do.
-std::string latency_text(const LatencyData& data);
-Drawing latency_drawing(const LatencyData& data, const std::string& title);
+// Table per stage (median, 99.9 %, maximum and its tick), `worst` of the worst ticks with their parts, then a verdict
+// in plain words with what to do.
+std::string latency_text(const LatencyData& data, int worst = 0);
+// `overlay`: other wake-up histograms drawn with ours (cyclictest on the same machine).
+Drawing latency_drawing(const LatencyData& data, const std::string& title, std::span<const LatencySeries> overlay = {});
 
 }  // namespace palpate

@@ -27,6 +27,7 @@ constexpr std::uint32_t tag_of(const char (&text)[5]) {
 }
 constexpr std::uint32_t kHead = tag_of("HEAD");
 constexpr std::uint32_t kStat = tag_of("STAT");
+constexpr std::uint32_t kSlice = tag_of("SLIC");
 constexpr std::uint32_t kTick = tag_of("TICK");
 constexpr std::uint32_t kLost = tag_of("LOST");
 constexpr std::uint32_t kEnd = tag_of("END ");
@@ -38,6 +39,9 @@ struct Prefix {
 };
 struct ChunkHeader {
   std::uint32_t tag, count, bytes, crc;
+};
+struct SlicePayload {
+  std::uint64_t first, state_known;
 };
 struct LostPayload {
   std::uint64_t first, number;
@@ -111,6 +115,10 @@ void RecordingWriter::write_chunk(std::uint32_t tag, std::uint32_t count, std::s
   write_all(whole.data(), whole.size());
 }
 
+void RecordingWriter::begin_slice(std::uint64_t first, bool state_known) {
+  write_chunk(kSlice, 1, bytes_of(SlicePayload{first, state_known ? 1u : 0u}));
+}
+
 void RecordingWriter::add(const TickRecord& record) {
   const std::int32_t regions = record.region_count < 0             ? 0
                                : record.region_count > kMaxRegions ? kMaxRegions
@@ -168,6 +176,27 @@ RecordingReader::RecordingReader(std::span<const std::byte> bytes) : bytes_(byte
   if (header_.initial_state_hash != crc_of(state.payload.data(), sizeof(State))) {
     throw RecordingError(fmt::format("offset {}: the initial state is not the one the header names", chunk_offset_));
   }
+  read_slice();
+}
+
+// The chunk of a slice, if it is there: whatever else follows is left to next().
+void RecordingReader::read_slice() {
+  std::uint32_t tag = 0;
+  if (bytes_.size() - offset_ < sizeof(ChunkHeader)) return;
+  std::memcpy(&tag, bytes_.data() + offset_, sizeof(tag));
+  if (tag != kSlice) return;
+  const Chunk chunk = expect_chunk(kSlice, sizeof(SlicePayload));
+  SlicePayload slice;
+  std::memcpy(&slice, chunk.payload.data(), sizeof(slice));
+  first_sequence_ = slice.first;
+  state_known_ = slice.state_known != 0;
+}
+
+void RecordingReader::extend(std::span<const std::byte> bytes) {
+  bytes_ = bytes;
+  if (!cut_ || bytes.size() < offset_) return;
+  cut_ = false;
+  error_.clear();
 }
 
 void RecordingReader::read_prefix() {
@@ -185,16 +214,21 @@ void RecordingReader::read_prefix() {
 // Reads and checks the chunk at offset_; throws, leaving offset_ there, when it is damaged or cut.
 RecordingReader::Chunk RecordingReader::read_chunk() {
   chunk_offset_ = offset_;
+  cut_ = true;  // until the chunk is seen to be whole
   ChunkHeader header;
   const std::size_t left = bytes_.size() - offset_;
   if (left == 0) throw RecordingError(fmt::format("offset {}: the recording ends without its footer", offset_));
   if (left < sizeof(header)) throw RecordingError(fmt::format("offset {}: cut off inside a chunk header", offset_));
   std::memcpy(&header, bytes_.data() + offset_, sizeof(header));
-  if (header.bytes > kMostChunkBytes) throw RecordingError(fmt::format("offset {}: damaged chunk size", offset_));
+  if (header.bytes > kMostChunkBytes) {
+    cut_ = false;
+    throw RecordingError(fmt::format("offset {}: damaged chunk size", offset_));
+  }
   if (header.bytes > left - sizeof(header)) {
     throw RecordingError(
         fmt::format("offset {}: chunk cut off: {} of {} bytes", offset_, left - sizeof(header), header.bytes));
   }
+  cut_ = false;
   const Chunk chunk{header.tag, header.count, bytes_.subspan(offset_ + sizeof(header), header.bytes)};
   if (header.crc != crc_of(chunk.payload.data(), chunk.payload.size(), crc_of(&header, offsetof(ChunkHeader, crc)))) {
     throw RecordingError(fmt::format("offset {}: damaged chunk (checksum)", offset_));

@@ -5,6 +5,7 @@
 //   chunks: u32 tag, u32 count, u32 payload bytes, u32 CRC-32 of the 12 bytes before and of the payload; payload
 //     HEAD  one RecordingHeader        first
 //     STAT  one State: initial state   second
+//     SLIC  {first sequence, 1 if STAT is the state before it}: only in a slice of a longer run, third
 //     TICK  `count` records: TickRecord up to `region`, then region_count RegionRecords each
 //     LOST  {first sequence, number}: records the recorder did not get
 //     END   {records, lost}: the recording was finished properly; nothing follows
@@ -52,6 +53,9 @@ class RecordingWriter {
   RecordingWriter(const RecordingWriter&) = delete;
   RecordingWriter& operator=(const RecordingWriter&) = delete;
 
+  // Before the first add(): this is a slice of a longer run, whose first record has sequence `first`. `state_known`:
+  // the initial state is the one before that record; otherwise the slice can be listed but not replayed.
+  void begin_slice(std::uint64_t first, bool state_known);
   void add(const TickRecord& record);
   // Declares that `number` records from sequence `first` on are missing here.
   void add_lost(std::uint64_t first, std::uint64_t number);
@@ -82,10 +86,18 @@ class RecordingReader {
 
   const RecordingHeader& header() const { return header_; }
   const State& initial_state() const { return initial_state_; }
+  // Sequence of the first record; 1 unless this is a slice of a longer run.
+  std::uint64_t first_sequence() const { return first_sequence_; }
+  // Whether the initial state is the one before the first record, so that a replay can start there.
+  bool state_known() const { return state_known_; }
   // Next record in order; false at the end or at the first damage. A gap in record.sequence is a loss.
   bool next(TickRecord& record);
   // After next() returned false: empty if the recording is whole, otherwise what is wrong and where.
   const std::string& error() const { return error_; }
+  // After next() returned false: the file ended before its footer, as while it is still being written. Then extend()
+  // goes on with `bytes`, the same file grown longer, from the first record not read yet.
+  bool cut() const { return cut_; }
+  void extend(std::span<const std::byte> bytes);
   std::uint64_t records() const { return records_; }
   // Records declared lost so far.
   std::uint64_t lost() const { return lost_; }
@@ -102,6 +114,7 @@ class RecordingReader {
   void read_prefix();
   void decode(TickRecord& record);
   void finish(const Chunk& chunk);
+  void read_slice();
 
   std::span<const std::byte> bytes_;
   std::size_t offset_ = 0;        // of the next chunk
@@ -112,7 +125,10 @@ class RecordingReader {
   State initial_state_;
   std::uint64_t records_ = 0;
   std::uint64_t lost_ = 0;
+  std::uint64_t first_sequence_ = 1;
+  bool state_known_ = true;
   bool ended_ = false;
+  bool cut_ = false;
   std::string error_;
 };
 

@@ -99,7 +99,11 @@ ReplayResult replay(RecordingReader& recording, const Model& model, const Replay
   State state = recording.initial_state();
   Scratch scratch;
   TickRecord recorded;
-  std::uint64_t expected = 1;
+  if (!recording.state_known()) {
+    throw RecordingError(
+        "a slice of a longer run without the state before its first tick: it can be listed (--dump) but not replayed");
+  }
+  std::uint64_t expected = recording.first_sequence();
   while (recording.next(recorded)) {
     if (recorded.sequence != expected) {
       result.lost = recorded.sequence - expected;

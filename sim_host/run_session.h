@@ -2,8 +2,12 @@
 // stop in order.
 #pragma once
 
+#include <functional>
 #include <string>
+#include <vector>
 
+#include "sim_host/black_box.h"
+#include "sim_host/live_table.h"
 #include "sim_host/run_summary.h"
 
 namespace palpate {
@@ -18,7 +22,11 @@ struct RunOptions {
   int cpu = -1;                    // of the real-time thread; -1: any
   int priority = 80;               // SCHED_FIFO; 0: ordinary scheduling
   bool quiet = false;              // no live status line
-  std::string program_folder;      // of palpate-rt and palpate-device; empty: beside this program
+  bool arm = true;                 // false: never armed, hence zero force throughout; every stage computes all the same
+  bool repeat_path = false;        // the simulated hand repeats the scene's own motion for the whole duration
+  std::string black_box;           // prefix of the files written with every fault; empty: none
+  std::function<void(const LiveState&)> progress;  // called about every second while the run goes on; may be empty
+  std::string program_folder;                      // of palpate-rt and palpate-device; empty: beside this program
 };
 
 struct RunResult {
@@ -27,10 +35,14 @@ struct RunResult {
   int controller_exit = 0;
   std::string recorder_error;
   bool interrupted = false;  // Ctrl-C
+  std::vector<BlackBoxDump> dumps;
+  std::string black_box_error;
+  double elapsed_s = 0;  // until the stop
   bool faulted() const { return summary.fault != 0; }
 };
 
-// Throws std::runtime_error when the run cannot start. SIGINT and SIGTERM end it early and in order.
+// Throws std::runtime_error when the run cannot start, with the table when the traffic does not fit the CAN bus. SIGINT
+// and SIGTERM end it early and in order.
 RunResult run_session(const RunOptions& options);
 
 }  // namespace palpate

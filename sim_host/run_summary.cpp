@@ -45,7 +45,10 @@ void add(RunSummary& summary, const TickRecord& record) {
   add(summary.compute, timing.compute_ns, record.tick);
   add(summary.transmit, timing.transmit_ns, record.tick);
   add(summary.publish, timing.publish_ns, record.tick);
+  add(summary.sent, timing.wake_latency_ns + timing.receive_ns + timing.compute_ns + timing.transmit_ns, record.tick);
   for (int i = 0; i < kStageCount; ++i) add(summary.stage[i], timing.stage_ns[i], record.tick);
+  add(summary.busy, busy_ns(timing), record.tick);
+  add(summary.worst, record);
   const Output& output = record.output;
   summary.device_force_max_N = std::max(summary.device_force_max_N, norm(output.device_w.force_N));
   summary.contact_force_max_N = std::max(summary.contact_force_max_N, norm(output.contact_w.force_N));
@@ -63,7 +66,7 @@ double rate_Hz(const RunSummary& summary) {
   return static_cast<double>(summary.ticks - 1) / (1e-9 * static_cast<double>(span_ns));
 }
 
-std::string summary_text(const RunSummary& summary, std::uint64_t lost_records) {
+std::string summary_text(const RunSummary& summary, std::uint64_t lost_records, int worst) {
   std::string text;
   const auto out = std::back_inserter(text);
   fmt::format_to(out, "ticks   {} at {:.2f} Hz, {} missed, {} without a fresh device sample, {} records lost\n",
@@ -76,7 +79,10 @@ std::string summary_text(const RunSummary& summary, std::uint64_t lost_records) 
     time_row(text, fmt::format("  {}", stage_name(static_cast<Stage>(i))).c_str(), summary.stage[i]);
   }
   time_row(text, "transmit", summary.transmit);
+  time_row(text, "deadline to sent", summary.sent);
   time_row(text, "telemetry", summary.publish);
+  time_row(text, "whole tick", summary.busy);
+  text += worst_ticks_text(summary.worst, worst);
   fmt::format_to(out, "force   {:.3f} N largest on the hand, {:.3f} N in contact, {:.3f} mm deepest\n",
                  summary.device_force_max_N, summary.contact_force_max_N, 1e3 * summary.penetration_max_m);
   fmt::format_to(out, "pools   {} contacts, {} regions, {} stack entries, {} support calls at most\n",

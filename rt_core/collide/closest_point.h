@@ -16,6 +16,10 @@ inline constexpr std::int32_t kMaxQueryNodes = 512;
 // Distance below which p - closest is too short to have a direction: the pseudo-normal is used instead.
 inline constexpr double kDirectionFloor_m = 1e-9;
 
+// A closest point whose smallest barycentric weight exceeds this is safely inside its face or edge: rounding cannot put
+// it on a neighbour. The scene compiler checks it against each triangle before it sets Triangle::ring_convex.
+inline constexpr double kSafeInset = 1e-3;
+
 struct SurfacePoint {
   Vec3 closest_w;  // on the rest surface
   Vec3 normal_w;   // unit, outward: along p - closest outside, its opposite inside, pseudo-normal at contact

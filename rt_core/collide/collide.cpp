@@ -10,8 +10,12 @@ namespace palpate {
 namespace {
 
 // A point whose gap is below this is measured every tick, so that its first contact starts warm; a point farther off is
-// measured again only once it has moved far enough to come this close.
-constexpr double kSearchMargin_m = 1e-3;
+// measured again only once it can have come this close.
+constexpr double kSearchMargin_m = 0.5e-3;
+// Points up to this much farther off are measured in turn, one of kTurns each tick. A tool that comes near moves all
+// its points by the same distance, and without turns they would all be due, and cold, in the same tick.
+constexpr double kRefreshMargin_m = 2e-3;
+constexpr std::uint64_t kTurns = 8;
 
 // A pose as a matrix: half the work of a quaternion per point.
 struct RigidMap {
@@ -86,7 +90,7 @@ class Collider {
     const Real gap = distance_to(root_, now_(piece.pose_tool.position_m)) - piece.bounding_radius_m;
     const std::int32_t end = piece.first_point + piece.point_count;
     for (std::int32_t i = piece.first_point; i < end; ++i) {  // bound: kMaxToolPoints over all pieces
-      if (gap > reach_m_) {
+      if (gap > reach_m_ + kRefreshMargin_m) {
         skip(state_.point[i], gap);
       } else {
         visit(i);
@@ -96,16 +100,22 @@ class Collider {
 
  private:
   void visit(std::int32_t index) PALPATE_RT {
-    const ToolPoint& tool_point = model_.tool_point[static_cast<std::size_t>(index)];
     PointState& point = state_.point[index];
-    const Vec3 p = now_(tool_point.position_tool_m);
-    const Real moved = norm(p - before_(tool_point.position_tool_m));
+    const Vec3 p = now_(model_.tool_point[static_cast<std::size_t>(index)].position_tool_m);
     // Written so that a NaN in any term measures the point.
-    if (point.gap_bound_m - moved > reach_m_) return skip(point, point.gap_bound_m - moved);
-    measure(index, p, moved);
+    if (point.gap_bound_m > reach_m_) {
+      const Real bound = point.gap_bound_m - moved(index, p);
+      const bool its_turn = (static_cast<std::uint64_t>(index) + state_.tick) % kTurns == 0;
+      if (bound > reach_m_ && !(its_turn && bound < reach_m_ + kRefreshMargin_m)) return skip(point, bound);
+    }
+    measure(index, p);
   }
 
-  void measure(std::int32_t index, Vec3 p, Real moved) PALPATE_RT {
+  Real moved(std::int32_t index, Vec3 p) const PALPATE_RT {
+    return norm(p - before_(model_.tool_point[static_cast<std::size_t>(index)].position_tool_m));
+  }
+
+  void measure(std::int32_t index, Vec3 p) PALPATE_RT {
     const ToolPoint& tool_point = model_.tool_point[static_cast<std::size_t>(index)];
     PointState& point = state_.point[index];
     const SurfacePoint surface = closest_surface_point(model_, p, kHuge, point.triangle);
@@ -113,13 +123,14 @@ class Collider {
       state_.high_water.traversal_stack = surface.stack_high_water;
     }
     if (!surface.found) return forget(point);
-    const Real signed_distance = surface.truncated
-                                     ? side_checked(surface.signed_distance_m, point, tool_point.margin_m, moved)
-                                     : surface.signed_distance_m;
-    if (surface.truncated) scratch_.status |= Status::kTraversalTruncated;
-    const bool flipped = (signed_distance < 0) != (surface.signed_distance_m < 0);
+    Real signed_distance = surface.signed_distance_m;
+    point.normal_w = surface.normal_w;
+    if (surface.truncated) {
+      scratch_.status |= Status::kTraversalTruncated;
+      signed_distance = side_checked(signed_distance, point, tool_point.margin_m, moved(index, p));
+      if ((signed_distance < 0) != (surface.signed_distance_m < 0)) point.normal_w = -surface.normal_w;
+    }
     point.closest_w = surface.closest_w;
-    point.normal_w = flipped ? -surface.normal_w : surface.normal_w;
     point.triangle = surface.triangle;
     point.gap_m = signed_distance - tool_point.margin_m;
     point.gap_bound_m = signed_distance < 0 ? point.gap_m : surface.lower_bound_m - tool_point.margin_m;

@@ -10,9 +10,10 @@ namespace palpate {
 // Triangles around one vertex that a walk visits at most; meshes with more there are searched through the hierarchy.
 inline constexpr std::int32_t kMaxFan = 24;
 
-// Calls visit(index) once for every triangle reached by turning about the three vertices of `triangle`, itself left
-// out. False when the surface is open there or a fan has more than kMaxFan triangles: some were left out then. Bound:
-// 3 kMaxFan.
+// Calls visit(index, newest) once for every triangle reached by turning about the three vertices of `triangle`, itself
+// left out; `newest` is the vertex the turn reaches with that triangle, and over all calls every vertex of the ring
+// that is not a corner of `triangle`. False when the surface is open there or a fan has more than kMaxFan triangles:
+// some were left out then. Bound: 3 kMaxFan.
 template <class Visit>
 inline bool for_each_in_ring(const Triangle* triangles, std::int32_t triangle, Visit&& visit) PALPATE_RT {
   for (int corner = 0; corner < 3; ++corner) {  // bound: 3
@@ -22,12 +23,10 @@ inline bool for_each_in_ring(const Triangle* triangles, std::int32_t triangle, V
     for (; steps < kMaxFan; ++steps) {  // bound: kMaxFan
       if (at < 0) return false;
       const Triangle& t = triangles[at];
-      const std::int32_t next = t.vertex[0] == vertex   ? t.adjacent[0]
-                                : t.vertex[1] == vertex ? t.adjacent[1]
-                                                        : t.adjacent[2];
-      if (next == triangle) break;  // the last of this fan is the first of another corner's
-      visit(at);
-      at = next;
+      const int k = t.vertex[0] == vertex ? 0 : t.vertex[1] == vertex ? 1 : 2;
+      if (t.adjacent[k] == triangle) break;  // the last of this fan is the first of another corner's
+      visit(at, t.vertex[k == 2 ? 0 : k + 1]);
+      at = t.adjacent[k];
     }
     if (steps == kMaxFan) return false;
   }

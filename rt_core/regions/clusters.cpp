@@ -16,12 +16,6 @@ void sort_by_point(const Scratch& scratch, Clusters& out) PALPATE_RT {
   }
 }
 
-// Root of the union-find tree; roots are the lowest rank of their set, so paths only lead downward and end.
-std::int32_t root_of(const std::int32_t* parent, std::int32_t i) PALPATE_RT {
-  while (parent[i] != i) i = parent[i];  // bound: kMaxContacts
-  return i;
-}
-
 bool linked(const Model& model, const State& state, const Contact& a, const Contact& b) PALPATE_RT {
   const double distance2 = squared_norm(a.position_w - b.position_w);
   const double near = model.params.cluster_distance_m;
@@ -31,30 +25,36 @@ bool linked(const Model& model, const State& state, const Contact& a, const Cont
   return region >= 0 && region == state.point[b.point].region && distance2 <= far * far;
 }
 
+// Gives the contacts of two sets the lower of their labels. Bound: kMaxContacts.
+void unite(std::int32_t* set, std::int32_t count, std::int32_t a, std::int32_t b) PALPATE_RT {
+  const std::int32_t low = a < b ? a : b, high = a < b ? b : a;
+  for (std::int32_t i = high; i < count; ++i) {
+    if (set[i] == high) set[i] = low;
+  }
+}
+
 }  // namespace
 
 void find_clusters(const Model& model, const State& state, const Scratch& scratch, Clusters& out) PALPATE_RT {
   sort_by_point(scratch, out);
-  std::int32_t parent[kMaxContacts];
+  std::int32_t set[kMaxContacts];                    // rank of the lowest contact of each contact's set
   for (std::int32_t i = 0; i < out.contacts; ++i) {  // bound: kMaxContacts
-    parent[i] = i;
+    set[i] = i;
+    const Contact& contact = scratch.contact[out.order[i]];
     for (std::int32_t j = 0; j < i; ++j) {  // bound: kMaxContacts
-      const std::int32_t a = root_of(parent, i), b = root_of(parent, j);
-      if (a == b || !linked(model, state, scratch.contact[out.order[i]], scratch.contact[out.order[j]])) continue;
-      parent[a > b ? a : b] = a < b ? a : b;
+      if (set[i] == set[j] || !linked(model, state, contact, scratch.contact[out.order[j]])) continue;
+      unite(set, i + 1, set[i], set[j]);
     }
   }
   out.count = 0;
-  for (std::int32_t i = 0; i < out.contacts; ++i) {  // bound: kMaxContacts; a root comes before its members
+  for (std::int32_t i = 0; i < out.contacts; ++i) {  // bound: kMaxContacts; the lowest of a set comes before the others
     const Contact& contact = scratch.contact[out.order[i]];
-    const std::int32_t root = root_of(parent, i);
-    if (root == i) {
+    if (set[i] == i) {
       out.of_rank[i] = out.count;
-      out.cluster[out.count] = Cluster{};
-      out.cluster[out.count].first_point = contact.point;
+      out.cluster[out.count] = {contact.point, 0, 0.0, 0.0, -1};
       out.count += 1;
     }
-    out.of_rank[i] = out.of_rank[root];
+    out.of_rank[i] = out.of_rank[set[i]];
     Cluster& cluster = out.cluster[out.of_rank[i]];
     cluster.count += 1;
     cluster.area_m2 += model.tool_point[static_cast<std::size_t>(contact.point)].area_m2;

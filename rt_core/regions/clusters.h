@@ -13,23 +13,24 @@ namespace palpate {
 inline constexpr double kSplitFactor = 1.5;
 
 // One group of contacts. Members are listed by tool point, so nothing here depends on the order contacts came in.
+// No default values: only the entries in use are written.
 struct Cluster {
-  std::int32_t first_point = 0;  // lowest tool point among its members: its canonical name
-  std::int32_t count = 0;
-  double area_m2 = 0;
-  double depth_max_m = 0;
-  std::int32_t slot = -1;  // in State::region, once it has an identity
+  std::int32_t first_point;  // lowest tool point among its members: its canonical name
+  std::int32_t count;
+  double area_m2;
+  double depth_max_m;
+  std::int32_t slot;  // in State::region, or -1 until it has an identity
 };
 
 struct Clusters {
   std::int32_t order[kMaxContacts];    // contact indices sorted by tool point
   std::int32_t of_rank[kMaxContacts];  // cluster of contact order[i]
   Cluster cluster[kMaxContacts];       // sorted by first_point
-  std::int32_t contacts = 0;
-  std::int32_t count = 0;
+  std::int32_t contacts;
+  std::int32_t count;
 };
 
-// Single-linkage clustering by union-find. Two contacts are linked when their surface points are nearer than
+// Single-linkage clustering. Two contacts are linked when their surface points are nearer than
 // cluster_distance_m, or nearer than kSplitFactor times that and both belonged to one region last tick
 // (state.point.region). Bound: kMaxContacts^2 / 2 distances.
 void find_clusters(const Model& model, const State& state, const Scratch& scratch, Clusters& out) PALPATE_RT;

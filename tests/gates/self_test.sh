@@ -82,6 +82,10 @@ expect fail "symbols_core on pow" "$gates/symbols_core.sh" "$work/libm.a"
 archive penetrates 'extern "C" int ccdGJKPenetration(); int f() { return ccdGJKPenetration(); }\n'
 expect fail "symbols_core on ccdGJKPenetration" "$gates/symbols_core.sh" "$work/penetrates.a"
 
+expect pass "instructions_core on clean code" "$gates/instructions_core.sh" "$work/clean.a"
+archive fused '__attribute__((target("fma"))) double f(double a, double b, double c) { return __builtin_fma(a, b, c); }\n'
+expect fail "instructions_core on a fused multiply-add" "$gates/instructions_core.sh" "$work/fused.a"
+
 program() { # NAME TEXT LIBRARY...
   local name=$1
   printf '%b' "$2" >"$work/$name.cpp"

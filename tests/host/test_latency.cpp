@@ -119,7 +119,7 @@ TEST(Latency, ReadsARecording) {
   std::filesystem::remove(path);
   EXPECT_EQ(data.period_ns, 1'000'000);
   EXPECT_EQ(data.summary.ticks, 50u);
-  EXPECT_EQ(data.busy.max_ns, 14'000);
+  EXPECT_EQ(data.summary.busy.max_ns, 14'000);
   EXPECT_EQ(data.wake.cycles, 50u);
   EXPECT_EQ(data.damage, "2 records are missing");
 }

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Boots the guest in OUT with one scenario in deterministic virtual time and unpacks its results.
-#   boot.sh OUT SCENARIO RESULT_DIR [TIMEOUT_S]
+#   boot.sh OUT SCENARIO SECONDS RESULT_DIR [TIMEOUT_S]
 # The command line is pinned: any change to it shifts latencies by a few microseconds.
 set -euo pipefail
-out=$1 scenario=$2 results=$3 timeout_s=${4:-600}
+out=$1 scenario=$2 seconds=$3 results=$4 timeout_s=${5:-600}
 mkdir -p "$results"
 disk=$results/disk.img
 rm -f "$disk"
@@ -12,7 +12,7 @@ status=0
 timeout "$timeout_s" qemu-system-x86_64 -nodefaults -display none -serial stdio -no-reboot -m 1024 -smp 1 \
   -accel tcg -cpu max -icount shift=0,sleep=off -seed 1 -rtc base=2024-01-01,clock=vm \
   -kernel "$out/vmlinuz" -initrd "$out/initrd.gz" \
-  -append "console=ttyS0 quiet nokaslr norandmaps random.trust_cpu=off panic=-1 scenario=$scenario" \
+  -append "console=ttyS0 quiet nokaslr norandmaps random.trust_cpu=off panic=-1 scenario=$scenario seconds=$seconds" \
   -object can-bus,id=bus0 -device kvaser_pci,canbus=bus0 -device kvaser_pci,canbus=bus0 \
   -drive "file=$disk,if=virtio,format=raw,cache=unsafe" < /dev/null > "$results/console.txt" 2>&1 || status=$?
 if [ $status -ne 0 ]; then

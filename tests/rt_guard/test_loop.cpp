@@ -81,12 +81,22 @@ struct RealTimeThread {
     while (stage.load() != wanted) __builtin_ia32_pause();
   }
 
+  // Where memory cannot be locked (no privilege), the script at least touches every page of code a tick can need:
+  // libccd's is used only when a contact is lost.
+  void visit_all_code(State& state, Scratch& scratch) const {
+    reset(state);
+    Output output;
+    ScriptedHand hand(model);
+    for (int i = 0; i < kScriptTicks; ++i) tick(model, state, scratch, hand.next(output), output);
+    reset(state);
+  }
+
   void run() {
     id = gettid();
     const RtSetup setup({.priority = 0, .no_deep_sleep = false});
     const auto state = std::make_unique<State>();
     const auto scratch = std::make_unique<Scratch>();
-    reset(*state);
+    visit_all_code(*state, *scratch);
     ModelController controller(model, *state, *scratch);
     DeviceBus device(transport, WireProfile::kFd);
     MonotonicClock clock;
@@ -101,6 +111,9 @@ struct RealTimeThread {
     options.ticks = kWarmUpTicks;
     Loop(device, clock, controller, sink, host, CartesianKinematics{}, options, stop).run();
     install_syscall_filter(refused);
+    arm();  // touches the guard's own pages, in case memory could not be locked
+    calls = disarm();
+    forbidden = forbidden_syscall();
     stage = 1;
     wait_for(2);
     sink.ticks_in_contact = 0;

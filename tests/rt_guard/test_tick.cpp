@@ -26,6 +26,7 @@ constexpr int kTicks = 100000;
 struct Bench {
   explicit Bench(const std::string& scene) : image(std::string(PALPATE_IMAGE_DIR) + "/" + scene + ".pal") {
     reset(*state);
+    mlockall(MCL_CURRENT | MCL_FUTURE);  // as the controller does; where it is refused the warm-up alone must do
   }
   // Plays the script over and over, each time from a reset state. Returns the number of ticks in contact.
   int play(int ticks) {

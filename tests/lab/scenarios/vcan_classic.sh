@@ -1,3 +1,3 @@
-# The same with classic frames on vcan.
+# Classic frames on vcan.
 . /lab/scenarios/common.sh
-render can:vcan0,classic can:vcan0,classic "${SECONDS_TO_RUN:-10}"
+render can:vcan0,classic can:vcan0,classic --bus-model classic

@@ -1,0 +1,13 @@
+#!/usr/bin/env bash
+# Gate: no fused multiply-add and no x87 arithmetic in the real-time core: both round differently from what is written, so
+# one compiler's bits would differ from another's. Usage: instructions_core.sh ARCHIVE
+set -euo pipefail
+archive=${1:?usage: instructions_core.sh ARCHIVE}
+listing=$(objdump -d --no-show-raw-insn -C "$archive")
+[ -n "$listing" ] || { echo "$archive holds no code"; exit 1; }
+found=$(awk '
+  /:[ \t]+file format/ { object = $1 }
+  /^[0-9a-f]+ <.*>:$/ { name = $0; sub(/^[0-9a-f]+ /, "", name) }
+  $2 ~ /^(vfn?m(add|sub)|fadd|fsub|fmul|fdiv|fsqrt|fld|fild)/ { print object, name, $2 }' <<<"$listing")
+[ -z "$found" ] || { echo "instructions that round differently from the source:"; echo "$found"; exit 1; }
+echo "core instructions: $(grep -c ':	' <<<"$listing") looked at, none fused"

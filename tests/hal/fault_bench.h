@@ -1,0 +1,122 @@
+// A whole device and a whole controller in virtual time: simulated hand and handle, node, fault script and wire on one
+// side, device bus, control loop and the real tick() with the smallest scene on the other.
+#pragma once
+
+#include <atomic>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hal/bus_model.h"
+#include "hal/fault_player.h"
+#include "hal/loop.h"
+#include "hal/loopback.h"
+#include "tests/support/tiny_image.h"
+
+namespace palpate::test {
+
+// The hand presses the ball 5 mm beyond touch into the middle of a face and slides a little, from 0.1 s on.
+inline HandPath pressing_hand() {
+  const double face_m = 0.03 / std::sqrt(3.0);
+  const Vec3 outward = (-1 / std::sqrt(3.0)) * Vec3{1, 1, 1};
+  const auto at = [&](double gap_m) { return (face_m + 0.01 + gap_m) * outward; };
+  const Vec3 along{0.002, -0.002, 0};
+  return HandPath(
+      {{0, {at(0.004), {}}}, {0.1, {at(0.004), {}}}, {0.3, {at(-0.005), {}}}, {1.2, {at(-0.005) + along, {}}}});
+}
+
+// The device lives on its own clock: every receive() of the controller first lets it do the periods that have passed.
+class WiredDevice {
+ public:
+  WiredDevice(const std::string& script, WireProfile profile, const VirtualClock& clock)
+      : clock_(clock), ends_(open_loopback_pair(error_)), plug_(std::move(ends_.second), {}), sender_(plug_) {
+    NodeOptions options;
+    options.profile = profile;
+    node_ = std::make_unique<DeviceNode>(sender_, options, PlantOptions{}, pressing_hand());
+    std::vector<FaultLine> lines;
+    if (!parse_fault_script(script, lines, error_)) ADD_FAILURE() << error_;
+    player_ = std::make_unique<FaultPlayer>(std::move(lines), *node_, sender_, plug_);
+    bus_ = std::make_unique<DeviceBus>(*ends_.first, profile);
+  }
+  void receive(DeviceSample& sample) noexcept {
+    while (due_ns_ <= clock_.now_ns()) {
+      player_->advance();
+      node_->step(due_ns_);
+      due_ns_ += player_->period_ns();
+    }
+    bus_->receive(sample);
+  }
+  bool transmit(const DeviceCommand& command) noexcept {
+    last_sent_ = command;
+    return bus_->transmit(command);
+  }
+  DeviceNode& node() { return *node_; }
+  const BusCounters& counters() const { return bus_->counters(); }
+  const DeviceCommand& last_sent() const { return last_sent_; }
+
+ private:
+  const VirtualClock& clock_;
+  std::string error_;
+  std::pair<std::unique_ptr<Transport>, std::unique_ptr<Transport>> ends_;
+  Plug plug_;
+  FaultSender sender_;
+  std::unique_ptr<DeviceNode> node_;
+  std::unique_ptr<FaultPlayer> player_;
+  std::unique_ptr<DeviceBus> bus_;
+  DeviceCommand last_sent_;
+  std::int64_t due_ns_ = 1'000'000;  // its tick n falls into record n
+};
+
+struct RecordList {
+  std::vector<TickRecord> records;
+  void publish(const TickRecord& record) { records.push_back(record); }
+};
+struct ArmedHost {
+  std::uint32_t poll() { return Command::kArm; }
+};
+
+// Everything a fault did, tick by tick.
+struct FaultRun {
+  ModelParams limits{};
+  LoopSummary summary;
+  std::vector<TickRecord> records;
+  BusCounters counters;
+  DeviceCommand last_sent;
+  Wrench last_motor;
+};
+
+inline FaultRun run_with_faults(const std::string& script, std::uint64_t ticks = 1500,
+                                WireProfile profile = WireProfile::kFd, double rate_max_N_per_s = 2e4) {
+  ImageBytes image = tiny_image();
+  image.params().force_rate_max_N_per_s = rate_max_N_per_s;
+  image.seal();
+  Model model;
+  if (open_image(image.bytes(), model).error != ImageError::kNone) ADD_FAILURE() << "the tiny scene is refused";
+  const auto state = std::make_unique<State>();
+  const auto scratch = std::make_unique<Scratch>();
+  reset(*state);
+  ModelController controller(model, *state, *scratch);
+  VirtualClock clock;
+  WiredDevice device(script, profile, clock);
+  RecordList recorder;
+  ArmedHost host;
+  LoopOptions options;
+  options.ticks = ticks;
+  const std::atomic<bool> stop{false};
+  Loop loop(device, clock, controller, recorder, host, CartesianKinematics{}, options, stop);
+  FaultRun run;
+  run.limits = model.params;
+  run.summary = loop.run();
+  DeviceSample sample;
+  clock.advance(1'000'000);
+  device.receive(sample);  // the device's last period: it takes what the loop sent last
+  run.records = std::move(recorder.records);
+  run.counters = device.counters();
+  run.last_sent = device.last_sent();
+  run.last_motor = device.node().plant().motor();
+  return run;
+}
+
+}  // namespace palpate::test

@@ -1,0 +1,164 @@
+#!/usr/bin/env bash
+# The laboratory: boots PREEMPT_RT in deterministic virtual time, runs scenarios in it, judges them by their numbers.
+# Verdicts and files stay in out/lab/SCENARIO. See docs/laboratory.md.
+set -uo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+root=$(cd "$here/../.." && pwd)
+cache=${PALPATE_LAB_CACHE:-$root/build/lab/cache}
+programs=$root/build/release/bin
+results=$root/out/lab
+jobs=${PALPATE_JOBS:-$(nproc)}
+standard='cyclictest vcan kvaser usb faults'
+thorough="$standard buses vcan_classic bus_off usb_unplug host_chaos vcan:60 kvaser:60 usb:60 vcan_classic:600"
+
+usage() {
+  cat << TEXT
+Usage: lab.sh [--all | --list] [--programs DIR] [SCENARIO[:SECONDS]...]
+  Without scenarios: $standard
+  --all            $thorough
+  --list           every scenario with its first words
+  --programs DIR   where palpate, palpate-rt and palpate-device are; default build/release/bin
+PALPATE_LAB_CACHE: folder of the downloaded kernel (build/lab/cache). PALPATE_JOBS: scenarios at a time ($jobs).
+TEXT
+}
+
+die() {
+  echo "lab: $*" >&2
+  exit 3
+}
+
+# What the numbers must be. Wake-up: cyclictest in the same boot plus 10 us. Sent: deadline to command handed to the bus.
+allowance_us=10
+sent_limit_us=150
+
+field() { awk "$1" "$log" 2> /dev/null; } # AWK: one number out of the scenario's log
+
+read_numbers() { # RESULT_DIR
+  log=$1/log.txt
+  missed=$(field '/^controller: .* missed/ { s += $4; n++ } END { if (n) print s }')
+  ticks=$(field '/^controller: .* ticks/ { s += $2; n++ } END { if (n) print s }')
+  faults=$(field '/^loop thread:/ { s += $3 + $6; n++ } END { if (n) print s }')
+  wake=$(field '/^  wake-up latency/ { if ($5 > m) m = $5 } END { if (m) print m }')
+  sent=$(field '/^  deadline to sent/ { if ($6 > m) m = $6 } END { if (m) print m }')
+  lost=$(field '/records lost/ { for (i = 2; i <= NF; i++) if ($i == "records") s += $(i - 1); n++ } END { if (n) print s }')
+  kernel=$(awk '/^# Max Latencies/ { print $4 + 0 }' "$1/cyclictest.txt" 2> /dev/null)
+}
+
+above() { awk -v a="${1:-0}" -v b="$2" 'BEGIN { exit !(a > b) }'; }
+
+judge() { # SCENARIO: problems found in the numbers, one a line
+  local name=$1
+  [ "$(cat "$results/$2/exit_code" 2> /dev/null)" = 0 ] || echo "the scenario failed: see $results/$2/log.txt"
+  if [ -n "$kernel" ] && [ "$name" = cyclictest ]; then
+    ! above "$kernel" 100 || echo "the kernel itself wakes up late: $kernel us"
+  fi
+  case $name in cyclictest | buses) return ;; esac
+  [ -n "$ticks" ] || { echo "the controller said nothing"; return; }
+  [ "$missed" = 0 ] || echo "$missed ticks missed"
+  [ "$faults" = 0 ] || echo "$faults page faults in the loop"
+  [ -n "$wake" ] && [ -n "$kernel" ] || { echo "no latency measured"; return; }
+  ! above "$wake" $((kernel + allowance_us)) || echo "wake-up $wake us, cyclictest $kernel us"
+  ! above "$sent" $sent_limit_us || echo "deadline to sent $sent us, allowed $sent_limit_us us"
+  case $name in host_chaos) ;; *) [ "${lost:-0}" = 0 ] || echo "$lost records lost" ;; esac
+}
+
+run_one() { # SCENARIO[:SECONDS]
+  local name=${1%%:*} seconds=${1#*:} folder=${1/:/_} problems started=$SECONDS
+  [ "$seconds" != "$1" ] || seconds=10
+  [ "$name" != cyclictest ] || [ "$1" != cyclictest ] || seconds=20
+  rm -rf "${results:?}/$folder"
+  mkdir -p "$results/$folder"
+  if [ "$name" = determinism ]; then
+    determinism "$folder"
+    return
+  fi
+  if ! bash "$here/boot.sh" "$out" "$name" "$seconds" "$results/$folder" $((240 + 6 * seconds)) 2> "$results/$folder/boot.txt"; then
+    cat "$results/$folder/boot.txt" >&2
+  fi
+  read_numbers "$results/$folder"
+  problems=$(judge "$name" "$folder" | paste -sd ';')
+  printf '%-7s %-18s %7s ticks  missed %s  wake-up max %s us (cyclictest %s)  sent max %s us  page faults %s  [%s s]%s\n' \
+    "$([ -z "$problems" ] && echo passed || echo FAILED)" "$1" "${ticks:--}" "${missed:--}" "${wake:--}" "${kernel:--}" \
+    "${sent:--}" "${faults:--}" $((SECONDS - started)) "${problems:+  $problems}" | tee "$results/$folder/verdict.txt"
+}
+
+determinism() { # FOLDER: two boots of one scenario must give the same bytes
+  local run file differ=''
+  for run in 1 2; do
+    mkdir -p "$results/$1/$run"
+    bash "$here/boot.sh" "$out" vcan 10 "$results/$1/$run" 300 || differ=" boot $run failed"
+  done
+  for file in recording.sha256 latency.txt cyclictest.txt; do
+    cmp -s "$results/$1/1/$file" "$results/$1/2/$file" || differ+=" $file differs"
+  done
+  printf '%-7s %-18s two boots of vcan: recording %.12s, latency histogram and cyclictest histogram%s\n' \
+    "$([ -z "$differ" ] && echo passed || echo FAILED)" determinism "$(cat "$results/$1/1/recording.sha256" 2> /dev/null)" \
+    "${differ:- identical}" | tee "$results/$1/verdict.txt"
+}
+
+table() { # every verdict there is, as a dated table for docs/laboratory.md
+  local folder name
+  printf '| scenario | ticks | missed | page faults | wake-up max (cyclictest), µs | deadline to sent max, µs | verdict | date |\n'
+  printf '|---|---|---|---|---|---|---|---|\n'
+  for folder in "$results"/*/; do
+    [ -e "$folder/verdict.txt" ] || continue
+    name=$(basename "$folder")
+    read_numbers "$folder"
+    printf '| %s | %s | %s | %s | %s (%s) | %s | %s | %s |\n' "$name" "${ticks:--}" "${missed:--}" "${faults:--}" \
+      "${wake:--}" "${kernel:--}" "${sent:--}" "$(cut -d' ' -f1 "$folder/verdict.txt")" \
+      "$(date -u -r "$folder/verdict.txt" +%Y-%m-%d)"
+  done
+}
+
+if [ "${1:-}" = --one ]; then # this script calls itself for each scenario
+  out=$3
+  results=$4
+  run_one "$2"
+  exit
+fi
+
+scenarios=()
+while [ $# -gt 0 ]; do
+  case $1 in
+    --all) read -ra scenarios <<< "$thorough" ;;
+    --list)
+      for file in "$here"/scenarios/*.sh; do
+        [ "$(basename "$file")" = common.sh ] || printf '%-14s %s\n' "$(basename "$file" .sh)" "$(sed -n '1s/^# //p' "$file")"
+      done
+      printf '%-14s %s\n' determinism 'vcan booted twice: are histogram and recording the same? Not always: see docs/laboratory.md'
+      exit 0
+      ;;
+    --programs) programs=$(cd "${2:?}" && pwd) && shift ;;
+    --help | -h) usage && exit 0 ;;
+    -*) usage >&2 && exit 2 ;;
+    *) scenarios+=("$1") ;;
+  esac
+  shift
+done
+[ ${#scenarios[@]} -gt 0 ] || read -ra scenarios <<< "$standard"
+for one in "${scenarios[@]}"; do
+  [ "${one%%:*}" = determinism ] || [ -e "$here/scenarios/${one%%:*}.sh" ] || die "no scenario '$one': see lab.sh --list"
+done
+for tool in qemu-system-x86_64 cpio busybox; do
+  command -v $tool > /dev/null || die "$tool is missing: apt-get install qemu-system-x86 cpio busybox-static iproute2 kmod"
+done
+for program in palpate palpate-rt palpate-device lab_flood; do
+  [ -x "$programs/$program" ] || die "$programs/$program is missing: build first, or give --programs DIR"
+done
+
+out=$(mktemp -d "${TMPDIR:-/tmp}/palpate-lab.XXXXXX")
+trap 'rm -rf "$out"' EXIT
+"$programs/palpate" bake "$root/config/scenes/ellipsoid_mallet.toml" -o "$out/ellipsoid_mallet.pal" > /dev/null ||
+  die "cannot bake the scene"
+bash "$here/guest.sh" "$cache" "$out" "$programs"/{palpate,palpate-rt,palpate-device,lab_flood} -- "$here/scenarios" \
+  "$here/hand.csv" "$out/ellipsoid_mallet.pal" || die "cannot build the guest"
+mkdir -p "$results"
+printf '%s\n' "${scenarios[@]}" | xargs -P "$jobs" -I{} bash "$here/lab.sh" --one {} "$out" "$results" | tee "$out/verdicts"
+{
+  printf 'In virtual time, kernel %s; generated by `tests/lab/lab.sh`.\n\n' "$(basename "$cache"/x/lib/modules/*)"
+  table
+} > "$results/table.md"
+failed=$(grep -c '^FAILED' "$out/verdicts")
+passed=$(grep -c '^passed' "$out/verdicts")
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ] && [ "$passed" -eq ${#scenarios[@]} ]
