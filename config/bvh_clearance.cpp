@@ -52,7 +52,7 @@ class Clearance {
       if (!(clear > height)) continue;
       t.clear_scale_per_m = scale;
       t.clear_radius_m = static_cast<float>(kShrink * clear);
-      t.ring_convex = is_ring_convex(t) ? 1 : 0;
+      t.ring_convex = ring_convexity(t);
       return;
     }
   }
@@ -66,26 +66,30 @@ class Clearance {
 
   Vec3 corner(const Triangle& t, int k) const { return vertex_[static_cast<std::size_t>(t.vertex[k])]; }
 
-  // Whether all vertices of the ring (ring_) lie in or below the planes of t and its three edge neighbours, up to the
-  // rounding of coordinates, and these four are large enough for kSafeInset to keep features apart: the distance it
-  // keeps, squared, against what rounding does to a squared distance.
-  bool is_ring_convex(const Triangle& t) const {
-    const double reach = static_cast<double>(t.clear_radius_m);
-    const double rounding2 = 4e-14 * reach * (farthest_ + reach) + 1e-16 * kSafeInset;
-    for (int plane = 0; plane < 4; ++plane) {
-      const Triangle& f = plane == 3 ? t : bvh_.triangle[static_cast<std::size_t>(t.adjacent[plane])];
-      const Vec3 a = corner(f, 0), b = corner(f, 1), c = corner(f, 2), normal = cross(b - a, c - a);
-      const double length = norm(normal), longest = std::max({norm(b - a), norm(c - b), norm(a - c)});
-      const double kept = kSafeInset * length / longest;  // length / longest: the least altitude
-      if (!(kept * kept > rounding2)) return false;
-      for (const std::int32_t i : ring_) {
-        for (int k = 0; k < 3; ++k) {
-          const double height = dot(corner(bvh_.triangle[static_cast<std::size_t>(i)], k) - a, normal) / length;
-          if (!(height <= 1e-15 * farthest_)) return false;
-        }
+  // Whether all vertices of the ring (ring_) lie in or below the plane of one of its triangles, up to the rounding of
+  // coordinates, and that triangle is large enough for kSafeInset to keep features apart: the distance it keeps,
+  // squared, against what rounding does to a squared distance.
+  bool is_below(std::int32_t plane, double reach) const {
+    const Triangle& f = bvh_.triangle[static_cast<std::size_t>(plane)];
+    const Vec3 a = corner(f, 0), b = corner(f, 1), c = corner(f, 2), normal = cross(b - a, c - a);
+    const double length = norm(normal), longest = std::max({norm(b - a), norm(c - b), norm(a - c)});
+    const double kept = kSafeInset * length / longest;  // length / longest: the least altitude
+    if (!(kept * kept > 4e-14 * reach * (farthest_ + reach) + 1e-16 * kSafeInset)) return false;
+    for (const std::int32_t i : ring_) {
+      for (int k = 0; k < 3; ++k) {
+        const double height = dot(corner(bvh_.triangle[static_cast<std::size_t>(i)], k) - a, normal) / length;
+        if (!(height <= 1e-15 * farthest_)) return false;
       }
     }
     return true;
+  }
+
+  // Triangle::ring_convex of the triangle whose ring is listed.
+  std::int32_t ring_convexity(const Triangle& t) const {
+    const double reach = static_cast<double>(t.clear_radius_m);
+    const auto below = [&](std::int32_t plane) { return is_below(plane, reach); };
+    if (!below(ring_[0]) || !std::all_of(std::begin(t.adjacent), std::end(t.adjacent), below)) return 0;
+    return std::all_of(ring_.begin(), ring_.end(), below) ? 2 : 1;
   }
 
   // First and last triangle under a child; leaves under a node are contiguous.

@@ -70,13 +70,14 @@ struct Triangle {
   // clear_radius_m to the point centroid + clear_scale_per_m * cross(edge 0, -edge 2). 0: unknown.
   float clear_scale_per_m = 0;
   float clear_radius_m = 0;
-  // 1: no vertex of the ring lies above the plane of this triangle or of one across an edge of it.
+  // 1: no vertex of the ring lies above the plane of this triangle or of one across an edge of it; 2: nor above that of
+  // any triangle of the ring.
   std::int32_t ring_convex = 0;
 };
-// Node of a 4-wide hierarchy over the triangles. Bounds are single precision, rounded outward. The normal cone of a child
-// (axis, tangent of its half-angle) holds the normals of all its triangles and of their neighbours across edges and
-// vertices; its radius is that of a sphere about the box centre that holds the child. A zero axis means "no cone": the
-// child is then never skipped by direction.
+// Node of a 4-wide hierarchy over the triangles. Bounds are single precision, rounded outward. The normal cone of a
+// child (axis, tangent of its half-angle) holds the normals of all its triangles and of their neighbours across edges
+// and vertices; its radius is that of a sphere about the box centre that holds the child. A zero axis means "no cone":
+// the child is then never skipped by direction.
 struct BvhNode {
   float lower_m[3][4];
   float upper_m[3][4];

@@ -59,6 +59,7 @@ Json stages_json(const RunSummary& s) {
     stages[fmt::format("compute.{}", stage_name(static_cast<Stage>(i)))] = stage_json(s.stage[i]);
   }
   stages["transmit"] = stage_json(s.transmit);
+  stages["deadline_to_sent"] = stage_json(s.sent);
   stages["publish"] = stage_json(s.publish);
   stages["whole_tick"] = stage_json(s.busy);
   return stages;
@@ -127,6 +128,7 @@ std::string certificate_text(const Certificate& c) {
     stage_row(text, fmt::format("  {}", stage_name(static_cast<Stage>(i))), s.stage[i]);
   }
   stage_row(text, "transmit", s.transmit);
+  stage_row(text, "deadline to sent", s.sent);
   stage_row(text, "publish", s.publish);
   stage_row(text, "whole tick", s.busy);
   return text + "\n" + worst_ticks_text(s.worst, kWorstTicksKept);

@@ -135,6 +135,7 @@ std::string latency_text(const LatencyData& data, int worst) {
       row(text, fmt::format("  {}", stage_name(static_cast<Stage>(i))).c_str(), s.stage[i]);
     }
     row(text, "transmit", s.transmit);
+    row(text, "deadline>sent", s.sent);
     row(text, "publish", s.publish);
     row(text, "whole tick", s.busy);
     text += worst_ticks_text(s.worst, worst);

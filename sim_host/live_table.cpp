@@ -47,6 +47,7 @@ std::string live_text(const LiveState& state) {
     row(text, name.c_str(), recent.stage[i], all.stage[i]);
   }
   row(text, "transmit", recent.transmit, all.transmit);
+  row(text, "deadline to sent", recent.sent, all.sent);
   row(text, "telemetry", recent.publish, all.publish);
   row(text, "whole tick", recent.busy, all.busy);
   return text;

@@ -125,6 +125,10 @@ class SharedSummary {
     recent = recent_;
     recent_ = {};
   }
+  RunSummary all() {
+    const std::lock_guard lock(mutex_);
+    return all_;
+  }
 
  private:
   std::mutex mutex_;
@@ -219,18 +223,56 @@ int finish(ControllerLink& link) {
   return link.finish();
 }
 
+// A broken image is the controller's to report: it says what is wrong with which field.
+std::unique_ptr<ImageFile> open_if_valid(const std::string& path) {
+  try {
+    return std::make_unique<ImageFile>(path);
+  } catch (const std::runtime_error&) {
+    return nullptr;
+  }
+}
+
+// Records and watches a controller that has just started, then ends it. `model` may be null.
+RunResult follow(ControllerLink& link, const RunOptions& options, const DeviceAddress& address, const Model* model) {
+  const TelemetryHeader& header = link.telemetry().header;
+  std::unique_ptr<RecordingWriter> file;
+  if (!options.record.empty()) {
+    file = std::make_unique<RecordingWriter>(options.record, recording_header(header), header.initial_state);
+  }
+  std::unique_ptr<BlackBox> box;
+  if (!options.black_box.empty()) {
+    box = std::make_unique<BlackBox>(options.black_box, recording_header(header), header.initial_state, model,
+                                     candump_options(address));
+  }
+  const auto summary = std::make_unique<SharedSummary>();
+  Recorder recorder(link.telemetry(), file.get(), [&](const TickRecord& record) {
+    summary->take(record);
+    if (box) box->add(record);
+  });
+  recorder.start();
+  RunResult result;
+  result.elapsed_s = Watch(link, options, *summary).run();
+  result.interrupted = stop_signal != 0;
+  result.controller_exit = finish(link);
+  recorder.stop();  // the controller has ended: the ring holds its last word
+  if (box) {
+    box->finish(death_text(result.controller_exit));
+    result.dumps = box->dumps();
+    result.black_box_error = box->error();
+  }
+  result.summary = summary->all();
+  result.lost = recorder.lost();
+  result.recorder_error = recorder.error();
+  return result;
+}
+
 }  // namespace
 
 RunResult run_session(const RunOptions& options) {
   const StopSignals signals;
   const DeviceAddress address = device_address(options.device);
   SceneImage scene = prepare_scene(options.scene, options.image, options.record);
-  std::optional<ImageFile> image;  // a broken one is the controller's to report
-  try {
-    image.emplace(scene.image_path);
-  } catch (const std::runtime_error&) {
-    image.reset();
-  }
+  const std::unique_ptr<ImageFile> image = open_if_valid(scene.image_path);
   if (image) check_bus(address, image->model().params.period_s);
   if (options.repeat_path && scene.scene) repeat_path(scene.scene->path, options.duration_s);
   const std::string& folder = options.program_folder;
@@ -245,38 +287,7 @@ RunResult run_session(const RunOptions& options) {
                       controller_arguments(options, scene.image_path, options.device, device.has_value()),
                       device ? device->controller_end() : -1);
   if (device) device->close_controller_end();
-
-  RunResult result;
-  const auto summary = std::make_unique<SharedSummary>();
-  const TelemetryHeader& header = link.telemetry().header;
-  std::unique_ptr<RecordingWriter> file;
-  if (!options.record.empty()) {
-    file = std::make_unique<RecordingWriter>(options.record, recording_header(header), header.initial_state);
-  }
-  std::unique_ptr<BlackBox> box;
-  if (!options.black_box.empty()) {
-    box = std::make_unique<BlackBox>(options.black_box, recording_header(header), header.initial_state,
-                                     image ? &image->model() : nullptr, candump_options(address));
-  }
-  Recorder recorder(link.telemetry(), file.get(), [&](const TickRecord& record) {
-    summary->take(record);
-    if (box) box->add(record);
-  });
-  recorder.start();
-  result.elapsed_s = Watch(link, options, *summary).run();
-  result.interrupted = stop_signal != 0;
-  result.controller_exit = finish(link);
-  recorder.stop();  // the controller has ended: the ring holds its last word
-  if (box) {
-    box->finish(death_text(result.controller_exit));
-    result.dumps = box->dumps();
-    result.black_box_error = box->error();
-  }
-  RunSummary unused;
-  summary->look(result.summary, unused);
-  result.lost = recorder.lost();
-  result.recorder_error = recorder.error();
-  return result;
+  return follow(link, options, address, image ? &image->model() : nullptr);
 }
 
 }  // namespace palpate

@@ -108,6 +108,11 @@ class Collider {
       const bool its_turn = (static_cast<std::uint64_t>(index) + state_.tick) % kTurns == 0;
       if (bound > reach_m_ && !(its_turn && bound < reach_m_ + kRefreshMargin_m)) return skip(point, bound);
     }
+    if (!(point.gap_m < 0)) {
+      // Far from the body its box says as much as its surface, and costs nothing next to a cold search.
+      const Real gap = distance_to(root_, p) - model_.tool_point[static_cast<std::size_t>(index)].margin_m;
+      if (gap > reach_m_ + kRefreshMargin_m) return skip(point, gap);
+    }
     measure(index, p);
   }
 
@@ -167,6 +172,7 @@ class Collider {
   const RigidMap now_, before_;
   const Box root_;
   Real reach_m_ = 0;
+  bool explored_ = false;
 };
 
 }  // namespace

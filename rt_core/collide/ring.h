@@ -10,25 +10,30 @@ namespace palpate {
 // Triangles around one vertex that a walk visits at most; meshes with more there are searched through the hierarchy.
 inline constexpr std::int32_t kMaxFan = 24;
 
-// Calls visit(index, newest) once for every triangle reached by turning about the three vertices of `triangle`, itself
-// left out; `newest` is the vertex the turn reaches with that triangle, and over all calls every vertex of the ring
-// that is not a corner of `triangle`. False when the surface is open there or a fan has more than kMaxFan triangles:
-// some were left out then. Bound: 3 kMaxFan.
+// Turns about one corner of `triangle` and calls visit(index, newest) for each triangle met, up to but without the one
+// that closes the fan (which is the first of another corner's); `newest` is the vertex the turn reaches with it. False
+// when the surface is open there or more than kMaxFan triangles meet. Bound: kMaxFan.
+template <class Visit>
+inline bool for_each_in_fan(const Triangle* triangles, std::int32_t triangle, int corner, Visit&& visit) PALPATE_RT {
+  const std::int32_t vertex = triangles[triangle].vertex[corner];
+  std::int32_t at = triangles[triangle].adjacent[corner];
+  for (std::int32_t steps = 0; steps < kMaxFan; ++steps) {  // bound: kMaxFan
+    if (at < 0) return false;
+    const Triangle& t = triangles[at];
+    const int k = t.vertex[0] == vertex ? 0 : t.vertex[1] == vertex ? 1 : 2;
+    if (t.adjacent[k] == triangle) return true;
+    visit(at, t.vertex[k == 2 ? 0 : k + 1]);
+    at = t.adjacent[k];
+  }
+  return false;
+}
+
+// The same about all three corners: visits every triangle that shares a vertex with `triangle` once, itself left out,
+// and as `newest` every vertex of that ring that is not a corner of `triangle`. Bound: 3 kMaxFan.
 template <class Visit>
 inline bool for_each_in_ring(const Triangle* triangles, std::int32_t triangle, Visit&& visit) PALPATE_RT {
   for (int corner = 0; corner < 3; ++corner) {  // bound: 3
-    const std::int32_t vertex = triangles[triangle].vertex[corner];
-    std::int32_t at = triangles[triangle].adjacent[corner];
-    std::int32_t steps = 0;
-    for (; steps < kMaxFan; ++steps) {  // bound: kMaxFan
-      if (at < 0) return false;
-      const Triangle& t = triangles[at];
-      const int k = t.vertex[0] == vertex ? 0 : t.vertex[1] == vertex ? 1 : 2;
-      if (t.adjacent[k] == triangle) break;  // the last of this fan is the first of another corner's
-      visit(at, t.vertex[k == 2 ? 0 : k + 1]);
-      at = t.adjacent[k];
-    }
-    if (steps == kMaxFan) return false;
+    if (!for_each_in_fan(triangles, triangle, corner, visit)) return false;
   }
   return true;
 }

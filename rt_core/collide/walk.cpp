@@ -15,9 +15,10 @@ enum class Certificate : std::int32_t { kNone, kRing, kConvexOutside };
 
 // Whether every surface point as near to p as best.triangle lies in its ring (kRing): the ball about p is inside the
 // ball about the triangle's clearance point, which holds no other surface. kConvexOutside: besides, p is outside and
-// the ring lies below the planes of best.triangle and of its edge neighbours, so below the plane through the closest
-// point c with normal p - c, a positive combination of theirs: only a triangle that holds c can be as near. c is inset
-// enough that rounding cannot move it to another feature (the baker checks kSafeInset against the triangle's size).
+// the ring lies below the planes of all triangles that hold the closest point c, so below the plane through c with
+// normal p - c, a positive combination of theirs: only a triangle that holds c can be as near. c is inset enough that
+// rounding cannot move it to another feature (the scene compiler checks kSafeInset against the size of those
+// triangles).
 Certificate certificate(const Surface& surface, Vec3 p, const Candidate& best) PALPATE_RT {
   const Triangle& t = surface.triangle[best.triangle];
   const double distance = square_root(best.distance2);
@@ -28,9 +29,31 @@ Certificate certificate(const Surface& surface, Vec3 p, const Candidate& best) P
   const Vec3 clear = (1.0 / 3.0) * (a + b + c) + static_cast<double>(t.clear_scale_per_m) * normal;
   // The shrinking covers the rounding of this test, so that a triangle outside the ring cannot even tie.
   if (!(squared_norm(p - clear) < (1 - 1e-9) * (spare * spare))) return Certificate::kNone;
-  const bool convex = t.ring_convex == 1 && best.at.inset > kSafeInset && distance > kDirectionFloor_m &&
-                      dot(p - best.at.point, normal) > 0;
-  return convex ? Certificate::kConvexOutside : Certificate::kRing;
+  const bool at_vertex = best.at.feature >= Feature::kVertex0;
+  const bool convex = at_vertex ? t.ring_convex == 2 : t.ring_convex >= 1 && best.at.inset > kSafeInset;
+  const bool outside = distance > kDirectionFloor_m && dot(p - best.at.point, normal) > 0;
+  return convex && outside ? Certificate::kConvexOutside : Certificate::kRing;
+}
+
+// Measures the other triangles that hold the closest point of best.triangle. Returns whether one of them is nearer or
+// as near with a lower index; false in `complete` where some could not be reached.
+bool measure_sharers(const Surface& surface, Vec3 p, Candidate& best, bool& complete) PALPATE_RT {
+  const std::int32_t centre = best.triangle;
+  const Triangle& t = surface.triangle[centre];
+  const auto code = static_cast<std::int32_t>(best.at.feature);
+  complete = true;
+  if (best.at.feature < Feature::kVertex0) {
+    const std::int32_t across = t.adjacent[code - 1];
+    complete = across >= 0;
+    return complete && keep_nearer(surface, p, across, best);
+  }
+  const int corner = code - 4;
+  const auto visit = [&](std::int32_t index, std::int32_t) PALPATE_RT { keep_nearer(surface, p, index, best); };
+  complete = for_each_in_fan(surface.triangle, centre, corner, visit);
+  // The one that closes the fan lies across the edge that ends at the corner.
+  const std::int32_t last = t.adjacent[corner == 0 ? 2 : corner - 1];
+  if (complete) keep_nearer(surface, p, last, best);
+  return best.triangle != centre;
 }
 
 // Measures the ring of best.triangle, or as much of it as can matter. False where the ring is not complete.
@@ -49,8 +72,6 @@ bool search_ring(const Surface& surface, Vec3 p, Candidate& best) PALPATE_RT {
   return true;
 }
 
-bool is_edge(Feature feature) PALPATE_RT { return feature > Feature::kFace && feature < Feature::kVertex0; }
-
 }  // namespace
 
 Proof walk(const Surface& surface, Vec3 p, Candidate& best) PALPATE_RT {
@@ -60,11 +81,12 @@ Proof walk(const Surface& surface, Vec3 p, Candidate& best) PALPATE_RT {
     const Certificate found = certificate(surface, p, best);
     const bool convex = found == Certificate::kConvexOutside;
     if (convex && best.at.feature == Feature::kFace) return Proof::kOutside;
-    if (is_edge(best.at.feature) && (convex || found == Certificate::kNone)) {
-      const std::int32_t across = surface.triangle[centre].adjacent[static_cast<std::int32_t>(best.at.feature) - 1];
+    const bool across_edge = found == Certificate::kNone && best.at.feature != Feature::kFace && best.at.inset > 0;
+    if (convex || across_edge) {
       const double lowest2 = best.distance2 - distance2_rounding(best);
-      const bool moved = across >= 0 && keep_nearer(surface, p, across, best);
-      if (convex && best.distance2 >= lowest2) return Proof::kOutside;  // the edge itself is nearest to both
+      bool complete = false;
+      const bool moved = measure_sharers(surface, p, best, complete);
+      if (convex && complete && best.distance2 >= lowest2) return Proof::kOutside;  // all of them meet in one point
       if (moved) continue;
     }
     raise_ceiling(surface, p, best);

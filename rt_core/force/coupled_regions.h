@@ -31,10 +31,10 @@ inline constexpr Real kCoupledTolerance_m = 1e-7;
 // Solves delta_r = sum_j C_rj F_j(delta_j) with F_r(delta) = sum_i w_i f(D_i - delta), by exactly
 // kCoupledNewtonIterations Newton steps, each in symmetric form: with r = C F - delta and g = sqrt(-F'),
 // (I + g C g) y = -g r by Cholesky, delta += r + C g y. The forces derive from the potential
-// sum w_i U(D_i - delta_r) + F.C F / 2, so with C held fixed no closed path returns energy. The caller holds C fixed for
-// as long as two regions last together (see set_lean in compute_force.cpp).
-// Measured (2026-11-21, 2000 random 15-region problems, C_ii to 1.5e-4 m/N): see tests/force/test_coupled_regions.cpp.
-// Bound: regions^3/6 multiply-adds and all points, per iteration.
+// sum w_i U(D_i - delta_r) + F.C F / 2, so with C held fixed no closed path returns energy. The caller holds C fixed
+// for as long as two regions last together (see set_lean in compute_force.cpp). Measured (2026-11-21, 2000 random
+// 15-region problems, C_ii to 1.5e-4 m/N): see tests/force/test_coupled_regions.cpp. Bound: regions^3/6 multiply-adds
+// and all points, per iteration.
 CoupledResult solve_coupled_regions(const CubicLaw& law, std::span<const RegionContacts> regions,
                                     const CoupledWork& work) PALPATE_RT;
 

@@ -112,7 +112,7 @@ TEST(Certify, BothFormsCarryIdentityFiguresAndLimits) {
   EXPECT_DOUBLE_EQ(wake.at("max_us"), 90.0);
   EXPECT_EQ(wake.at("tick_of_max"), 777);
   EXPECT_NEAR(wake.at("p50_us"), 8.0, 8.0 / 64);  // one bucket
-  EXPECT_EQ(root.at("stages").size(), 6u + kStageCount);
+  EXPECT_EQ(root.at("stages").size(), 7u + kStageCount);
   EXPECT_EQ(root.at("worst_ticks").size(), static_cast<std::size_t>(kWorstTicksKept));
   EXPECT_EQ(root.at("worst_ticks").at(0).at("tick"), 777);
   const std::string text = certificate_text(*certificate);
