@@ -172,7 +172,6 @@ class Collider {
   const RigidMap now_, before_;
   const Box root_;
   Real reach_m_ = 0;
-  bool explored_ = false;
 };
 
 }  // namespace
