@@ -13,9 +13,9 @@ namespace palpate {
 
 namespace {
 
-constexpr int kHeightsTried = 6;
+constexpr int kHeightsTried = 8;
 // Certificates are shrunk by this much, which covers their rounding to single precision.
-constexpr double kShrink = 1 - 1e-6;
+constexpr double kShrink = 1 - 1.5e-7;
 // A distance beyond this multiple of the height gains nothing.
 constexpr double kUsefulFactor = 1.5;
 
@@ -44,17 +44,23 @@ class Clearance {
     ring_.push_back(index);
     const auto add = [this](std::int32_t i, std::int32_t) { ring_.push_back(i); };
     if (!(length > 0) || !for_each_in_ring(bvh_.triangle.data(), index, add)) return;
-    double height = 0.25 * size_;
-    for (int i = 0; i < kHeightsTried; ++i, height *= 0.5) {
+    const Vec3 centroid = (1.0 / 3.0) * (a + b + c);
+    const double reach2 =
+        std::max({squared_norm(a - centroid), squared_norm(b - centroid), squared_norm(c - centroid)});
+    double most_room2 = 0;
+    double height = size_;
+    for (int i = 0; i < kHeightsTried && most_room2 < reach2; ++i, height *= 0.5) {
       const float scale = static_cast<float>(height / length);
-      const Vec3 q = (1.0 / 3.0) * (a + b + c) + static_cast<double>(scale) * normal;
-      const double clear = distance_off_ring(q, kUsefulFactor * height);
-      if (!(clear > height)) continue;
+      const double clear = distance_off_ring(centroid + static_cast<double>(scale) * normal, kUsefulFactor * height);
+      // A point at height h above the triangle and r off its centroid passes when r^2 / (height - h) is below twice
+      // clear - height, so this is the r^2 that passes at half the height.
+      const double room2 = (clear - height) * height;
+      if (!(room2 > most_room2)) continue;
+      most_room2 = room2;
       t.clear_scale_per_m = scale;
       t.clear_radius_m = static_cast<float>(kShrink * clear);
-      t.ring_convex = ring_convexity(t);
-      return;
     }
+    if (most_room2 > 0) t.ring_convex = ring_convexity(t);
   }
 
  private:

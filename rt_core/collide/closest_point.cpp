@@ -63,6 +63,7 @@ SurfacePoint closest_surface_point(const Model& model, Vec3 p, double search_rad
   if (warm_triangle >= 0 && warm_triangle < triangles && keep_nearer(surface, p, warm_triangle, best)) {
     proof = walk(surface, p, best);
   }
+  if (proof == Proof::kNone && land(model, surface, p, best)) proof = walk(surface, p, best);
   if (proof == Proof::kNone) {
     const DescentResult descent = descend(model, surface, p, best);
     result.nodes = descent.nodes;

@@ -110,6 +110,25 @@ class Descent {
 
 }  // namespace
 
+bool land(const Model& model, const Surface& surface, Vec3 p, Candidate& best) PALPATE_RT {
+  const NodeQuery query = node_query(p);
+  bool nearer = false;
+  std::int32_t at = 0;
+  for (std::int32_t level = 0; level < kMaxTraversalStack; ++level) {  // a level per step
+    const BvhNode& node = model.bvh[static_cast<std::size_t>(at)];
+    const Float4 distance2 = box_distance2(node, query);
+    int nearest = 0;
+    for (int k = 1; k < 4; ++k) nearest = distance2[k] < distance2[nearest] ? k : nearest;  // bound: 4
+    at = node.child[nearest];
+    if (at >= 0) continue;
+    for (std::int32_t i = 0; i < node.count[nearest]; ++i) {  // bound: 4
+      if (keep_nearer(surface, p, ~at + i, best)) nearer = true;
+    }
+    break;
+  }
+  return nearer;
+}
+
 DescentResult descend(const Model& model, const Surface& surface, Vec3 p, Candidate& best) PALPATE_RT {
   return Descent(model, surface, p, best).run();
 }

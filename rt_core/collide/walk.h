@@ -13,7 +13,7 @@ enum class Proof : std::int32_t {
 
 // Improves `best`, which holds a measured triangle (its ceiling need not be up to date; it is afterwards when kNone is
 // returned). The proof rests on Triangle::clear_*: see measure_clearance in the scene compiler. The price does not
-// depend on the size of the mesh. Bound: kMaxWalk steps, each at most two rings.
+// depend on the size of the mesh. Bound: kMaxWalk fans and two rings.
 Proof walk(const Surface& surface, Vec3 p, Candidate& best) PALPATE_RT;
 
 }  // namespace palpate

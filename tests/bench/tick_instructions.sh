@@ -14,11 +14,9 @@ command -v valgrind >/dev/null || { echo "valgrind is missing: apt-get install v
 # Scene and the most instructions its worst tick may take.
 budgets='ellipsoid_mallet 30000
 heart_compass 60000'
-# Largest ratio between the meshes. The mean in contact meets the goal of 130 %. The worst tick does not yet: 29,251,
-# 52,188 and 36,899 instructions at 3 k, 30 k and 1 M triangles (2026-11-21), where a query has to leave the certified
-# neighbourhood of its last triangle. The limit keeps it from growing until it is mended.
+# Largest ratio between the meshes: cost may grow with the hierarchy's depth only. 115 % for the worst tick and 101 % for
+# the mean in contact, 2026-11-21.
 mesh_ratio_percent=130
-worst_ratio_percent=200
 
 # count IMAGE: prints the stage table and sets worst, mean.
 count() {
@@ -54,8 +52,8 @@ elif [ "$mode" = meshes ]; then
     [ "$most_mean" -ge "$mean" ] || most_mean=$mean
   done
   ratio_worst=$((100 * most_worst / least_worst)) ratio_mean=$((100 * most_mean / least_mean))
-  [ "$ratio_worst" -le "$worst_ratio_percent" ] && [ "$ratio_mean" -le "$mesh_ratio_percent" ] || status=1
-  echo "largest over smallest: worst tick $ratio_worst %, mean in contact $ratio_mean % (at most $worst_ratio_percent and $mesh_ratio_percent %)"
+  [ "$ratio_worst" -le "$mesh_ratio_percent" ] && [ "$ratio_mean" -le "$mesh_ratio_percent" ] || status=1
+  echo "largest over smallest: worst tick $ratio_worst %, mean in contact $ratio_mean % (at most $mesh_ratio_percent %)"
 else
   echo "$usage"
   exit 2
