@@ -25,7 +25,7 @@ void add_wake(LatencyData& data, std::int64_t late_ns, std::uint64_t tick) {
 
 void row(std::string& text, const char* name, const Histogram& h) {
   if (h.total == 0 || h.max_ns == 0) return;
-  fmt::format_to(std::back_inserter(text), "  {:<14}{:>10.1f}{:>10.1f}{:>10.1f}{:>10}\n", name,
+  fmt::format_to(std::back_inserter(text), "  {:<16}{:>10.1f}{:>10.1f}{:>10.1f}{:>10}\n", name,
                  us(percentile_ns(h, 0.5)), us(percentile_ns(h, 0.999)), us(h.max_ns), h.cycle_of_max);
 }
 
@@ -124,7 +124,7 @@ LatencyData measure_wake_up(const MeasureOptions& options, std::string& verdicts
 }
 
 std::string latency_text(const LatencyData& data, int worst) {
-  std::string text = fmt::format("{} ticks of {:.0f} µs\n  {:<14}{:>10}{:>10}{:>10}{:>10}\n", data.summary.ticks,
+  std::string text = fmt::format("{} ticks of {:.0f} µs\n  {:<16}{:>10}{:>10}{:>10}{:>10}\n", data.summary.ticks,
                                  us(data.period_ns), "µs", "   median", "99.9 %", "max", "at tick");
   const RunSummary& s = data.summary;
   row(text, "wake-up", s.wake);
@@ -135,7 +135,7 @@ std::string latency_text(const LatencyData& data, int worst) {
       row(text, fmt::format("  {}", stage_name(static_cast<Stage>(i))).c_str(), s.stage[i]);
     }
     row(text, "transmit", s.transmit);
-    row(text, "deadline>sent", s.sent);
+    row(text, "deadline to sent", s.sent);
     row(text, "publish", s.publish);
     row(text, "whole tick", s.busy);
     text += worst_ticks_text(s.worst, worst);

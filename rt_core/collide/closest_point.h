@@ -27,7 +27,7 @@ struct SurfacePoint {
   double lower_bound_m = 0;      // no surface point is nearer to p than this
   std::int32_t triangle = -1;    // the lowest index among equally near triangles
   Feature feature = Feature::kFace;
-  std::int32_t nodes = 0;             // hierarchy nodes opened
+  std::int32_t nodes = 0;             // hierarchy nodes searched; 0 when the neighbourhood gave the proof
   std::int32_t stack_high_water = 0;  // traversal stack entries used
   bool found = false;                 // a surface point lies within search_radius_m
   bool truncated = false;             // stopped by a cap: a closer point may have been missed
