@@ -26,10 +26,11 @@ repeat_hand() {
             split(row[i], f, ","); print f[1] + t substr(row[i], index(row[i], ",")) } }' /lab/hand.csv > /tmp/hand.csv
 }
 
+# Four steps of the hand's integration a tick instead of 20: the simulated mechanics is most of what the guest computes.
 start_device() { # ADDRESS [OPTION...]
   at=$1
   shift
-  palpate-device --device "$at" --path /tmp/hand.csv --priority 70 "$@" & device=$!
+  palpate-device --device "$at" --path /tmp/hand.csv --priority 70 --set substeps=4 "$@" & device=$!
 }
 
 # latched NAME TICKS: this fault ended the run, after at least so many ticks (an earlier one would be another fault's).
