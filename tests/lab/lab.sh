@@ -9,7 +9,7 @@ programs=$root/build/release/bin
 results=$root/out/lab
 jobs=${PALPATE_JOBS:-$(nproc)}
 standard='cyclictest vcan kvaser usb faults determinism vcan_classic:21'
-thorough="$standard buses vcan_classic bus_off usb_unplug host_chaos vcan:60 kvaser:60 usb:60 vcan_classic:600"
+thorough="$standard buses vcan_classic usb_unplug host_chaos vcan:60 kvaser:60 usb:60 vcan_classic:600"
 
 usage() {
   cat << TEXT
@@ -144,7 +144,7 @@ done
 for tool in qemu-system-x86_64 cpio busybox; do
   command -v $tool > /dev/null || die "$tool is missing: apt-get install qemu-system-x86 cpio busybox-static iproute2 kmod"
 done
-for program in palpate palpate-rt palpate-device lab_host lab_idle; do
+for program in palpate palpate-rt palpate-device lab_host lab_check lab_idle; do
   [ -x "$programs/$program" ] || die "$programs/$program is missing: build first, or give --programs DIR"
 done
 
@@ -152,8 +152,8 @@ out=$(mktemp -d "${TMPDIR:-/tmp}/palpate-lab.XXXXXX")
 trap 'rm -rf "$out"' EXIT
 "$programs/palpate" bake "$root/config/scenes/ellipsoid_mallet.toml" -o "$out/ellipsoid_mallet.pal" > /dev/null ||
   die "cannot bake the scene"
-bash "$here/guest.sh" "$cache" "$out" "$programs"/{palpate,palpate-rt,palpate-device,lab_host,lab_idle} -- "$here/scenarios" \
-  "$here/hand.csv" "$out/ellipsoid_mallet.pal" || die "cannot build the guest"
+bash "$here/guest.sh" "$cache" "$out" "$programs"/{palpate,palpate-rt,palpate-device,lab_host,lab_check,lab_idle} -- \
+  "$here"/{scenarios,faults,hand.csv,press.csv} "$out/ellipsoid_mallet.pal" || die "cannot build the guest"
 echo "lab: booting the guest" >&2
 bash "$here/boot.sh" save "$out" || die "the guest does not boot"
 mkdir -p "$results"
