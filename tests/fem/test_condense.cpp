@@ -57,14 +57,14 @@ TEST(Condense, TableEqualsDirectSolvesAndIsSymmetricAndDefinite) {
 TEST(Condense, BodyTooLargeForItsTableIsRefusedWithTheNumbers) {
   const TetMesh mesh = make_box_tets({0.04, 0.04, 0.04}, {2, 2, 2});
   CondenseLimits limits;
-  limits.compliance_B = 100'000;
+  limits.surface_nodes = 37;
   try {
     condense(mesh, {1e6, 0.3}, hold_where(mesh, [](Vec3 p) { return p.y == 0; }), "block", {}, limits);
     FAIL() << "accepted";
   } catch (const ConfigError& error) {
     const std::string text = error.what();
     EXPECT_NE(text.find("block: the mesh has 98 surface nodes"), std::string::npos) << text;
-    EXPECT_NE(text.find("37 nodes"), std::string::npos) << text;
+    EXPECT_NE(text.find("allowed 37 nodes"), std::string::npos) << text;
     EXPECT_NE(text.find("Coarsen"), std::string::npos) << text;
   }
 }
