@@ -18,6 +18,7 @@ enum class SkeletonLaw : std::int32_t { kNone = 0, kStiffness = 1, kPaper = 2 };
 enum class ShapeLaw : std::int32_t { kRbf = 0, kDisplacementAngle = 1 };
 enum class NeighbourhoodLaw : std::int32_t { kNone = 0, kLog = 1, kLogC1 = 2, kPunch = 3 };
 enum class CouplingLaw : std::int32_t { kNone = 0, kCoupled = 1, kTemporal = 2 };
+enum class Articulation : std::int32_t { kRigid = 0, kGripper = 1, kHand = 2 };
 
 // X(type, name, unit, lowest, highest, meaning). All are finite; the loader checks every range.
 #define PALPATE_MODEL_PARAMS(X)                                                                        \
@@ -32,7 +33,7 @@ enum class CouplingLaw : std::int32_t { kNone = 0, kCoupled = 1, kTemporal = 2 }
   X(std::int32_t, silence_hold_ticks, "ticks", 1, 5, "ticks the last sample is held")                  \
   X(std::int32_t, silence_passive_ticks, "ticks", 1, 20, "ticks after which force ramps to zero")      \
   X(std::int32_t, silence_fault_ticks, "ticks", 2, 1000, "ticks of silence that latch a fault")        \
-  X(std::int32_t, reserved, "-", 0, 0, "keeps the doubles aligned")                                    \
+  X(std::int32_t, articulation, "-", 0, 2, "Articulation: whether pieces of the tool move by joints")  \
   X(double, period_s, "s", 1e-5, 1e-1, "tick period")                                                  \
   X(double, k1_N_per_m, "N/m", 0, 1e9, "linear coefficient of the contact law, per unit weight")       \
   X(double, k3_N_per_m3, "N/m3", 0, 1e15, "cubic coefficient of the contact law, per unit weight")     \
@@ -54,7 +55,10 @@ enum class CouplingLaw : std::int32_t { kNone = 0, kCoupled = 1, kTemporal = 2 }
   X(double, force_rate_max_N_per_s, "N/s", 1, 1e7, "fault limiter of the force change")                \
   X(double, ramp_in_s, "s", 0, 10, "force ramp after arming")                                          \
   X(double, ramp_out_s, "s", 1e-3, 1, "force ramp to zero after a fault")                              \
-  X(double, speed_max_m_per_s, "m/s", 0.01, 100, "a device sample that implies a faster motion is rejected")
+  X(double, speed_max_m_per_s, "m/s", 0.01, 100, "a device sample that implies a faster motion is rejected") \
+  X(double, closing_rate_per_s, "1/s", 0, 1e3, "fastest change of a closing fraction")                 \
+  X(double, stop_force_N, "N", 0, 1e6, "a joint stops where it would press a part harder than this")   \
+  X(double, body_mass_kg, "kg", 0, 1e9, "mass of the body: what a palm has to hold")
 
 struct ModelParams {
 #define PALPATE_FIELD(type, name, unit, lowest, highest, meaning) type name;
@@ -88,6 +92,7 @@ struct BvhNode {
   std::int32_t count[4];  // triangles in a leaf (1..4; they are contiguous), 0 for inner nodes and empty slots
 };
 enum class PieceShape : std::int32_t { kSphere = 0, kCapsule = 1, kCylinder = 2, kCone = 3, kBox = 4, kHull = 5 };
+enum class JointKind : std::int32_t { kTurn = 0, kSlide = 1 };
 // Convex piece of the tool: a core shape (tool frame) rounded by a margin, as in "sphere = point + radius".
 struct ToolPiece {
   Pose pose_tool;           // piece frame in the tool frame; axis of revolution = piece z
@@ -99,6 +104,26 @@ struct ToolPiece {
   std::int32_t first_point, point_count;  // its tool points
   std::int32_t first_hull, hull_count;    // its hull vertices (kHull only)
   std::int32_t part;                      // label for telemetry: finger part, mallet head...
+  std::int32_t joint = -1;                // that carries it; -1: fixed to the tool frame
+  std::int32_t group = 0;  // articulated tools: contacts of different groups (fingers, jaws) never share a region
+  std::int32_t reserved = 0;
+};
+// One degree of freedom of an articulated tool. Its link's frame in the tool frame is
+//   link = link(parent) * before * motion(q) * after,   motion = rotation about z or translation along z,
+// which holds the standard Denavit-Hartenberg row Rz(theta) Tz(d) Tx(a) Rx(alpha) with theta = sign q and after = Tx(a)
+// Rx(alpha). Pieces are described in the tool frame with every joint at zero.
+struct Joint {
+  Pose before;        // parent's link frame to the joint's axis
+  Pose after;         // moved axis to the link's frame
+  Pose zero_inverse;  // tool frame to the link's frame with every joint at zero
+  double lowest, highest;  // rad or m
+  double open, closed;     // where closing fractions 0 and 1 put it, within the limits
+  double speed_max;        // rad/s or m/s
+  double sign;             // +1 or -1
+  std::int32_t parent;     // a lower joint, or -1: the tool frame
+  std::int32_t kind;       // JointKind
+  std::int32_t finger;     // whose closing fraction drives it
+  std::int32_t reserved;
 };
 // Point of a piece's core: the centre of a small sphere of radius margin_m that carries a share of the contact.
 struct ToolPoint {
@@ -138,7 +163,9 @@ struct PatchWeight {
   X(PatchWeight, patch, n_patch, "-", "patch of each vertex (displacement-angle interpolation only)")  \
   X(ToolPiece, piece, n_piece, "tool", "convex pieces of the tool")                                    \
   X(ToolPoint, tool_point, n_tool_point, "tool", "sample points of the tool")                          \
-  X(Vec3, hull_vertex_m, n_hull, "piece", "vertices of hull pieces")
+  X(Vec3, hull_vertex_m, n_hull, "piece", "vertices of hull pieces")                                   \
+  X(Joint, joint, n_joint, "tool", "joints of an articulated tool, parents first")                     \
+  X(Pose, grasp_w, n_grasp, "world", "tool pose for which the closed joint positions were made (0 or 1)")
 
 // X(name, lowest, highest)
 #define PALPATE_MODEL_SIZES(X)       \
@@ -151,7 +178,9 @@ struct PatchWeight {
   X(n_patch, 0, 1 << 26)             \
   X(n_piece, 1, kMaxPieces)          \
   X(n_tool_point, 1, kMaxToolPoints) \
-  X(n_hull, 0, 1 << 16)
+  X(n_hull, 0, 1 << 16)              \
+  X(n_joint, 0, kMaxJoints)          \
+  X(n_grasp, 0, 1)
 
 struct ModelSizes {
 #define PALPATE_FIELD(name, lowest, highest) std::int64_t name;

@@ -30,7 +30,13 @@ namespace palpate {
     "add anchors (body.min_anchors)")                                                                                \
   X(kRamping, 11, "force is ramping in after start or out after a fault", "none: wait")                              \
   X(kNotConverged, 12, "a fixed-iteration solve ended above its tolerance; the residual is in telemetry",            \
-    "report this scene")
+    "report this scene")                                                                                             \
+  X(kJointLimited, 13, "a joint command beyond the joint's limits was cut to them; one that is no number was ignored", \
+    "send closings of 0 to 1 and positions within the limits in the image")                                          \
+  X(kJointStopped, 14, "a joint stopped because it would press a loaded part harder than the stop force",            \
+    "none: this is how a grasp ends; raise the stop force to squeeze harder")                                        \
+  X(kGraspUnstable, 15, "the palm would have to pull to hold the body",                                              \
+    "close the fingers so that their forces push the body into the palm")
 
 // X(name, bit, cause, remedy)
 #define PALPATE_FAULT_BITS(X)                                                                                       \

@@ -30,7 +30,7 @@ constexpr char kHelp[] =
     "palpate-device --device ADDRESS [options]: a simulated device and hand\n"
     "  --device ADDRESS   can:IFACE, usb:/dev/hidgN or loopback[:NAME], each with optional ,classic and ,node=N\n"
     "  --device-fd N      use the inherited socket N instead of opening the loopback\n"
-    "  --path FILE        the hand's motion: time_s,x_mm,y_mm,z_mm[,rx_deg,ry_deg,rz_deg]; default: rests at the "
+    "  --path FILE        the hand's motion: time_s,x_mm,y_mm,z_mm[,rx_deg,ry_deg,rz_deg[,closing]]; default: rests at the "
     "origin\n"
     "  --duration S       stop after S seconds; default: when the controller is gone (loopback) or on a signal\n"
     "  --bus-model B      classic or fd: frames take the time they need at 1 Mbit/s (fd: data at 5 Mbit/s)\n"
