@@ -147,7 +147,7 @@ struct DeviceDesc {
 struct PathPoint {
   double time_s = 0;
   Vec3 position_m;
-  Vec3 rotation_rad;  // rotation vector
+  Vec3 rotation_rad;                 // rotation vector
   std::vector<double> closing = {};  // of each finger, or one for all; empty: as at the point before
 };
 struct PathDesc {

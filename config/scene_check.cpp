@@ -147,8 +147,9 @@ void check_piece_sizes(const SceneDesc& scene, const PieceDesc& piece, const std
   if (piece.shape == PieceShape::kHull && piece.vertices_m.size() > 64)
     fail(scene, label + ".vertices_mm", std::to_string(piece.vertices_m.size()) + " corners; allowed 1 to 64");
   if (piece.shape == PieceShape::kBox && piece.points > 0 && piece.points < 8)
-    fail(scene, label + ".points", std::to_string(piece.points) + "; a box needs its 8 corners: allowed 0 or 8 to " +
-                                         std::to_string(kMaxToolPoints));
+    fail(scene, label + ".points",
+         std::to_string(piece.points) + "; a box needs its 8 corners: allowed 0 or 8 to " +
+             std::to_string(kMaxToolPoints));
   const bool has_ends =
       piece.shape == PieceShape::kCapsule || piece.shape == PieceShape::kCylinder || piece.shape == PieceShape::kCone;
   if (piece.touches != TouchingEnd::kAll && !has_ends)
@@ -184,8 +185,10 @@ void check_articulation(const SceneDesc& scene) {
       fail(scene, key, "has no effect without a [gripper] table; add [gripper] or remove it");
     if (std::ranges::find(slides, slide) == slides.end()) slides.push_back(slide);
     if (slides.size() > kMaxJoints)
-      fail(scene, key, "one jaw too many; allowed " + std::to_string(kMaxJoints) + ": give pieces of one jaw the same "
-                       "slide_mm");
+      fail(scene, key,
+           "one jaw too many; allowed " + std::to_string(kMaxJoints) +
+               ": give pieces of one jaw the same "
+               "slide_mm");
   }
   if (scene.articulation == Articulation::kGripper && slides.empty())
     fail(scene, "gripper", "no piece moves; give the pieces of at least one jaw a slide_mm");

@@ -238,9 +238,10 @@ const KeySpec kPathPoint[] = {
     number<&PathPoint::time_s>("time_s", 0, 1e5, 1, "time from the start; increasing, the first is 0", true),
     list<&PathPoint::position_m>(kVec3, "position_mm", -1e4, 1e4, kMilli, "where the hand wants the tool frame, world"),
     list<&PathPoint::rotation_rad>(kVec3, "rotation_deg", -360, 360, kDegree, "rotation vector of the tool frame"),
-    list<&PathPoint::closing>(KeyKind::kFingers, "closing", 0, 1, 1,
-                              "articulated tools: 0 open to 1 closed, as [all] or [thumb, index, middle, ring, little]; "
-                              "default: as at the point before"),
+    list<&PathPoint::closing>(
+        KeyKind::kFingers, "closing", 0, 1, 1,
+        "articulated tools: 0 open to 1 closed, as [all] or [thumb, index, middle, ring, little]; "
+        "default: as at the point before"),
 };
 
 template <auto member>
@@ -269,8 +270,8 @@ const TableSpec kTables[] = {
     {"shape", false, "How the deformed surface is drawn. No effect on forces.", kShape, open<&SceneDesc::shape>},
     {"coupling", false, "Several contact regions at once.", kCoupling, open<&SceneDesc::coupling>},
     {"tool.piece", true, "The rigid tool: convex pieces, at least one with points.", kPiece, open_piece},
-    {"gripper", false, "Makes the tool a gripper: pieces with slide_mm move by the closing of path or device.", kGripper,
-     open_gripper},
+    {"gripper", false, "Makes the tool a gripper: pieces with slide_mm move by the closing of path or device.",
+     kGripper, open_gripper},
     {"device", false, "The haptic device: what it admits and where it must be stopped.", kDevice,
      open<&SceneDesc::device>},
     {"path", false, "What the simulated hand does in the demonstration. Not stored in the image.", kPath,

@@ -24,7 +24,7 @@ constexpr double kFarthest_mm = 1e5;
 
 enum Column { kTime, kX, kY, kZ, kRx, kRy, kRz, kQw, kQx, kQy, kQz, kClosing, kColumns };
 constexpr std::array<const char*, kColumns> kNames = {"time_s", "x_mm", "y_mm", "z_mm", "rx_deg", "ry_deg",
-                                                      "rz_deg", "qw",   "qx",   "qy",   "qz",   "closing"};
+                                                      "rz_deg", "qw",   "qx",   "qy",   "qz",     "closing"};
 constexpr const char* kAllowed =
     "allowed are time_s, x_mm, y_mm, z_mm, closing, and either rx_deg, ry_deg, rz_deg or qw, qx, qy, qz";
 

@@ -29,8 +29,8 @@ void advance_closing(const Model& model, State& state, Scratch& scratch, const I
 }
 
 // Where the command wants a joint, within its limits.
-double goal_of(const Model& model, const State& state, Scratch& scratch, const Input& input, std::int32_t j)
-    PALPATE_RT {
+double goal_of(const Model& model, const State& state, Scratch& scratch, const Input& input,
+               std::int32_t j) PALPATE_RT {
   const Joint& joint = joint_at(model, j);
   if ((input.joints.direct >> j & 1u) == 0) {
     return joint.open + state.articulation.closing[joint.finger] * (joint.closed - joint.open);

@@ -26,7 +26,8 @@ Kinship kinship(const Model& model, const Contact& a, const Contact& b) PALPATE_
   const std::int32_t i = model.tool_point[static_cast<std::size_t>(a.point)].piece;
   const std::int32_t j = model.tool_point[static_cast<std::size_t>(b.point)].piece;
   if (i == j) return Kinship::kSame;
-  const bool together = model.piece[static_cast<std::size_t>(i)].group == model.piece[static_cast<std::size_t>(j)].group;
+  const bool together =
+      model.piece[static_cast<std::size_t>(i)].group == model.piece[static_cast<std::size_t>(j)].group;
   return together ? Kinship::kNeighbours : Kinship::kStrangers;
 }
 
