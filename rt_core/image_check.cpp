@@ -131,6 +131,8 @@ ImageResult check_piece(const Model& model, std::size_t i) noexcept {
   const int64_t last_hull = int64_t{p.first_hull} + p.hull_count;
   if (p.first_hull < 0 || p.hull_count < 0 || last_hull > model.sizes.n_hull) return broken("piece.first_hull", i);
   if (p.shape == static_cast<int32_t>(PieceShape::kHull) && p.hull_count < 1) return broken("piece.hull_count", i);
+  if (model.params.articulation != 0 && p.joint != -1 && !in_range(p.joint, model.joint.size()))
+    return broken("piece.joint", i);
   for (int64_t k = p.first_point; k < last_point; ++k)
     if (model.tool_point[static_cast<std::size_t>(k)].piece != static_cast<int32_t>(i))
       return broken("piece.first_point", i);
@@ -153,13 +155,90 @@ ImageResult check_tool(const Model& model) noexcept {
   return {};
 }
 
+// Parents come before their children, so that one pass places every link.
+ImageResult check_joint(const Joint& joint, std::size_t i) noexcept {
+  for (const Pose& pose : {joint.before, joint.after, joint.zero_inverse})
+    if (!is_finite(pose) || !is_unit(pose.orientation)) return not_finite("joint.pose", i);
+  const double lowest = joint.lowest, highest = joint.highest;
+  if (!(lowest >= -kHuge && lowest <= highest && highest <= kHuge)) return not_finite("joint.limits", i);
+  for (const double position : {joint.open, joint.closed})
+    if (!(position >= lowest && position <= highest)) return not_finite("joint.open", i);
+  if (!(joint.speed_max > 0 && joint.speed_max <= kHuge)) return not_finite("joint.speed_max", i);
+  if (joint.sign != 1 && joint.sign != -1) return broken("joint.sign", i);
+  if (joint.parent < -1 || joint.parent >= static_cast<int64_t>(i)) return broken("joint.parent", i);
+  if (joint.kind != 0 && joint.kind != 1) return broken("joint.kind", i);
+  if (joint.finger < 0 || joint.finger >= kMaxFingers) return broken("joint.finger", i);
+  return {};
+}
+
+ImageResult check_articulation(const Model& model) noexcept {
+  if ((model.params.articulation != 0) != (model.sizes.n_joint > 0)) return broken("n_joint", 0);
+  for (std::size_t i = 0; i < model.joint.size(); ++i)
+    if (const ImageResult result = check_joint(model.joint[i], i); result.error != ImageError::kNone) return result;
+  for (std::size_t i = 0; i < model.grasp_w.size(); ++i)
+    if (!is_finite(model.grasp_w[i]) || !is_unit(model.grasp_w[i].orientation)) return not_finite("grasp_w", i);
+  return {};
+}
+
+template <class Number>
+ImageResult check_numbers(std::span<const Number> values, const char* field) noexcept {
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (!is_finite(static_cast<Real>(values[i]))) return not_finite(field, i);
+  return {};
+}
+
+ImageResult check_nodal_vertices(const Model& model) noexcept {
+  for (std::size_t i = 0; i < model.nodal_vertex.size(); ++i) {
+    const NodalVertex& v = model.nodal_vertex[i];
+    if (!(v.area_m2 > 0 && v.area_m2 < kHuge)) return not_finite("nodal_vertex.area_m2", i);
+    if (v.is_free != 0 && v.is_free != 1) return broken("nodal_vertex.is_free", i);
+    if (!in_range(v.owner, model.triangle.size())) return broken("nodal_vertex.owner", i);
+    const auto& corner = model.triangle[static_cast<std::size_t>(v.owner)].vertex;
+    const auto vertex = static_cast<int64_t>(i);
+    if (corner[0] != vertex && corner[1] != vertex && corner[2] != vertex) return broken("nodal_vertex.owner", i);
+  }
+  return {};
+}
+
+// A response scene holds none of the nodal arrays; a nodal one all of them, in one precision.
+ImageResult check_nodal(const Model& model) noexcept {
+  const ModelSizes& n = model.sizes;
+  if (static_cast<Backend>(model.params.backend) != Backend::kNodal) {
+    if (n.n_nodal != 0) return broken("n_nodal", 0);
+    if (n.n_compliance_f32 != 0) return broken("n_compliance_f32", 0);
+    if (n.n_compliance_f64 != 0) return broken("n_compliance_f64", 0);
+    return n.n_strain_gauge == 0 ? ImageResult{} : broken("n_strain_gauge", 0);
+  }
+  if (n.n_nodal != n.n_vertex) return broken("n_nodal", 0);
+  if (n.n_vertex > kMaxNodalVertices) return broken("n_vertex", 0);
+  const int64_t entries = 9 * n.n_vertex * n.n_vertex;
+  if (n.n_compliance_f32 != 0 && n.n_compliance_f64 != 0) return broken("n_compliance_f64", 0);
+  if (n.n_compliance_f32 + n.n_compliance_f64 != entries) return broken("n_compliance_f32", 0);
+  if (n.n_strain_gauge % (18 * n.n_vertex) != 0) return broken("n_strain_gauge", 0);
+  if (n.n_strain_gauge > 18 * n.n_vertex * kMaxStrainGauges) return broken("n_strain_gauge", 0);
+  const double positive[] = {model.params.contact_margin_m, model.params.wall_N_per_m,
+                             model.params.proxy_speed_max_m_per_s};
+  for (const double value : positive)
+    if (!(value > 0)) return broken("nodal parameters", 0);
+  if (const ImageResult result = check_nodal_vertices(model); result.error != ImageError::kNone) return result;
+  if (const ImageResult result = check_numbers(model.compliance_f32, "compliance_f32");
+      result.error != ImageError::kNone)
+    return result;
+  if (const ImageResult result = check_numbers(model.compliance_f64, "compliance_f64");
+      result.error != ImageError::kNone)
+    return result;
+  return check_numbers(model.strain_gauge, "strain_gauge");
+}
+
 }  // namespace
 
 ImageResult check_arrays(const Model& model) noexcept {
   if (const ImageResult result = check_surface(model); result.error != ImageError::kNone) return result;
   if (const ImageResult result = check_hierarchy(model); result.error != ImageError::kNone) return result;
   if (const ImageResult result = check_skeleton(model); result.error != ImageError::kNone) return result;
-  return check_tool(model);
+  if (const ImageResult result = check_tool(model); result.error != ImageError::kNone) return result;
+  if (const ImageResult result = check_articulation(model); result.error != ImageError::kNone) return result;
+  return check_nodal(model);
 }
 
 }  // namespace palpate
