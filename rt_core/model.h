@@ -146,6 +146,11 @@ struct NodalVertex {
   double area_m2;        // a third of the areas of its triangles
   std::int32_t owner;    // the one of its triangles that presents it to a search of the hierarchy
   std::int32_t is_free;  // 0: held in some direction
+  // Where the surface bends sharply between its nodes, the ball that fits it there: radius (0: none), the surface's
+  // normal at the node on the bent side of any crease, and the cosine of the angle the node's share of it spans.
+  double round_m = 0;
+  Vec3 round_normal;
+  double round_cosine = 1;
 };
 
 // X(element type, name, number of elements, frame, meaning). Sizes are fields of ModelSizes.

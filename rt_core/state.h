@@ -8,6 +8,7 @@
 #include "rt_core/io.h"
 #include "rt_core/limits.h"
 #include "rt_core/model.h"
+#include "rt_core/nodal/contact_problem.h"
 
 namespace palpate {
 
@@ -60,6 +61,26 @@ struct AnchorState {
   double shear_stress_Pa = 0;
 };
 
+// What a surface node near the tool remembers (nodal back-end). Written by force.
+struct NodalContact {
+  std::int32_t vertex = -1;
+  std::int32_t piece = -1;
+  std::int32_t region = -1;                     // slot in State::region, or -1
+  FrictionMode friction = FrictionMode::kFree;  // kFree: it did not push
+  Vec3 force_w;                                 // on the body
+  Vec3 motion_w;                                // displacement of the node
+  Vec3 anchor_tool_m;                           // where on the tool it sticks; where it was, unless it sticks
+};
+
+// Memory of the nodal back-end: the candidates of the last tick.
+struct NodalState {
+  std::int32_t count = 0;
+  std::int32_t pushing = 0;  // how many of them pushed
+  double far_share = 0;      // part of the nodes' motion that is far field
+  NodalContact contact[kMaxContacts];
+  Vec3 carry_w[kMaxRegions];  // far-field motion of each region
+};
+
 struct SafetyState {
   Mode mode = Mode::kIdle;
   std::uint32_t fault = 0;
@@ -87,6 +108,7 @@ struct State {
   std::uint32_t next_region_id = 1;
   PointState point[kMaxToolPoints];
   Region region[kMaxRegions];
+  NodalState nodal;
   AnchorState anchor[kMaxAnchors];
   Vec3 anchor_by_region[kMaxRegions][kMaxAnchors];  // displacement of each anchor by each region
   SafetyState safety;
@@ -101,6 +123,7 @@ struct Contact {
   Vec3 normal_w;
   double depth_m = 0;  // on the rest surface, > 0
   double weight = 0;   // of the contact law
+  double area_m2 = 0;  // of the surface it stands for
   double force_N = 0;  // normal force on the tool
 };
 
@@ -113,6 +136,10 @@ struct Scratch {
   double residual_m = 0;
   double matrix[4][kMaxRegions * kMaxRegions];  // coupled solve
   double vector[8][kMaxRegions];
+  std::int32_t driven = 0;  // the tool's pose is given, nobody holds it by a spring
+  double strain = 0;        // largest at the gauges (nodal)
+  Pose tool_corrected_w;    // where the tool balances (nodal)
+  ContactProblem nodal;
 };
 
 static_assert(std::is_trivially_copyable_v<State> && std::is_trivially_copyable_v<Scratch>);

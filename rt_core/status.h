@@ -30,7 +30,9 @@ namespace palpate {
     "add anchors (body.min_anchors)")                                                                                \
   X(kRamping, 11, "force is ramping in after start or out after a fault", "none: wait")                              \
   X(kNotConverged, 12, "a fixed-iteration solve ended above its tolerance; the residual is in telemetry",            \
-    "report this scene")
+    "report this scene")                                                                                             \
+  X(kStrainBeyondLinear, 13, "a finite-element body is strained beyond its linear range; forces are extrapolated",   \
+    "press less deeply, or raise contact.nodal.strain_limit if the error is acceptable")
 
 // X(name, bit, cause, remedy)
 #define PALPATE_FAULT_BITS(X)                                                                                       \

@@ -57,7 +57,7 @@ void find_clusters(const Model& model, const State& state, const Scratch& scratc
     out.of_rank[i] = out.of_rank[set[i]];
     Cluster& cluster = out.cluster[out.of_rank[i]];
     cluster.count += 1;
-    cluster.area_m2 += model.tool_point[static_cast<std::size_t>(contact.point)].area_m2;
+    cluster.area_m2 += contact.area_m2;
     cluster.depth_max_m = max_of(cluster.depth_max_m, contact.depth_m);
   }
 }
