@@ -22,8 +22,8 @@ enum class CouplingLaw : std::int32_t { kNone = 0, kCoupled = 1, kTemporal = 2 }
 // nodes of a finite-element body against the tool's pieces (rt_core/nodal).
 enum class Backend : std::int32_t { kResponse = 0, kNodal = 1 };
 enum class NodalSolver : std::int32_t { kPivoting = 0, kGaussSeidel = 1 };
-// Where the tool's gap and normal are taken: at the node carried by the body's far field, at rest, or where it is.
-enum class NodalCarry : std::int32_t { kFarField = 0, kRest = 1, kTotal = 2 };
+// Where the tool's gap and normal are taken: at the node carried by the body's far field, or at rest.
+enum class NodalCarry : std::int32_t { kFarField = 0, kRest = 1 };
 
 // X(type, name, unit, lowest, highest, meaning). All are finite; the loader checks every range.
 #define PALPATE_MODEL_PARAMS(X)                                                                              \
@@ -42,7 +42,7 @@ enum class NodalCarry : std::int32_t { kFarField = 0, kRest = 1, kTotal = 2 };
   X(std::int32_t, nodal_solver, "-", 0, 1, "NodalSolver")                                                    \
   X(std::int32_t, nodal_sweeps, "-", 0, 100, "Gauss-Seidel sweeps of the normal problem")                    \
   X(std::int32_t, friction_sweeps, "-", 0, 20, "Gauss-Seidel sweeps of the problem with friction")           \
-  X(std::int32_t, nodal_carry, "-", 0, 2, "NodalCarry: where gaps and normals are taken")                    \
+  X(std::int32_t, nodal_carry, "-", 0, 1, "NodalCarry: where gaps and normals are taken")                    \
   X(double, period_s, "s", 1e-5, 1e-1, "tick period")                                                        \
   X(double, k1_N_per_m, "N/m", 0, 1e9, "linear coefficient of the contact law, per unit weight")             \
   X(double, k3_N_per_m3, "N/m3", 0, 1e15, "cubic coefficient of the contact law, per unit weight")           \

@@ -37,11 +37,13 @@ void visit_nodal(const State& state, Visitor&& visit) PALPATE_RT {
     const NodalContact& c = nodal.contact[i];
     visit("nodal.vertex", c.vertex, c.piece, c.region, static_cast<std::int32_t>(c.friction));
     visit("nodal.force_w", c.force_w);
-    visit("nodal.motion_w", c.motion_w);
     visit("nodal.anchor_tool_m", c.anchor_tool_m);
   }
   for (std::int32_t r = 0; r < kMaxRegions; ++r)
-    if (state.region[r].id != 0) visit("nodal.carry_w", nodal.carry_w[r]);
+    if (state.region[r].id != 0) {
+      const RegionMotion& m = nodal.motion[r];
+      visit("nodal.motion", m.centre_w, m.translation_m, m.rotation_rad, m.reach_m);
+    }
 }
 
 template <class Visitor>

@@ -9,6 +9,7 @@
 #include "rt_core/limits.h"
 #include "rt_core/model.h"
 #include "rt_core/nodal/contact_problem.h"
+#include "rt_core/nodal/region_motion.h"
 
 namespace palpate {
 
@@ -68,7 +69,6 @@ struct NodalContact {
   std::int32_t region = -1;                     // slot in State::region, or -1
   FrictionMode friction = FrictionMode::kFree;  // kFree: it did not push
   Vec3 force_w;                                 // on the body
-  Vec3 motion_w;                                // displacement of the node
   Vec3 anchor_tool_m;                           // where on the tool it sticks; where it was, unless it sticks
 };
 
@@ -78,7 +78,7 @@ struct NodalState {
   std::int32_t pushing = 0;  // how many of them pushed
   double far_share = 0;      // part of the nodes' motion that is far field
   NodalContact contact[kMaxContacts];
-  Vec3 carry_w[kMaxRegions];  // far-field motion of each region
+  RegionMotion motion[kMaxRegions];  // far field of each region
 };
 
 struct SafetyState {

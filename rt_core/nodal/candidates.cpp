@@ -7,19 +7,13 @@ namespace {
 
 // A node whose outward normal points the same way as the tool's is on the far side of a thin body.
 constexpr Real kFacing = 0.3;
-// A node that was not near the tool last tick is taken to have moved with the nearest region, to within this share of
-// the motion.
+// A region moves as one body, to within this share of its motion.
 constexpr Real kCarryShare = 0.1;
 
 // Where a node and the tool meet.
 struct Touch {
   Vec3 position_w, normal_w;
   Real gap_m;
-};
-
-// Where the far field has moved a region of the last tick.
-struct CarriedRegion {
-  Vec3 centre_w, carry_w;
 };
 
 class NodeSearch {
@@ -69,8 +63,10 @@ class NodeSearch {
     for (std::int32_t s = 0; s < kMaxRegions; ++s) {  // bound: kMaxRegions
       const Region& region = state_.region[s];
       if (region.id == 0 || region.lost_ticks > 0) continue;
-      region_[regions_++] = {region.centre_w, state_.nodal.carry_w[s]};
-      carry_max_m_ = max_of(carry_max_m_, norm(state_.nodal.carry_w[s]));
+      const RegionMotion& motion = state_.nodal.motion[s];
+      region_[regions_++] = motion;
+      const Real carry = norm(motion.translation_m) + norm(motion.rotation_rad) * motion.reach_m;
+      carry_max_m_ = max_of(carry_max_m_, carry);
     }
   }
 
@@ -95,31 +91,33 @@ class NodeSearch {
     }
   }
 
-  // Displacement of the vertex by the far field of the last tick's pushes: its own, or that of the nearest region.
-  Vec3 carry_of(std::int32_t vertex, Vec3 rest) const PALPATE_RT {
-    const std::int32_t memory = problem_.memory_of[vertex];
-    if (memory >= 0) return state_.nodal.far_share * state_.nodal.contact[memory].motion_w;
-    Vec3 carry;
+  // The nearest region that carries the point, or none.
+  const RegionMotion* carrier(Vec3 rest) const PALPATE_RT {
+    const RegionMotion* found = nullptr;
     Real nearest = kHuge;
     for (std::int32_t r = 0; r < regions_; ++r) {  // bound: kMaxRegions
       const Real distance2 = squared_norm(rest - region_[r].centre_w);
-      if (!(distance2 < nearest)) continue;
+      if (!(distance2 < nearest && distance2 <= region_[r].reach_m * region_[r].reach_m)) continue;
       nearest = distance2;
-      carry = region_[r].carry_w;
+      found = &region_[r];
     }
-    return carry;
+    return found;
   }
 
   void visit_vertex(const ToolPiece& shape, const PieceFrame& frame, std::int32_t vertex) PALPATE_RT {
     const auto v = static_cast<std::size_t>(vertex);
     const Vec3 rest = model_.vertex_m[v];
-    const Vec3 carry = carry_of(vertex, rest);
+    const RegionMotion* motion = carrier(rest);
+    const Vec3 carry = motion != nullptr ? carry_at(*motion, rest) : Vec3{};
     const Real margin = margin_m_ + (problem_.memory_of[vertex] < 0 ? kCarryShare * norm(carry) : 0.0);
     const NodalVertex& node = model_.nodal_vertex[v];
     const PieceGap gap = piece_gap(shape, frame.into(rest + carry));
     if (!(gap.gap_m - node.round_m < margin)) return;
     Touch touch{rest + carry, frame.direction_out(gap.normal), gap.gap_m};
-    if (node.round_m > 0) round_off(shape, frame, node, touch);
+    if (node.round_m > 0) {
+      const Vec3 turn = motion != nullptr ? cross(motion->rotation_rad, node.round_normal) : Vec3{};
+      round_off(shape, frame, node, unit_or(node.round_normal + turn, node.round_normal), touch);
+    }
     if (!(touch.gap_m < margin) || dot(model_.vertex_normal[v], touch.normal_w) > kFacing) return;
     keep(vertex, rest, carry, touch);
   }
@@ -127,12 +125,12 @@ class NodeSearch {
   // Between the nodes of a sharp bend the surface bulges out; a convex tool would roll over the chords as over a
   // polygon (a clip's force jumps by 12 % from node to node, 2026-11-21). Within the node's own share of the bend the
   // tool meets the ball that fits it; beyond it, fading, the node itself.
-  static void round_off(const ToolPiece& shape, const PieceFrame& frame, const NodalVertex& node,
+  static void round_off(const ToolPiece& shape, const PieceFrame& frame, const NodalVertex& node, Vec3 outward,
                         Touch& touch) PALPATE_RT {
-    const Vec3 centre = touch.position_w - node.round_m * node.round_normal;
+    const Vec3 centre = touch.position_w - node.round_m * outward;
     const PieceGap ball = piece_gap(shape, frame.into(centre));
     const Vec3 normal = frame.direction_out(ball.normal);
-    const Real turn = 1 + dot(node.round_normal, normal), share = 1 - node.round_cosine;  // 1 - cosines
+    const Real turn = 1 + dot(outward, normal), share = 1 - node.round_cosine;  // 1 - cosines
     const Real weight = clamp_to((2.25 * share - turn) / (1.25 * share), 0, 1);
     if (weight == 0) return;
     touch.gap_m += weight * (ball.gap_m - node.round_m - touch.gap_m);
@@ -190,7 +188,7 @@ class NodeSearch {
   State& state_;
   Scratch& scratch_;
   ContactProblem& problem_;
-  CarriedRegion region_[kMaxRegions];
+  RegionMotion region_[kMaxRegions];
   std::int32_t regions_ = 0;
   std::int32_t piece_ = 0;
   Real margin_m_ = 0, carry_max_m_ = 0;

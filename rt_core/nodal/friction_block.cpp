@@ -20,33 +20,40 @@ Real length(const Push& push) PALPATE_RT {
   return square_root(push.tangent_N[0] * push.tangent_N[0] + push.tangent_N[1] * push.tangent_N[1]);
 }
 
+// Along the given friction direction: the push that closes the gap with |tangent| = mu normal.
+Push along(const FrictionBlock& block, Real mu, Real free_normal_m, Push push) PALPATE_RT {
+  const Real size = length(push);
+  const Real e0 = size > 0 ? push.tangent_N[0] / size : 0, e1 = size > 0 ? push.tangent_N[1] / size : 0;
+  push.normal_N = -free_normal_m / (block.normal + mu * (block.lean[0] * e0 + block.lean[1] * e1));
+  push.tangent_N[0] = mu * push.normal_N * e0;
+  push.tangent_N[1] = mu * push.normal_N * e1;
+  push.slips = true;
+  return push;
+}
+
 // Slipping: tangent(s)_k = -c_k / (slide_k + s) with the s > 0 at which its length is mu times the normal push. Newton
-// on the inverse of their ratio, which is nearly linear in s (Hebden 1973; More & Sorensen 1983).
+// on the inverse of their ratio, which is nearly linear in s (Hebden 1973; More & Sorensen 1983), inside a bracket.
 Push slip(const FrictionBlock& block, Real mu, Real free_normal_m, const Real (&c)[2]) PALPATE_RT {
-  Real s = 0;
+  Real s = 0, low = 0, high = kHuge;
   Push push;
   for (int step = 0; step < kSlipSteps; ++step) {  // bound: kSlipSteps
     const Real d0 = 1.0 / (block.slide[0] + s), d1 = 1.0 / (block.slide[1] + s);
     push = with_tangent(block, free_normal_m, -c[0] * d0, -c[1] * d1);
-    const Real size = length(push), limit = mu * push.normal_N;
-    if (!(limit > 0 && size > 0)) {
-      s = 2 * s + block.slide[0] + block.slide[1];
-      continue;
-    }
     const Real t0 = push.tangent_N[0], t1 = push.tangent_N[1];
-    const Real size_slope = -(t0 * t0 * d0 + t1 * t1 * d1) / (size * size);
-    const Real normal_slope = (block.lean[0] * t0 * d0 + block.lean[1] * t1 * d1) / (block.normal * push.normal_N);
-    const Real ratio = size / limit, slope = size_slope - normal_slope;
-    if (abs_of(ratio - 1) < 1e-12) break;
-    s = slope < 0 ? max_of(s - (ratio - 1) / slope, 0) : 2 * s + block.slide[0] + block.slide[1];
+    const Real size = length(push), limit = mu * push.normal_N;
+    if (abs_of(size - limit) <= 1e-12 * size) break;
+    (size > limit ? low : high) = s;
+    Real next = -1;
+    if (limit > 0 && size > 0) {
+      const Real size_slope = -(t0 * t0 * d0 + t1 * t1 * d1) / (size * size);
+      const Real normal_slope = (block.lean[0] * t0 * d0 + block.lean[1] * t1 * d1) / (block.normal * push.normal_N);
+      const Real slope = size_slope - normal_slope;
+      if (slope < 0) next = s - (size / limit - 1) / slope;
+    }
+    const Real middle = high < kHuge ? 0.5 * (low + high) : 4 * s + block.slide[0] + block.slide[1];
+    s = next > low && next < high ? next : middle;
   }
-  const Real size = length(push);
-  push.normal_N = max_of(push.normal_N, 0);
-  const Real scale = size > 0 ? mu * push.normal_N / size : 0;
-  push.tangent_N[0] *= scale;
-  push.tangent_N[1] *= scale;
-  push.slips = true;
-  return push;
+  return along(block, mu, free_normal_m, push);
 }
 
 }  // namespace

@@ -54,8 +54,7 @@ void remember(State& state, const Scratch& scratch) PALPATE_RT {
     contact.piece = node.piece;
     contact.region = node.region;
     contact.force_w = push_w(node);
-    contact.motion_w = motion_of(p, i);
-    contact.anchor_tool_m = inverse_transform(scratch.tool_corrected_w, node.rest_w + contact.motion_w);
+    contact.anchor_tool_m = inverse_transform(scratch.tool_corrected_w, node.rest_w + motion_of(p, i));
     if (!(node.push.normal_N > 0)) continue;
     state.nodal.pushing += 1;
     contact.friction = node.push.slips ? FrictionMode::kSlip : FrictionMode::kStick;

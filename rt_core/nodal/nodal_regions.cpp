@@ -20,6 +20,9 @@ void clear_force(Region& region) PALPATE_RT {
   region.normal_w = kept.normal_w;
 }
 
+// Nodes nearer together than this share of the cluster distance do not show a rotation.
+constexpr Real kBlur = 0.02;
+
 struct Sums {
   Vec3 centre, normal, friction, force, torque, carry;
   Real load = 0, energy = 0, area = 0;
@@ -35,9 +38,9 @@ void add(const Model& model, const State& state, const Scratch& scratch, const C
   s.friction += on_tool - contact.force_N * contact.normal_w;
   s.force += on_tool;
   s.torque += cross(node.arm_w, on_tool);
-  s.carry += contact.force_N * memory.motion_w;
+  s.carry += contact.force_N * motion_of(scratch.nodal, contact.point);
   s.load += contact.force_N;
-  s.energy += 0.5 * dot(memory.force_w, memory.motion_w);
+  s.energy += 0.5 * dot(memory.force_w, motion_of(scratch.nodal, contact.point));
   s.area += model.nodal_vertex[static_cast<std::size_t>(node.vertex)].area_m2;
   s.slipping += node.push.slips ? 1 : 0;
   s.count += 1;
@@ -77,8 +80,6 @@ Real far_share(const Model& model, Real local_J, Real energy_J) PALPATE_RT {
   switch (static_cast<NodalCarry>(model.params.nodal_carry)) {
     case NodalCarry::kRest:
       return 0;
-    case NodalCarry::kTotal:
-      return 1;
     case NodalCarry::kFarField:
       break;
   }
@@ -93,6 +94,42 @@ void label(State& state, Scratch& scratch, const Clusters& clusters) PALPATE_RT 
     const Contact& contact = scratch.contact[i];
     state.nodal.contact[contact.point].region = contact.region;
     scratch.nodal.node[contact.point].region = contact.region;
+  }
+}
+
+// The region a candidate moves with: its own, or the nearest in contact.
+std::int32_t region_of(const State& state, const ContactNode& node) PALPATE_RT {
+  if (node.push.normal_N > 0) return node.region;
+  std::int32_t found = -1;
+  Real nearest = kHuge;
+  for (std::int32_t s = 0; s < kMaxRegions; ++s) {  // bound: kMaxRegions
+    const Region& region = state.region[s];
+    if (region.id == 0 || region.lost_ticks > 0) continue;
+    const Real distance2 = squared_norm(node.rest_w - region.centre_w);
+    if (!(distance2 < nearest)) continue;
+    nearest = distance2;
+    found = s;
+  }
+  return found;
+}
+
+// How the surface around each region has moved as a whole.
+void fit_motions(const Model& model, State& state, const Scratch& scratch) PALPATE_RT {
+  const ContactProblem& p = scratch.nodal;
+  MotionFit fit[kMaxRegions];
+  Real reach2[kMaxRegions] = {};
+  for (std::int32_t i = 0; i < p.count; ++i) {  // bound: kMaxContacts
+    const std::int32_t slot = region_of(state, p.node[i]);
+    if (slot < 0) continue;
+    const Real distance2 = squared_norm(p.node[i].rest_w - state.region[slot].centre_w);
+    const Real near = 2 * model.params.cluster_distance_m;
+    if (!(p.node[i].push.normal_N > 0) && distance2 > near * near) continue;
+    fit[slot].add(p.node[i].rest_w, motion_of(p, i));
+    reach2[slot] = max_of(reach2[slot], distance2);
+  }
+  for (std::int32_t s = 0; s < kMaxRegions; ++s) {  // bound: kMaxRegions
+    state.nodal.motion[s] = fit[s].result(kBlur * model.params.cluster_distance_m, state.nodal.far_share);
+    state.nodal.motion[s].reach_m = square_root(reach2[s]) + 2 * model.params.cluster_distance_m;
   }
 }
 
@@ -132,11 +169,10 @@ void find_nodal_regions(const Model& model, State& state, Scratch& scratch) PALP
     write(s, region);
     local_J += local_energy_J(model, region);
     touching += 1;
-    state.nodal.carry_w[slot] = (1.0 / s.load) * s.carry;
   }
   if (touching > state.high_water.regions) state.high_water.regions = touching;
   state.nodal.far_share = far_share(model, local_J, scratch.energy_J);
-  for (Vec3& carry : state.nodal.carry_w) carry = state.nodal.far_share * carry;  // bound: kMaxRegions
+  fit_motions(model, state, scratch);
 }
 
 }  // namespace palpate
