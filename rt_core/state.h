@@ -69,7 +69,7 @@ struct NodalContact {
   std::int32_t region = -1;                     // slot in State::region, or -1
   FrictionMode friction = FrictionMode::kFree;  // kFree: it did not push
   Vec3 force_w;                                 // on the body
-  Vec3 anchor_tool_m;                           // where on the tool it sticks; where it was, unless it sticks
+  Vec3 anchor_tool_m;                           // where on the tool (joints at zero) it sticks, or was
 };
 
 // Memory of the nodal back-end: the candidates of the last tick.
@@ -90,6 +90,22 @@ struct SafetyState {
   Pose tool_corrected_w;      // the virtual tool after the coupling's corrector: where the next prediction starts
   Wrench last_good_w;         // last finite, clamped wrench before the gain
   Wrench last_device_w;       // last output
+};
+
+// Joints of an articulated tool. Written by articulate; rigid tools leave it untouched.
+struct ArticulationState {
+  double closing[kMaxFingers] = {};
+  double joint[kMaxJoints] = {};  // rad or m
+  std::int32_t started = 0;       // 0: joints take their open positions at the next tick
+  std::int32_t moved = 0;         // 1: some joint moved this tick
+  // Motion of each piece from its place with all joints at zero, tool frame: at this and at the last tick.
+  Pose motion_tool[kMaxPieces];
+  Pose motion_previous_tool[kMaxPieces];
+  Vec3 axis_tool[kMaxJoints];      // of each joint where it is now
+  Vec3 origin_tool_m[kMaxJoints];  // a point on it
+  // Normal contact load of each piece, of the last tick. Written by compute_force.
+  Vec3 piece_force_tool_N[kMaxPieces];
+  Vec3 piece_torque_tool_Nm[kMaxPieces];  // about the tool's origin
 };
 
 // Largest number of each pool's entries used since reset.
@@ -113,13 +129,16 @@ struct State {
   Vec3 anchor_by_region[kMaxRegions][kMaxAnchors];  // displacement of each anchor by each region
   SafetyState safety;
   HighWater high_water;
+  ArticulationState articulation;
 };
 
 // One tool point in contact. Written by collide, completed by regions and force.
 struct Contact {
   std::int32_t point = 0;   // index of the tool point
   std::int32_t region = 0;  // slot in State::region
-  Vec3 position_w;          // where the force acts: the surface point
+  std::int32_t piece = -1;  // of the tool; -1: the one its tool point belongs to
+  std::int32_t reserved = 0;
+  Vec3 position_w;  // where the force acts: the surface point
   Vec3 normal_w;
   double depth_m = 0;  // on the rest surface, > 0
   double weight = 0;   // of the contact law
@@ -141,6 +160,10 @@ struct Scratch {
   Pose tool_corrected_w;    // where the tool balances (nodal)
   ContactProblem nodal;
 };
+
+inline std::int32_t piece_of(const Model& model, const Contact& contact) PALPATE_RT {
+  return contact.piece >= 0 ? contact.piece : model.tool_point[static_cast<std::size_t>(contact.point)].piece;
+}
 
 static_assert(std::is_trivially_copyable_v<State> && std::is_trivially_copyable_v<Scratch>);
 static_assert(sizeof(State) < 256 * 1024, "State must stay below 256 KiB");

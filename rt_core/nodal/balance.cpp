@@ -1,4 +1,5 @@
 #include "rt_core/nodal/balance.h"
+#include "rt_core/articulate/carrier.h"
 #include "rt_core/coupling/virtual_coupling.h"
 #include "rt_core/nodal/gather.h"
 
@@ -12,6 +13,11 @@ constexpr Real kTolerance_m = 1e-6;
 Real friction_coefficient(const Model& model) PALPATE_RT {
   const bool coulomb = model.params.friction_law == static_cast<std::int32_t>(FrictionLaw::kCoulomb);
   return coulomb ? model.params.friction_mu_dynamic : 0.0;
+}
+
+// The carrier of a piece last tick, for the tool's pose `tool_w` then.
+Pose carried_before(const Model& model, const State& state, const Pose& tool_w, std::int32_t piece) PALPATE_RT {
+  return is_articulated(model) ? tool_w * state.articulation.motion_previous_tool[piece] : tool_w;
 }
 
 class Balance {
@@ -63,9 +69,9 @@ class Balance {
     if (node.memory >= 0 && state_.nodal.contact[node.memory].piece == node.piece) {
       anchor_tool = state_.nodal.contact[node.memory].anchor_tool_m;
     } else {
-      anchor_tool = inverse_transform(before_, node.rest_w + node.carry_w);
+      anchor_tool = inverse_transform(carried_before(model_, state_, before_, node.piece), node.rest_w + node.carry_w);
     }
-    return node.rest_w - transform(state_.tool_w, anchor_tool) - tool_motion(node);
+    return node.rest_w - transform(carrier_w(model_, state_, node.piece), anchor_tool) - tool_motion(node);
   }
   Vec3 tool_motion(const ContactNode& node) const PALPATE_RT {
     return free_.translation_m + cross(free_.rotation_rad, node.arm_w);

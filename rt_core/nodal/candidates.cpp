@@ -1,3 +1,4 @@
+#include "rt_core/articulate/carrier.h"
 #include "rt_core/nodal/nodal.h"
 #include "rt_core/nodal/piece_gap.h"
 
@@ -37,7 +38,7 @@ class NodeSearch {
   void visit(std::int32_t piece) PALPATE_RT {
     piece_ = piece;
     const ToolPiece& shape = model_.piece[static_cast<std::size_t>(piece)];
-    const PieceFrame frame(state_.tool_w * shape.pose_tool);
+    const PieceFrame frame(carrier_w(model_, state_, piece) * shape.pose_tool);
     const Real reach = margin_m_ + (1 + kCarryShare) * carry_max_m_;
     std::int32_t stack[kMaxTraversalStack];
     std::int32_t top = 0;

@@ -1,3 +1,5 @@
+#include "rt_core/articulate/articulate.h"
+#include "rt_core/articulate/carrier.h"
 #include "rt_core/cholesky.h"
 #include "rt_core/nodal/balance.h"
 #include "rt_core/nodal/gather.h"
@@ -40,7 +42,7 @@ void place_tool(const Model& model, const State& state, Scratch& scratch, const 
 }
 
 // Keeps every candidate: what it pushed, where it went and where on the tool it is.
-void remember(State& state, const Scratch& scratch) PALPATE_RT {
+void remember(const Model& model, State& state, const Scratch& scratch) PALPATE_RT {
   const ContactProblem& p = scratch.nodal;
   NodalContact before[kMaxContacts];
   for (std::int32_t m = 0; m < state.nodal.count; ++m) before[m] = state.nodal.contact[m];  // bound: kMaxContacts
@@ -48,13 +50,15 @@ void remember(State& state, const Scratch& scratch) PALPATE_RT {
   state.nodal.pushing = 0;
   for (std::int32_t i = 0; i < p.count; ++i) {  // bound: kMaxContacts
     const ContactNode& node = p.node[i];
+    const Pose carrier = is_articulated(model) ? scratch.tool_corrected_w * state.articulation.motion_tool[node.piece]
+                                               : scratch.tool_corrected_w;
     NodalContact& contact = state.nodal.contact[i];
     contact = NodalContact{};
     contact.vertex = node.vertex;
     contact.piece = node.piece;
     contact.region = node.region;
     contact.force_w = push_w(node);
-    contact.anchor_tool_m = inverse_transform(scratch.tool_corrected_w, node.rest_w + motion_of(p, i));
+    contact.anchor_tool_m = inverse_transform(carrier, node.rest_w + motion_of(p, i));
     if (!(node.push.normal_N > 0)) continue;
     state.nodal.pushing += 1;
     contact.friction = node.push.slips ? FrictionMode::kSlip : FrictionMode::kStick;
@@ -114,6 +118,7 @@ void list_contacts(State& state, Scratch& scratch) PALPATE_RT {
     contact = Contact{};
     contact.point = i;
     contact.region = -1;
+    contact.piece = node.piece;
     contact.position_w = node.rest_w;
     contact.normal_w = -node.normal_w;
     contact.depth_m = max_of(dot(motion_of(p, i), node.normal_w), 0.0);
@@ -153,11 +158,12 @@ void compute_nodal_force(const Model& model, State& state, Scratch& scratch) PAL
   if (p.count > 0) solve_contacts(model, state, scratch, free, before);
   place_tool(model, state, scratch, free);
   if (p.count > 0) set_stiffness(state, scratch);
-  remember(state, scratch);
+  remember(model, state, scratch);
   list_contacts(state, scratch);
   sum_up(scratch);
   check_strain(model, scratch);
   find_nodal_regions(model, state, scratch);
+  if (is_articulated(model)) load_pieces(model, state, scratch);
 }
 
 }  // namespace palpate
