@@ -192,6 +192,9 @@ ImageResult check_nodal_vertices(const Model& model) noexcept {
     const NodalVertex& v = model.nodal_vertex[i];
     if (!(v.area_m2 > 0 && v.area_m2 < kHuge)) return not_finite("nodal_vertex.area_m2", i);
     if (v.is_free != 0 && v.is_free != 1) return broken("nodal_vertex.is_free", i);
+    if (!(v.round_m >= 0 && v.round_m < kHuge)) return not_finite("nodal_vertex.round_m", i);
+    if (v.round_m > 0 && !(is_unit(v.round_normal) && v.round_cosine >= 0 && v.round_cosine < 1))
+      return not_finite("nodal_vertex.round_normal", i);
     if (!in_range(v.owner, model.triangle.size())) return broken("nodal_vertex.owner", i);
     const auto& corner = model.triangle[static_cast<std::size_t>(v.owner)].vertex;
     const auto vertex = static_cast<int64_t>(i);

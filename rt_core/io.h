@@ -50,6 +50,7 @@ struct Output {
   double penetration_m = 0;  // deepest sample depth
   double energy_J = 0;       // stored elastic energy of contact and friction springs
   double residual_m = 0;     // of the coupled region solve
+  double strain = 0;         // largest strain at the gauges of a finite-element body
   double ramp = 0;           // 0..1 force ramp
   std::uint32_t status = 0;  // Status bits
   std::uint32_t fault = 0;   // latched Fault bits

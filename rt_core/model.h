@@ -23,8 +23,8 @@ enum class Articulation : std::int32_t { kRigid = 0, kGripper = 1, kHand = 2 };
 // nodes of a finite-element body against the tool's pieces (rt_core/nodal).
 enum class Backend : std::int32_t { kResponse = 0, kNodal = 1 };
 enum class NodalSolver : std::int32_t { kPivoting = 0, kGaussSeidel = 1 };
-// Where the tool's gap and normal are taken: at the node carried by the body's far field, at rest, or where it is.
-enum class NodalCarry : std::int32_t { kFarField = 0, kRest = 1, kTotal = 2 };
+// Where the tool's gap and normal are taken: at the node carried by the body's far field, or at rest.
+enum class NodalCarry : std::int32_t { kFarField = 0, kRest = 1 };
 
 // X(type, name, unit, lowest, highest, meaning). All are finite; the loader checks every range.
 #define PALPATE_MODEL_PARAMS(X)                                                                              \
@@ -45,7 +45,7 @@ enum class NodalCarry : std::int32_t { kFarField = 0, kRest = 1, kTotal = 2 };
   X(std::int32_t, friction_sweeps, "-", 0, 20, "Gauss-Seidel sweeps of the problem with friction")           \
   X(std::int32_t, articulation, "-", 0, 2, "Articulation: whether pieces of the tool move by joints")        \
   X(std::int32_t, reserved, "-", 0, 0, "keeps the doubles aligned")                                          \
-  X(std::int32_t, nodal_carry, "-", 0, 2, "NodalCarry: where gaps and normals are taken")                    \
+  X(std::int32_t, nodal_carry, "-", 0, 1, "NodalCarry: where gaps and normals are taken")                    \
   X(double, period_s, "s", 1e-5, 1e-1, "tick period")                                                        \
   X(double, k1_N_per_m, "N/m", 0, 1e9, "linear coefficient of the contact law, per unit weight")             \
   X(double, k3_N_per_m3, "N/m3", 0, 1e15, "cubic coefficient of the contact law, per unit weight")           \
@@ -173,6 +173,11 @@ struct NodalVertex {
   double area_m2;        // a third of the areas of its triangles
   std::int32_t owner;    // the one of its triangles that presents it to a search of the hierarchy
   std::int32_t is_free;  // 0: held in some direction
+  // Where the surface bends sharply between its nodes, the ball that fits it there: radius (0: none), the surface's
+  // normal at the node on the bent side of any crease, and the cosine of the angle the node's share of it spans.
+  double round_m = 0;
+  Vec3 round_normal;
+  double round_cosine = 1;
 };
 
 // X(element type, name, number of elements, frame, meaning). Sizes are fields of ModelSizes.

@@ -29,7 +29,9 @@ void sense(const Model& model, State& state, Scratch& scratch, const Input& inpu
   scratch.contact_wrench_w = {};
   scratch.energy_J = 0;
   scratch.residual_m = 0;
+  scratch.strain = 0;
   const bool driven = input.drive == Drive::kTool;  // a press: poses may jump, nobody is holding a device
+  scratch.driven = driven ? 1 : 0;
   const bool accepted = driven ? is_finite(input.pose_w) : is_plausible(model, state, input);
   if (accepted) {
     const Pose pose{input.pose_w.position_m, normalised(input.pose_w.orientation)};

@@ -29,6 +29,24 @@ void visit_region(const Region& r, Visitor&& visit) PALPATE_RT {
 }
 
 template <class Visitor>
+void visit_nodal(const State& state, Visitor&& visit) PALPATE_RT {
+  const NodalState& nodal = state.nodal;
+  visit("nodal.count", nodal.count, nodal.pushing);
+  visit("nodal.far_share", nodal.far_share);
+  for (std::int32_t i = 0; i < nodal.count; ++i) {  // bound: kMaxContacts
+    const NodalContact& c = nodal.contact[i];
+    visit("nodal.vertex", c.vertex, c.piece, c.region, static_cast<std::int32_t>(c.friction));
+    visit("nodal.force_w", c.force_w);
+    visit("nodal.anchor_tool_m", c.anchor_tool_m);
+  }
+  for (std::int32_t r = 0; r < kMaxRegions; ++r)
+    if (state.region[r].id != 0) {
+      const RegionMotion& m = nodal.motion[r];
+      visit("nodal.motion", m.centre_w, m.translation_m, m.rotation_rad, m.reach_m);
+    }
+}
+
+template <class Visitor>
 void visit_safety(const SafetyState& s, Visitor&& visit) PALPATE_RT {
   visit("safety.mode", static_cast<std::int32_t>(s.mode), s.fault, s.last_commands, s.stopping);
   visit("safety.ramp", s.ramp);
@@ -65,7 +83,8 @@ void visit_state(const Model& model, const State& state, Visitor&& visit) PALPAT
     visit("point.triangle", p.triangle, p.region);
   }
   for (const Region& region : state.region) visit_region(region, visit);  // bound: kMaxRegions
-  for (std::int64_t i = 0; i < model.sizes.n_anchor; ++i) {               // bound: kMaxAnchors
+  if (model.params.backend != 0) visit_nodal(state, visit);
+  for (std::int64_t i = 0; i < model.sizes.n_anchor; ++i) {  // bound: kMaxAnchors
     const AnchorState& a = state.anchor[i];
     visit("anchor.displacement_w", a.displacement_w);
     visit("anchor.stress_Pa", a.stress_Pa, a.axial_stress_Pa, a.shear_stress_Pa);

@@ -8,6 +8,8 @@
 #include "rt_core/io.h"
 #include "rt_core/limits.h"
 #include "rt_core/model.h"
+#include "rt_core/nodal/contact_problem.h"
+#include "rt_core/nodal/region_motion.h"
 
 namespace palpate {
 
@@ -60,6 +62,25 @@ struct AnchorState {
   double shear_stress_Pa = 0;
 };
 
+// What a surface node near the tool remembers (nodal back-end). Written by force.
+struct NodalContact {
+  std::int32_t vertex = -1;
+  std::int32_t piece = -1;
+  std::int32_t region = -1;                     // slot in State::region, or -1
+  FrictionMode friction = FrictionMode::kFree;  // kFree: it did not push
+  Vec3 force_w;                                 // on the body
+  Vec3 anchor_tool_m;                           // where on the tool (joints at zero) it sticks, or was
+};
+
+// Memory of the nodal back-end: the candidates of the last tick.
+struct NodalState {
+  std::int32_t count = 0;
+  std::int32_t pushing = 0;  // how many of them pushed
+  double far_share = 0;      // part of the nodes' motion that is far field
+  NodalContact contact[kMaxContacts];
+  RegionMotion motion[kMaxRegions];  // far field of each region
+};
+
 struct SafetyState {
   Mode mode = Mode::kIdle;
   std::uint32_t fault = 0;
@@ -103,6 +124,7 @@ struct State {
   std::uint32_t next_region_id = 1;
   PointState point[kMaxToolPoints];
   Region region[kMaxRegions];
+  NodalState nodal;
   AnchorState anchor[kMaxAnchors];
   Vec3 anchor_by_region[kMaxRegions][kMaxAnchors];  // displacement of each anchor by each region
   SafetyState safety;
@@ -114,10 +136,13 @@ struct State {
 struct Contact {
   std::int32_t point = 0;   // index of the tool point
   std::int32_t region = 0;  // slot in State::region
-  Vec3 position_w;          // where the force acts: the surface point
+  std::int32_t piece = -1;  // of the tool; -1: the one its tool point belongs to
+  std::int32_t reserved = 0;
+  Vec3 position_w;  // where the force acts: the surface point
   Vec3 normal_w;
   double depth_m = 0;  // on the rest surface, > 0
   double weight = 0;   // of the contact law
+  double area_m2 = 0;  // of the surface it stands for
   double force_N = 0;  // normal force on the tool
 };
 
@@ -130,7 +155,15 @@ struct Scratch {
   double residual_m = 0;
   double matrix[4][kMaxRegions * kMaxRegions];  // coupled solve
   double vector[8][kMaxRegions];
+  std::int32_t driven = 0;  // the tool's pose is given, nobody holds it by a spring
+  double strain = 0;        // largest at the gauges (nodal)
+  Pose tool_corrected_w;    // where the tool balances (nodal)
+  ContactProblem nodal;
 };
+
+inline std::int32_t piece_of(const Model& model, const Contact& contact) PALPATE_RT {
+  return contact.piece >= 0 ? contact.piece : model.tool_point[static_cast<std::size_t>(contact.point)].piece;
+}
 
 static_assert(std::is_trivially_copyable_v<State> && std::is_trivially_copyable_v<Scratch>);
 static_assert(sizeof(State) < 256 * 1024, "State must stay below 256 KiB");

@@ -36,7 +36,9 @@ namespace palpate {
   X(kJointStopped, 14, "a joint stopped because it would press a loaded part harder than the stop force",              \
     "none: this is how a grasp ends; raise the stop force to squeeze harder")                                          \
   X(kGraspUnstable, 15, "the palm would have to pull to hold the body",                                                \
-    "close the fingers so that their forces push the body into the palm")
+    "close the fingers so that their forces push the body into the palm")                                              \
+  X(kStrainBeyondLinear, 16, "a finite-element body is strained beyond its linear range; forces are extrapolated",     \
+    "press less deeply, or raise contact.nodal.strain_limit if the error is acceptable")
 
 // X(name, bit, cause, remedy)
 #define PALPATE_FAULT_BITS(X)                                                                                       \

@@ -12,6 +12,7 @@ void publish(const State& state, const Scratch& scratch, Output& output) PALPATE
   output.tool_w = state.tool_w;
   output.energy_J = scratch.energy_J;
   output.residual_m = scratch.residual_m;
+  output.strain = scratch.strain;
   output.status = scratch.status;
   output.contacts = scratch.contact_count;
   output.regions = 0;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cstring>
+#include <memory>
 
 #include "rt_core/tick.h"
 
@@ -97,7 +98,7 @@ ReplayResult replay(RecordingReader& recording, const Model& model, const Replay
   }
   ReplayResult result;
   State state = recording.initial_state();
-  Scratch scratch;
+  const auto scratch = std::make_unique<Scratch>();
   TickRecord recorded;
   if (!recording.state_known()) {
     throw RecordingError(
@@ -112,7 +113,7 @@ ReplayResult replay(RecordingReader& recording, const Model& model, const Replay
     expected += 1;
     TickRecord replayed{};
     Output output;
-    tick(model, state, scratch, recorded.input, output);
+    tick(model, state, *scratch, recorded.input, output);
     fill_record(model, state, recorded.input, output, replayed);
     if (listen) listen(recorded, replayed);
     if (first_record_difference(recorded, replayed, result)) {

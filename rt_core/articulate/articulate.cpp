@@ -146,7 +146,7 @@ void load_pieces(const Model& model, State& state, const Scratch& scratch) PALPA
   for (std::int32_t i = 0; i < contacts; ++i) {  // bound: kMaxContacts
     const Contact& contact = scratch.contact[i];
     if (!(contact.force_N > 0)) continue;
-    const std::int32_t piece = model.tool_point[static_cast<std::size_t>(contact.point)].piece;
+    const std::int32_t piece = piece_of(model, contact);
     const Vec3 force = rotate(to_tool, contact.force_N * contact.normal_w);
     a.piece_force_tool_N[piece] += force;
     a.piece_torque_tool_Nm[piece] += cross(inverse_transform(state.tool_w, contact.position_w), force);

@@ -4,6 +4,7 @@
 #include "rt_core/articulate/carrier.h"
 #include "rt_core/collide/closest_point.h"
 #include "rt_core/deform/surface.h"
+#include "rt_core/nodal/nodal.h"
 #include "rt_core/stages.h"
 
 namespace palpate {
@@ -170,6 +171,7 @@ class Collider {
     contact.normal_w = point.normal_w;
     contact.depth_m = -point.gap_m;
     contact.weight = tool_point.weight;
+    contact.area_m2 = tool_point.area_m2;
   }
 
   const Model& model_;
@@ -183,6 +185,7 @@ class Collider {
 }  // namespace
 
 void collide(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
+  if (is_nodal(model)) return collide_nodal(model, state, scratch);
   scratch.contact_count = 0;
   if (!is_finite(state.tool_w)) {
     for (PointState& point : state.point) forget(point);  // bound: kMaxToolPoints

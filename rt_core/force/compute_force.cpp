@@ -10,6 +10,7 @@
 #include "rt_core/force/far_field.h"
 #include "rt_core/force/friction.h"
 #include "rt_core/force/sort_contacts.h"
+#include "rt_core/nodal/nodal.h"
 #include "rt_core/stages.h"
 
 namespace palpate {
@@ -243,6 +244,7 @@ void slide(const Model& model, const State& state, Region& region, const RegionC
 }  // namespace
 
 void compute_force(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
+  if (is_nodal(model)) return compute_nodal_force(model, state, scratch);
   clear_outputs(state, scratch);
   SortedContacts sorted;
   if (is_finite(state.tool_w)) sort_contacts(state, scratch, sorted);

@@ -23,8 +23,8 @@ void sort_by_point(const Scratch& scratch, Clusters& out) PALPATE_RT {
 enum class Kinship { kSame, kNeighbours, kStrangers };
 Kinship kinship(const Model& model, const Contact& a, const Contact& b) PALPATE_RT {
   if (!is_articulated(model)) return Kinship::kNeighbours;
-  const std::int32_t i = model.tool_point[static_cast<std::size_t>(a.point)].piece;
-  const std::int32_t j = model.tool_point[static_cast<std::size_t>(b.point)].piece;
+  const std::int32_t i = piece_of(model, a);
+  const std::int32_t j = piece_of(model, b);
   if (i == j) return Kinship::kSame;
   const bool together =
       model.piece[static_cast<std::size_t>(i)].group == model.piece[static_cast<std::size_t>(j)].group;
@@ -74,7 +74,7 @@ void find_clusters(const Model& model, const State& state, const Scratch& scratc
     out.of_rank[i] = out.of_rank[set[i]];
     Cluster& cluster = out.cluster[out.of_rank[i]];
     cluster.count += 1;
-    cluster.area_m2 += model.tool_point[static_cast<std::size_t>(contact.point)].area_m2;
+    cluster.area_m2 += contact.area_m2;
     cluster.depth_max_m = max_of(cluster.depth_max_m, contact.depth_m);
   }
 }

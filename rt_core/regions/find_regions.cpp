@@ -7,6 +7,7 @@
 // overlap test holds as well: "could not decide" must never be read as "no contact".
 #include "rt_core/articulate/carrier.h"
 #include "rt_core/collide/overlap.h"
+#include "rt_core/nodal/nodal.h"
 #include "rt_core/regions/identity.h"
 #include "rt_core/stages.h"
 
@@ -81,6 +82,7 @@ void lose(const Model& model, State& state, Scratch& scratch, Region& region) PA
 }  // namespace
 
 void find_regions(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
+  if (is_nodal(model)) return;  // once the pushes are known
   Clusters clusters;
   find_clusters(model, state, scratch, clusters);
   if (!assign_slots(scratch, clusters, state)) scratch.status |= Status::kRegionsDropped;

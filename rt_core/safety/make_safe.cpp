@@ -1,6 +1,7 @@
 // The last stage of every tick, in every mode, for every model:
 //   virtual coupling -> finite? -> magnitude -> mode gain -> rate.
 #include "rt_core/coupling/virtual_coupling.h"
+#include "rt_core/nodal/nodal.h"
 #include "rt_core/safety/mode_machine.h"
 #include "rt_core/stages.h"
 
@@ -20,6 +21,10 @@ bool clamp_length(Vec3& v, double limit) PALPATE_RT {
 
 // Moves the tool to its corrected pose and returns the wrench the coupling exerts on the handle there.
 Wrench couple(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
+  if (is_nodal(model)) {  // the pose was found together with the pushes
+    state.safety.tool_corrected_w = scratch.tool_corrected_w;
+    return coupling_wrench(model, state.device_w, state.safety.tool_corrected_w);
+  }
   const Wrench on_handle = coupling_wrench(model, state.device_w, state.tool_w);
   const Wrench on_tool{-on_handle.force_N, -on_handle.torque_Nm};
   Twist correction;
@@ -35,6 +40,7 @@ void restart_contact(State& state) PALPATE_RT {
   for (double& k : state.contact_stiffness) k = 0;
   for (PointState& point : state.point) point = PointState{};  // bound: kMaxToolPoints
   for (Region& region : state.region) region = Region{};       // bound: kMaxRegions
+  state.nodal = NodalState{};
   for (AnchorState& anchor : state.anchor) anchor = AnchorState{};
 }
 

@@ -39,6 +39,7 @@ struct Rig {
       c.point = touches[i].point;
       c.position_w = touches[i].at;
       c.depth_m = touches[i].depth_m;
+      c.area_m2 = body.model.tool_point[static_cast<std::size_t>(touches[i].point)].area_m2;
       PointState& p = state->point[touches[i].point];
       p.closest_w = touches[i].at;
       p.triangle = 0;

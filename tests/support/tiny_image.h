@@ -145,7 +145,7 @@ inline ImageBytes tiny_image(bool nodal = false) {
     p.proxy_speed_max_m_per_s = 0.5;
     for (std::int32_t i = 0; i < 4; ++i) {
       const std::int32_t owner = i == 0 ? 1 : 0;
-      image.array<NodalVertex>(kNodalVertex)[i] = {1e-3, owner, i < 3 ? 1 : 0};
+      image.array<NodalVertex>(kNodalVertex)[i] = {1e-3, owner, i < 3 ? 1 : 0, 0, {}, 1};
     }
     for (int i = 0; i < 9; ++i) image.array<double>(kCompliance64)[13 * i] = 1e-4;
     for (int i = 0; i < 72; ++i) image.array<float>(kStrainGauge)[i] = 1e-3f;

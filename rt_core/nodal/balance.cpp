@@ -1,0 +1,228 @@
+#include "rt_core/nodal/balance.h"
+#include "rt_core/articulate/carrier.h"
+#include "rt_core/coupling/virtual_coupling.h"
+#include "rt_core/nodal/gather.h"
+
+namespace palpate {
+
+namespace {
+
+// Above this a problem counts as not solved: a hundredth of what an encoder sees.
+constexpr Real kTolerance_m = 1e-6;
+
+Real friction_coefficient(const Model& model) PALPATE_RT {
+  const bool coulomb = model.params.friction_law == static_cast<std::int32_t>(FrictionLaw::kCoulomb);
+  return coulomb ? model.params.friction_mu_dynamic : 0.0;
+}
+
+// The carrier of a piece last tick, for the tool's pose `tool_w` then.
+Pose carried_before(const Model& model, const State& state, const Pose& tool_w, std::int32_t piece) PALPATE_RT {
+  return is_articulated(model) ? tool_w * state.articulation.motion_previous_tool[piece] : tool_w;
+}
+
+class Balance {
+ public:
+  Balance(const Model& model, State& state, Scratch& scratch, const Twist& free, const Pose& before) PALPATE_RT
+      : model_(model),
+        state_(state),
+        scratch_(scratch),
+        p_(scratch.nodal),
+        free_(free),
+        before_(before),
+        mu_(friction_coefficient(model)) {}
+
+  void run() PALPATE_RT {
+    gather_influence(model_, p_);
+    for (std::int32_t i = 0; i < p_.count; ++i) set_frame(p_.node[i]);  // bound: kMaxContacts
+    gather_normal(model_, p_);
+    clear_motion();
+    if (mu_ > 0) add_remembered_friction();
+    solve_normal();
+    if (mu_ > 0) solve_with_friction();
+    measure();
+  }
+
+ private:
+  bool pivots() const PALPATE_RT {
+    return model_.params.nodal_solver == static_cast<std::int32_t>(NodalSolver::kPivoting);
+  }
+
+  // Any two tangents; with friction they are turned later.
+  static void set_frame(ContactNode& node) PALPATE_RT {
+    const Vec3 n = node.normal_w;
+    const Vec3 axis = abs_of(n.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+    node.tangent_w[0] = unit_or(cross(n, axis), {});
+    node.tangent_w[1] = cross(n, node.tangent_w[0]);
+    node.push = {};
+  }
+
+  void clear_motion() PALPATE_RT {
+    for (auto& row : p_.motion_m) {
+      for (std::int32_t i = 0; i < whole_lanes(p_.count, 8); ++i) row[i] = 0;  // bound: kMaxContacts
+    }
+    p_.force_N = p_.torque_Nm = {};
+  }
+
+  // How far the body's material at a node is from the tool's material it is compared with, without any push.
+  Vec3 free_offset(const ContactNode& node) const PALPATE_RT {
+    Vec3 anchor_tool;
+    if (node.memory >= 0 && state_.nodal.contact[node.memory].piece == node.piece) {
+      anchor_tool = state_.nodal.contact[node.memory].anchor_tool_m;
+    } else {
+      anchor_tool = inverse_transform(carried_before(model_, state_, before_, node.piece), node.rest_w + node.carry_w);
+    }
+    return node.rest_w - transform(carrier_w(model_, state_, node.piece), anchor_tool) - tool_motion(node);
+  }
+  Vec3 tool_motion(const ContactNode& node) const PALPATE_RT {
+    return free_.translation_m + cross(free_.rotation_rad, node.arm_w);
+  }
+
+  // Turns the tangents, and starts from last tick's friction, cut to what its normal push carries.
+  void add_remembered_friction() PALPATE_RT {
+    for (std::int32_t i = 0; i < p_.count; ++i) {  // bound: kMaxContacts
+      ContactNode& node = p_.node[i];
+      Real w[3][3];
+      own_compliance(model_, p_, i, w);
+      node.block = make_friction_block(w, mu_);
+      const Vec3 t0 = node.tangent_w[0], t1 = node.tangent_w[1];
+      node.tangent_w[0] = node.block.cosine * t0 + node.block.sine * t1;
+      node.tangent_w[1] = node.block.cosine * t1 - node.block.sine * t0;
+      const Vec3 offset = free_offset(node);
+      node.offset_m[1] = dot(offset, node.tangent_w[0]);
+      node.offset_m[2] = dot(offset, node.tangent_w[1]);
+      if (node.memory < 0) continue;
+      const Vec3 force = tangential_part(state_.nodal.contact[node.memory].force_w, node.normal_w);
+      node.push.tangent_N[0] = dot(force, node.tangent_w[0]);
+      node.push.tangent_N[1] = dot(force, node.tangent_w[1]);
+      if (squared_norm(force) > 0) add_push(p_, i, push_w(node));
+    }
+  }
+
+  Real normal_gap(std::int32_t i) const PALPATE_RT {
+    return p_.node[i].offset_m[0] + dot(relative_motion(p_, i), p_.node[i].normal_w);
+  }
+
+  void solve_normal() PALPATE_RT {
+    NormalProblem& normal = p_.normal;
+    for (std::int32_t i = 0; i < p_.count; ++i) {  // bound: kMaxContacts
+      ContactNode& node = p_.node[i];
+      node.offset_m[0] = node.gap_m - dot(node.carry_w + tool_motion(node), node.normal_w);
+      normal.free_gap_m[i] = normal_gap(i);
+      normal.push_N[i] =
+          node.memory >= 0 ? max_of(dot(state_.nodal.contact[node.memory].force_w, node.normal_w), 0.0) : 0.0;
+    }
+    if (pivots()) {
+      solve_pivoting(normal);
+    } else {
+      normal.pivots = 0;
+      solve_sweeping(normal, model_.params.nodal_sweeps);
+    }
+    for (std::int32_t i = 0; i < p_.count; ++i) {  // bound: kMaxContacts
+      ContactNode& node = p_.node[i];
+      node.push.normal_N = normal.push_N[i];
+      if (node.push.normal_N > 0) add_push(p_, i, node.push.normal_N * node.normal_w);
+    }
+  }
+
+  void set_push(std::int32_t i, const Push& push) PALPATE_RT {
+    ContactNode& node = p_.node[i];
+    const Vec3 before = push_w(node);
+    node.push = push;
+    const Vec3 step = push_w(node) - before;
+    if (squared_norm(step) > 0) add_push(p_, i, step);
+  }
+
+  void solve_node(std::int32_t i) PALPATE_RT {
+    const ContactNode& node = p_.node[i];
+    const Vec3 u = relative_motion(p_, i);
+    Real own[3];
+    own_displacement(node.block, node.push, own);
+    const Real free_m[3] = {node.offset_m[0] + dot(u, node.normal_w) - own[0],
+                            node.offset_m[1] + dot(u, node.tangent_w[0]) - own[1],
+                            node.offset_m[2] + dot(u, node.tangent_w[1]) - own[2]};
+    set_push(i, solve_friction(node.block, mu_, free_m));
+  }
+
+  void solve_with_friction() PALPATE_RT {
+    for (std::int32_t sweep = 0; sweep < model_.params.friction_sweeps; ++sweep) {  // bound: 20, from the image
+      for (std::int32_t i = 0; i < p_.count; ++i) solve_node(i);                    // bound: kMaxContacts
+    }
+    if (pivots()) close_normal_gaps();
+    for (std::int32_t i = 0; i < p_.count; ++i) keep_in_cone(i);  // bound: kMaxContacts
+  }
+
+  // The sweeps leave the normal gaps of the nodes visited first slightly wrong. With the friction they found, the
+  // normal problem is solved once more through the factor at hand, if the same nodes still push.
+  void close_normal_gaps() PALPATE_RT {
+    NormalProblem& normal = p_.normal;
+    if (normal.factored == 0) return;
+    std::int32_t pushing = 0;
+    for (std::int32_t i = 0; i < p_.count; ++i) pushing += p_.node[i].push.normal_N > 0 ? 1 : 0;
+    if (pushing != normal.factor.n) return;
+    alignas(32) double step[kContactStride] = {};
+    for (std::int32_t k = 0; k < normal.factor.n; ++k) {  // bound: kMaxContacts
+      const std::int32_t i = normal.active[k];
+      if (!(p_.node[i].push.normal_N > 0)) return;
+      step[k] = -normal_residual(i);
+    }
+    solve_lower(normal.factor, step);
+    solve_upper(normal.factor, step);
+    for (std::int32_t k = 0; k < normal.factor.n; ++k) {
+      if (!(p_.node[normal.active[k]].push.normal_N + step[k] >= 0)) return;
+    }
+    for (std::int32_t k = 0; k < normal.factor.n; ++k) {
+      const std::int32_t i = normal.active[k];
+      Push push = p_.node[i].push;
+      push.normal_N += step[k];
+      set_push(i, push);
+    }
+  }
+
+  // Normal gap with the softening that the regularisation stands for.
+  Real normal_residual(std::int32_t i) const PALPATE_RT {
+    const Real m = p_.normal.compliance[i][i], rho = model_.params.regularisation;
+    const bool held = model_.nodal_vertex[static_cast<std::size_t>(p_.node[i].vertex)].is_free == 0;
+    const Real wall = held ? 1.0 / model_.params.wall_N_per_m : 0.0;
+    return normal_gap(i) + ((m - wall) * rho / (1 + rho) + wall) * p_.node[i].push.normal_N;
+  }
+
+  // The last step changed normal pushes only: friction beyond their limit is cut.
+  void keep_in_cone(std::int32_t i) PALPATE_RT {
+    Push push = p_.node[i].push;
+    const Real size = square_root(push.tangent_N[0] * push.tangent_N[0] + push.tangent_N[1] * push.tangent_N[1]);
+    const Real limit = mu_ * push.normal_N;
+    if (!(size > limit)) return;
+    push.slips = true;
+    for (Real& t : push.tangent_N) t *= limit / size;
+    set_push(i, push);
+  }
+
+  void measure() PALPATE_RT {
+    scratch_.residual_m = p_.normal.residual_m;
+    if (mu_ > 0) {
+      scratch_.residual_m = 0;
+      for (std::int32_t i = 0; i < p_.count; ++i) {  // bound: kMaxContacts
+        const Real push_m = p_.node[i].push.normal_N * p_.normal.compliance[i][i], gap = normal_residual(i);
+        scratch_.residual_m = max_of(scratch_.residual_m, abs_of(push_m < gap ? push_m : gap));
+      }
+    }
+    if (!(scratch_.residual_m <= kTolerance_m)) scratch_.status |= Status::kNotConverged;
+  }
+
+  const Model& model_;
+  State& state_;
+  Scratch& scratch_;
+  ContactProblem& p_;
+  const Twist free_;
+  const Pose before_;
+  const Real mu_;
+};
+
+}  // namespace
+
+void solve_contacts(const Model& model, State& state, Scratch& scratch, const Twist& free,
+                    const Pose& tool_before_w) PALPATE_RT {
+  Balance(model, state, scratch, free, tool_before_w).run();
+}
+
+}  // namespace palpate

@@ -1,0 +1,63 @@
+// Working memory of the nodal back-end within one tick: the nodes near the tool, how they move under one another's
+// pushes, and the solution.
+#pragma once
+
+#include "rt_core/nodal/friction_block.h"
+#include "rt_core/nodal/pivoting.h"
+#include "rt_core/vec.h"
+
+namespace palpate {
+
+// A surface node that may touch the tool. "Carried" means displaced by the far field of the last tick's forces.
+struct ContactNode {
+  std::int32_t vertex;
+  std::int32_t piece;
+  std::int32_t memory;  // its entry in State::nodal, or -1: not a candidate last tick
+  std::int32_t region;  // slot of the last tick, or -1
+  Vec3 rest_w;
+  Vec3 carry_w;   // carried position minus rest
+  Vec3 normal_w;  // out of the tool, into the body
+  Vec3 tangent_w[2];
+  Vec3 arm_w;    // carried position minus the tool's origin
+  double gap_m;  // of the carried position
+  FrictionBlock block;
+  double offset_m[3];  // displacement relative to the tool without any push, in the node's frame
+  Push push;
+};
+
+struct ContactProblem {
+  std::int32_t count = 0;
+  ContactNode node[kMaxContacts];
+  NormalProblem normal;
+  // influence[j][a][b][i]: displacement component b of node i per newton along a on node j. Single precision: half of
+  // the sweeps' cost, and what the image usually holds.
+  alignas(32) float influence[kMaxContacts][3][3][kContactStride];
+  alignas(32) float motion_m[3][kContactStride];  // displacement of every node by the pushes so far
+  Vec3 force_N, torque_Nm;                        // sum of the pushes on the body, about the tool's origin
+  double per_N = 0, per_Nm = 0;                   // compliance of the virtual coupling; 0: the tool is held
+  // Which entry of State::nodal, and which node, a vertex is; -1: none. Valid up to n_vertex.
+  std::int8_t memory_of[kMaxNodalVertices];
+  std::int8_t node_of[kMaxNodalVertices];
+};
+static_assert(kMaxContacts <= 127, "nodes are numbered in 8 bits");
+
+// Force of a node's push on the body.
+inline Vec3 push_w(const ContactNode& node) PALPATE_RT {
+  return node.push.normal_N * node.normal_w + node.push.tangent_N[0] * node.tangent_w[0] +
+         node.push.tangent_N[1] * node.tangent_w[1];
+}
+// Displacement of node i of the body by all pushes so far.
+inline Vec3 motion_of(const ContactProblem& p, std::int32_t i) PALPATE_RT {
+  return {static_cast<Real>(p.motion_m[0][i]), static_cast<Real>(p.motion_m[1][i]),
+          static_cast<Real>(p.motion_m[2][i])};
+}
+// Displacement of node i relative to the tool by all pushes so far, world axes: the body's and, with a coupling that
+// yields, the tool's.
+inline Vec3 relative_motion(const ContactProblem& p, std::int32_t i) PALPATE_RT {
+  return motion_of(p, i) + p.per_N * p.force_N + p.per_Nm * cross(p.torque_Nm, p.node[i].arm_w);
+}
+
+// Adds a push (N, world axes, on the body) at node j: its displacements and the sum of forces. Bound: kMaxContacts.
+void add_push(ContactProblem& problem, std::int32_t j, Vec3 force_N) PALPATE_RT;
+
+}  // namespace palpate

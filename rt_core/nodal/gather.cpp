@@ -1,0 +1,156 @@
+#include "rt_core/nodal/gather.h"
+
+#if defined(__AVX2__)
+#include <immintrin.h>
+#endif
+
+namespace palpate {
+
+namespace {
+
+// to[i] = row[index[i]] for n entries, whole lanes at a time (the rest of the index is 0).
+void pick(const float* row, const std::int32_t* index, std::int32_t n, float* to) PALPATE_RT {
+#if defined(__AVX2__)
+  for (std::int32_t i = 0; i < n; i += 8) {  // bound: kMaxContacts / 8
+    const __m256i at = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(index + i));
+    _mm256_storeu_ps(to + i, _mm256_i32gather_ps(row, at, 4));
+  }
+#else
+  for (std::int32_t i = 0; i < n; ++i) to[i] = row[index[i]];  // bound: kMaxContacts
+#endif
+}
+void pick(const double* row, const std::int32_t* index, std::int32_t n, float* to) PALPATE_RT {
+  for (std::int32_t i = 0; i < n; ++i) to[i] = static_cast<float>(row[index[i]]);  // bound: kMaxContacts
+}
+
+template <class Number>
+void gather_rows(std::span<const Number> compliance, std::size_t row_length, ContactProblem& p) PALPATE_RT {
+  alignas(32) std::int32_t index[kContactStride];
+  const std::int32_t lanes = whole_lanes(p.count, 8);
+  for (std::int32_t i = 0; i < lanes; ++i) index[i] = i < p.count ? 3 * p.node[i].vertex : 0;
+  for (std::int32_t j = 0; j < p.count; ++j) {  // bound: kMaxContacts
+    for (std::int32_t a = 0; a < 3; ++a) {
+      const Number* row = compliance.data() + static_cast<std::size_t>(index[j] + a) * row_length;
+      for (std::int32_t b = 0; b < 3; ++b) pick(row + b, index, lanes, p.influence[j][a][b]);
+    }
+  }
+}
+
+// Normals and their turns as rows, for four nodes at a time.
+struct Directions {
+  alignas(32) double normal[3][kContactStride];
+  alignas(32) double turn[3][kContactStride];
+};
+
+void list_directions(const ContactProblem& p, Directions& d) PALPATE_RT {
+  const std::int32_t lanes = whole_lanes(p.count, 4);
+  for (std::int32_t i = 0; i < lanes; ++i) {  // bound: kMaxContacts
+    const Vec3 n = i < p.count ? p.node[i].normal_w : Vec3{};
+    const Vec3 m = i < p.count ? cross(p.node[i].arm_w, n) : Vec3{};
+    d.normal[0][i] = n.x;
+    d.normal[1][i] = n.y;
+    d.normal[2][i] = n.z;
+    d.turn[0][i] = m.x;
+    d.turn[1][i] = m.y;
+    d.turn[2][i] = m.z;
+  }
+}
+
+// Row j of the normal compliance, from the lane of its diagonal on.
+void normal_row(ContactProblem& p, const Directions& d, std::int32_t j) PALPATE_RT {
+  const Vec3 n = p.node[j].normal_w, turn = p.per_Nm * cross(p.node[j].arm_w, n), shift = p.per_N * n;
+  const Double4 nx = splat4(n.x), ny = splat4(n.y), nz = splat4(n.z);
+  const Double4 own[3] = {splat4(shift.x), splat4(shift.y), splat4(shift.z)};
+  const Double4 tx = splat4(turn.x), ty = splat4(turn.y), tz = splat4(turn.z);
+  const auto& from = p.influence[j];
+  for (std::int32_t i = j / 4 * 4; i < p.count; i += 4) {  // bound: kMaxContacts / 4
+    Double4 row = load4(d.turn[0] + i) * tx + load4(d.turn[1] + i) * ty + load4(d.turn[2] + i) * tz;
+    for (int b = 0; b < 3; ++b) {
+      const Double4 u =
+          widen4(from[0][b] + i) * nx + widen4(from[1][b] + i) * ny + widen4(from[2][b] + i) * nz + own[b];
+      row += u * load4(d.normal[b] + i);
+    }
+    store(p.normal.compliance[j] + i, row);
+  }
+}
+
+// The same from double-precision tables, without their rounding to single.
+void normal_row_exact(const Model& model, ContactProblem& p, std::int32_t j) PALPATE_RT {
+  const Vec3 n = p.node[j].normal_w, turn = p.per_Nm * cross(p.node[j].arm_w, n);
+  const auto length = static_cast<std::size_t>(3 * model.sizes.n_vertex);
+  const double* row = model.compliance_f64.data() + static_cast<std::size_t>(3 * p.node[j].vertex) * length;
+  for (std::int32_t i = j; i < p.count; ++i) {  // bound: kMaxContacts
+    const auto at = static_cast<std::size_t>(3 * p.node[i].vertex);
+    const Vec3 x{row[at], row[at + 1], row[at + 2]};
+    const Vec3 y{row[length + at], row[length + at + 1], row[length + at + 2]};
+    const Vec3 z{row[2 * length + at], row[2 * length + at + 1], row[2 * length + at + 2]};
+    const Vec3 u = n.x * x + n.y * y + n.z * z + p.per_N * n;
+    p.normal.compliance[j][i] = dot(u, p.node[i].normal_w) + dot(turn, cross(p.node[i].arm_w, p.node[i].normal_w));
+  }
+}
+
+bool is_held(const Model& model, const ContactNode& node) PALPATE_RT {
+  return model.nodal_vertex[static_cast<std::size_t>(node.vertex)].is_free == 0;
+}
+
+}  // namespace
+
+void add_push(ContactProblem& p, std::int32_t j, Vec3 force) PALPATE_RT {
+  const Float8 x = splat8(static_cast<float>(force.x)), y = splat8(static_cast<float>(force.y)),
+               z = splat8(static_cast<float>(force.z));
+  const auto& from = p.influence[j];
+  for (int b = 0; b < 3; ++b) {                      // bound: 3
+    for (std::int32_t i = 0; i < p.count; i += 8) {  // bound: kMaxContacts / 8
+      store(p.motion_m[b] + i, load8(p.motion_m[b] + i) +
+                                   (load8(from[0][b] + i) * x + load8(from[1][b] + i) * y + load8(from[2][b] + i) * z));
+    }
+  }
+  p.force_N += force;
+  p.torque_Nm += cross(p.node[j].arm_w, force);
+}
+
+void gather_influence(const Model& model, ContactProblem& p) PALPATE_RT {
+  const auto length = static_cast<std::size_t>(3 * model.sizes.n_vertex);
+  if (model.compliance_f64.empty()) {
+    gather_rows(model.compliance_f32, length, p);
+  } else {
+    gather_rows(model.compliance_f64, length, p);
+  }
+}
+
+void gather_normal(const Model& model, ContactProblem& p) PALPATE_RT {
+  p.normal.n = p.count;
+  Directions directions;
+  list_directions(p, directions);
+  for (std::int32_t j = 0; j < p.count; ++j) {  // bound: kMaxContacts
+    if (model.compliance_f64.empty()) {
+      normal_row(p, directions, j);
+    } else {
+      normal_row_exact(model, p, j);
+    }
+    double& diagonal = p.normal.compliance[j][j];
+    diagonal *= 1.0 + model.params.regularisation;
+    if (is_held(model, p.node[j])) diagonal += 1.0 / model.params.wall_N_per_m;
+    for (std::int32_t i = 0; i < j; ++i) p.normal.compliance[j][i] = p.normal.compliance[i][j];  // bound: kMaxContacts
+  }
+}
+
+void own_compliance(const Model& model, const ContactProblem& p, std::int32_t i, Real (&w)[3][3]) PALPATE_RT {
+  const ContactNode& node = p.node[i];
+  const Vec3 frame[3] = {node.normal_w, node.tangent_w[0], node.tangent_w[1]};
+  Vec3 column[3];
+  for (int a = 0; a < 3; ++a) {  // bound: 3
+    const auto& c = p.influence[i][a];
+    column[a] = {static_cast<Real>(c[0][i]), static_cast<Real>(c[1][i]), static_cast<Real>(c[2][i])};
+  }
+  for (int a = 0; a < 3; ++a) {  // bound: 3 x 3
+    const Vec3 f = frame[a];
+    const Vec3 u = f.x * column[0] + f.y * column[1] + f.z * column[2] + p.per_N * f +
+                   p.per_Nm * cross(cross(node.arm_w, f), node.arm_w);
+    for (int b = 0; b < 3; ++b) w[a][b] = dot(u, frame[b]);
+    w[a][a] *= 1.0 + model.params.regularisation;
+    if (is_held(model, node)) w[a][a] += 1.0 / model.params.wall_N_per_m;
+  }
+}
+
+}  // namespace palpate
