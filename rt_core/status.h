@@ -30,7 +30,9 @@ namespace palpate {
     "add anchors (body.min_anchors)")                                                                                \
   X(kRamping, 11, "force is ramping in after start or out after a fault", "none: wait")                              \
   X(kNotConverged, 12, "a fixed-iteration solve ended above its tolerance; the residual is in telemetry",            \
-    "report this scene")
+    "report this scene")                                                                                             \
+  X(kFootHeld, 13, "a tip is deeper than the surface's curvature allows; its last place of contact is kept",         \
+    "press less deeply, or use a larger body")
 
 // X(name, bit, cause, remedy)
 #define PALPATE_FAULT_BITS(X)                                                                                       \

@@ -1,0 +1,45 @@
+#include "rt_core/force/region_friction.h"
+
+namespace palpate {
+
+namespace {
+
+// Motion since the last tick of the tool material that is at `point` now: exact for a rigid tool, rotation included.
+Vec3 material_motion(const State& state, Vec3 point) PALPATE_RT {
+  return point - transform(state.tool_previous_w, inverse_transform(state.tool_w, point));
+}
+
+void add_tangential_stiffness(ContactStiffness& stiffness, const FrictionForce& friction, Vec3 normal,
+                              Vec3 arm) PALPATE_RT {
+  const Vec3 axis = abs_of(normal.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+  const Vec3 any = unit_or(tangential_part(axis, normal), {});
+  const Vec3 along = unit_or(friction.direction_w, any), across = cross(normal, along);
+  add_spring(stiffness, friction.along_N_per_m, along, cross(arm, along));
+  add_spring(stiffness, friction.across_N_per_m, across, cross(arm, across));
+}
+
+}  // namespace
+
+void slide(const State& state, const FrictionParameters& parameters, FrictionLoad& load, Region& region,
+           ContactStiffness& stiffness) PALPATE_RT {
+  load.step_w = material_motion(state, region.centre_w);
+  load.normal_w = region.normal_w;
+  load.force_N = region.normal_force_N;
+  load.depth_m = region.depth_equivalent_m;
+  FrictionMemory memory{region.stretch_w, region.tangential_k_N_per_m, region.friction};
+  const FrictionForce friction = friction_step(parameters, load, memory);
+  region.stretch_w = memory.stretch_w;
+  region.tangential_k_N_per_m = memory.stiffness_N_per_m;
+  region.friction = memory.mode;
+  const Vec3 arm = region.centre_w - state.tool_w.position_m;
+  const Vec3 force = friction.force_w + friction.normal_gain_N * region.normal_w;
+  region.normal_force_N += friction.normal_gain_N;
+  region.friction_force_w = friction.force_w;
+  region.wrench_w.force_N += force;
+  region.wrench_w.torque_Nm += cross(arm, force);
+  region.energy_J += friction.energy_J;
+  region.origin_w = region.centre_w - region.stretch_w;
+  add_tangential_stiffness(stiffness, friction, region.normal_w, arm);
+}
+
+}  // namespace palpate
