@@ -144,6 +144,10 @@ void check_tips(const SceneDesc& scene) {
 }
 
 void check_friction(const SceneDesc& scene) {
+  if (scene.friction.law == FrictionLaw::kCoulomb)
+    fail(scene, "friction.law",
+         "\"coulomb\" is friction in contact space of a finite-element body; allowed here none, return_map, paper, "
+         "mindlin, presliding, presliding_paper");
   const bool presliding =
       scene.friction.law == FrictionLaw::kPresliding || scene.friction.law == FrictionLaw::kPreslidingPaper;
   if (presliding)

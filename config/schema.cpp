@@ -178,7 +178,8 @@ const KeySpec kTable[] = {
     boolean<&TableDesc::smooth>("smooth", "pool rows whose force falls instead of refusing them"),
 };
 const KeySpec kFriction[] = {
-    choice<&FrictionDesc::law>("law", "none|return_map|paper|mindlin|presliding|presliding_paper", "friction law"),
+    choice<&FrictionDesc::law>("law", "none|return_map|paper|mindlin|coulomb|presliding|presliding_paper",
+                               "friction law"),
     choice<&FrictionDesc::tangential>("tangential", "separable|radial",
                                       "sticking force from each depth component by itself, or from the whole depth"),
     number_or_auto<&FrictionDesc::mu_ref>("mu_ref", 0, 100, 1,

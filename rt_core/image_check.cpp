@@ -1,5 +1,7 @@
 #include "rt_core/image_check.h"
 
+#include "rt_core/response/response_check.h"
+
 namespace palpate {
 
 namespace {
@@ -153,70 +155,54 @@ ImageResult check_tool(const Model& model) noexcept {
   return {};
 }
 
-// Factor tables and the range of each tip law, so that the tick may index and divide.
-ImageResult check_tip_laws(const Model& model) noexcept {
-  for (std::size_t i = 0; i < model.tip_law.size(); ++i) {
-    const TipLaw& law = model.tip_law[i];
-    if (law.half_power < 2 || law.half_power > 4) return broken("tip_law.half_power", i);
-    const bool has_factor = law.first_factor >= 0;
-    if (law.first_factor < -1 || (has_factor && int64_t{law.first_factor} + kFactorKnots > model.sizes.n_factor))
-      return broken("tip_law.first_factor", i);
-    const double sizes[] = {law.coefficient, law.depth_max_m, law.force_max_N};
-    for (const double size : sizes)
-      if (!(size > 0 && size < kHuge)) return not_finite("tip_law", i);
-    if (!is_finite(law.c0_m_per_N) || !is_finite(law.c1_m_per_N2)) return not_finite("tip_law.c0_m_per_N", i);
-  }
-  for (std::size_t i = 0; i < model.factor.size(); ++i) {
-    const FactorKnot& knot = model.factor[i];
-    if (!is_finite(knot.value) || !is_finite(knot.slope) || !is_finite(knot.energy_J)) return not_finite("factor", i);
-  }
-  for (std::size_t i = 0; i < model.tip_pair.size(); ++i) {
-    const TipPair& pair = model.tip_pair[i];
-    if (!in_range(pair.piece_a, model.piece.size()) || !in_range(pair.piece_b, model.piece.size()))
-      return broken("tip_pair.piece", i);
-    if (!is_finite(pair.c_m_per_N) || !is_finite(pair.h_ab_m_per_N2) || !is_finite(pair.h_ba_m_per_N2))
-      return not_finite("tip_pair", i);
+template <class Number>
+ImageResult check_numbers(std::span<const Number> values, const char* field) noexcept {
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (!is_finite(static_cast<Real>(values[i]))) return not_finite(field, i);
+  return {};
+}
+
+ImageResult check_nodal_vertices(const Model& model) noexcept {
+  for (std::size_t i = 0; i < model.nodal_vertex.size(); ++i) {
+    const NodalVertex& v = model.nodal_vertex[i];
+    if (!(v.area_m2 > 0 && v.area_m2 < kHuge)) return not_finite("nodal_vertex.area_m2", i);
+    if (v.is_free != 0 && v.is_free != 1) return broken("nodal_vertex.is_free", i);
+    if (!in_range(v.owner, model.triangle.size())) return broken("nodal_vertex.owner", i);
+    const auto& corner = model.triangle[static_cast<std::size_t>(v.owner)].vertex;
+    const auto vertex = static_cast<int64_t>(i);
+    if (corner[0] != vertex && corner[1] != vertex && corner[2] != vertex) return broken("nodal_vertex.owner", i);
   }
   return {};
 }
 
-// Curves: knots strictly ascending from zero, whole rows, forces that start at zero and never fall.
-ImageResult check_tables(const Model& model) noexcept {
-  const std::size_t knots = model.knot.size();
-  if (knots < 2 || model.knot[0] != 0) return broken("knot", 0);
-  for (std::size_t i = 1; i < knots; ++i)
-    if (!(model.knot[i] > model.knot[i - 1] && model.knot[i] < kHuge)) return not_finite("knot", i);
-  if (model.response.empty() || model.response.size() % knots != 0) return broken("n_response", 0);
-  const bool root = static_cast<ResponseLaw>(model.params.response_law) == ResponseLaw::kRootTable;
-  for (std::size_t i = 0; i < model.response.size(); ++i) {
-    const ResponseKnot& r = model.response[i];
-    const bool first = i % knots == 0;
-    if (!(r.force_N >= 0 && r.force_N < kHuge && r.slope >= 0 && r.slope < kHuge && is_finite(r.energy_J)))
-      return not_finite("response", i);
-    // In the root of the depth a slope at zero would be an infinite stiffness.
-    if (first ? r.force_N != 0 || (root && r.slope != 0) : r.force_N < model.response[i - 1].force_N)
-      return broken("response", i);
+// A response scene holds none of the nodal arrays; a nodal one all of them, in one precision.
+ImageResult check_nodal(const Model& model) noexcept {
+  const ModelSizes& n = model.sizes;
+  if (static_cast<Backend>(model.params.backend) != Backend::kNodal) {
+    if (n.n_nodal != 0) return broken("n_nodal", 0);
+    if (n.n_compliance_f32 != 0) return broken("n_compliance_f32", 0);
+    if (n.n_compliance_f64 != 0) return broken("n_compliance_f64", 0);
+    return n.n_strain_gauge == 0 ? ImageResult{} : broken("n_strain_gauge", 0);
   }
-  if (model.vertex_response.size() != model.vertex_m.size()) return broken("vertex_response", 0);
-  for (std::size_t i = 0; i < model.vertex_response.size(); ++i)
-    if (!in_range(model.vertex_response[i], model.response.size() / knots)) return broken("vertex_response", i);
-  return {};
-}
-
-ImageResult check_response(const Model& model) noexcept {
-  for (std::size_t i = 0; i < model.corner_normal.size(); ++i)
-    for (const Vec3& normal : model.corner_normal[i].normal)
-      if (!is_unit(normal)) return not_finite("corner_normal", i);
-  const auto law = static_cast<ResponseLaw>(model.params.response_law);
-  if (!model.corner_normal.empty() && model.corner_normal.size() != model.triangle.size()) return broken("n_corner", 0);
-  if (law == ResponseLaw::kPoints) return {};
-  if (model.corner_normal.empty()) return broken("n_corner", 0);
-  // One tip per piece: the stage has room for kMaxPieces.
-  for (std::size_t i = 0; i < model.piece.size(); ++i)
-    if (model.piece[i].point_count > 1) return broken("piece.point_count", i);
-  if (law != ResponseLaw::kTip) return check_tables(model);
-  if (model.tip_law.size() != model.piece.size()) return broken("n_tip_law", 0);
-  return check_tip_laws(model);
+  if (n.n_nodal != n.n_vertex) return broken("n_nodal", 0);
+  if (n.n_vertex > kMaxNodalVertices) return broken("n_vertex", 0);
+  const int64_t entries = 9 * n.n_vertex * n.n_vertex;
+  if (n.n_compliance_f32 != 0 && n.n_compliance_f64 != 0) return broken("n_compliance_f64", 0);
+  if (n.n_compliance_f32 + n.n_compliance_f64 != entries) return broken("n_compliance_f32", 0);
+  if (n.n_strain_gauge % (18 * n.n_vertex) != 0) return broken("n_strain_gauge", 0);
+  if (n.n_strain_gauge > 18 * n.n_vertex * kMaxStrainGauges) return broken("n_strain_gauge", 0);
+  const double positive[] = {model.params.contact_margin_m, model.params.wall_N_per_m,
+                             model.params.proxy_speed_max_m_per_s};
+  for (const double value : positive)
+    if (!(value > 0)) return broken("nodal parameters", 0);
+  if (const ImageResult result = check_nodal_vertices(model); result.error != ImageError::kNone) return result;
+  if (const ImageResult result = check_numbers(model.compliance_f32, "compliance_f32");
+      result.error != ImageError::kNone)
+    return result;
+  if (const ImageResult result = check_numbers(model.compliance_f64, "compliance_f64");
+      result.error != ImageError::kNone)
+    return result;
+  return check_numbers(model.strain_gauge, "strain_gauge");
 }
 
 }  // namespace
@@ -226,6 +212,7 @@ ImageResult check_arrays(const Model& model) noexcept {
   if (const ImageResult result = check_hierarchy(model); result.error != ImageError::kNone) return result;
   if (const ImageResult result = check_skeleton(model); result.error != ImageError::kNone) return result;
   if (const ImageResult result = check_tool(model); result.error != ImageError::kNone) return result;
+  if (const ImageResult result = check_nodal(model); result.error != ImageError::kNone) return result;
   return check_response(model);
 }
 

@@ -43,6 +43,8 @@ void extend(Range& range, const PatchWeight& p) {
 }
 void extend(Range& range, const ToolPiece& p) { range.add(p.pose_tool.position_m); }
 void extend(Range& range, const ToolPoint& p) { range.add(p.position_tool_m); }
+void extend(Range& range, const NodalVertex& v) { range.add(v.area_m2); }
+void extend(Range& range, float x) { range.add(static_cast<double>(x)); }
 
 template <typename T>
 std::string array_row(const char* name, std::span<const T> values, const char* frame, const char* meaning) {

@@ -75,7 +75,7 @@ TableLaw table_law(const Model& model, std::int32_t triangle, const Real (&weigh
   TableLaw law;
   law.knot = model.knot.data();
   law.knots = static_cast<std::int32_t>(model.knot.size());
-  law.root = static_cast<ResponseLaw>(model.params.response_law) == ResponseLaw::kRootTable;
+  law.root = model.params.response_root == 1;
   for (int k = 0; k < 3; ++k) {  // bound: 3
     const std::int32_t vertex = model.triangle[static_cast<std::size_t>(triangle)].vertex[k];
     const std::int32_t row = model.vertex_response[static_cast<std::size_t>(vertex)];
