@@ -185,8 +185,9 @@ struct PathDesc {
 // Where the scene came from, so that later checks can still name file and line.
 struct SceneSource {
   std::string file = "scene";
-  std::string directory;            // of the file, with a trailing slash; mesh paths are relative to it
-  std::map<std::string, int> line;  // "contact.max_depth_mm" -> line; only keys present in the file
+  std::string directory;                       // of the file, with a trailing slash; mesh paths are relative to it
+  std::map<std::string, std::string> overlay;  // file of the keys that an overlay gave
+  std::map<std::string, int> line;             // "contact.max_depth_mm" -> line; only keys present in the file
   bool has(const std::string& key) const { return line.count(key) != 0; }
   // "file:line: key" for an error text; without a line when the key is absent.
   std::string where(const std::string& key) const;
@@ -216,8 +217,15 @@ struct SceneDesc {
   SceneSource source;
 };
 
+// What is laid over a scene, in order: files that hold some of its tables (another tool, another material), then single
+// keys, "body.material.youngs_modulus_Pa=1e6". Tables are merged; values and lists, [[tool.piece]] among them, replace.
+struct SceneOverlays {
+  std::vector<std::string> file;
+  std::vector<std::string> setting;
+};
+
 // Reads and checks a scene file. Throws ConfigError: "FILE:LINE: KEY: what is wrong; what is allowed; what to do".
-SceneDesc load_scene(const std::string& path);
+SceneDesc load_scene(const std::string& path, const SceneOverlays& overlays = {});
 // The same from text; `file` names it in errors.
 SceneDesc parse_scene(const std::string& text, const std::string& file);
 

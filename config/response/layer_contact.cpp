@@ -46,7 +46,7 @@ const Quadrature& rule() {
 }
 
 // 1 - L(w), from exp(-2w) so that nothing overflows or cancels at large w.
-double lost(const Layer& layer, double w) {
+double lost(const ElasticLayer& layer, double w) {
   const double x = math::exp(-2 * w), x2 = x * x;
   if (layer.base == LayerBase::kSlip) {
     // 2 sinh^2 w = cosh 2w - 1.
@@ -82,7 +82,7 @@ double first_radius(const Indenter& indenter, double depth) {
 
 }  // namespace
 
-LayerContact::LayerContact(const Layer& layer, double largest_radius_m) : layer_(layer) {
+LayerContact::LayerContact(const ElasticLayer& layer, double largest_radius_m) : layer_(layer) {
   if (!(layer.thickness_m > 0)) return;
   const double reach = 2.02 * largest_radius_m / layer.thickness_m + 0.05;
   const auto count = static_cast<std::size_t>(reach * kStepsPerUnit) + 2;
@@ -155,9 +155,9 @@ LayerState LayerContact::at_depth(const Indenter& indenter, double depth_m) cons
   LayerState s0 = at_radius(indenter, a0), s1 = at_radius(indenter, a1);
   const double widest = indenter.profile == TipProfile::kCone ? kHuge : 0.9999999 * indenter.radius_m;
   for (int i = 0; i < 60 && std::abs(s1.depth_m - depth_m) > 1e-14 * depth_m; ++i) {
-    const double power = std::log(s1.depth_m / s0.depth_m) / std::log(a1 / a0);
+    const double power = math::log(s1.depth_m / s0.depth_m) / math::log(a1 / a0);
     if (!(std::abs(power) > 1e-6)) break;
-    const double next = std::min(a1 * std::exp(std::clamp(std::log(depth_m / s1.depth_m) / power, -0.5, 0.5)),
+    const double next = std::min(a1 * math::exp(std::clamp(math::log(depth_m / s1.depth_m) / power, -0.5, 0.5)),
                                  indenter.profile == TipProfile::kParabola ? kHuge : 0.5 * (widest + a1));
     a0 = a1;
     s0 = s1;

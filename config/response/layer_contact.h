@@ -10,7 +10,7 @@ namespace palpate {
 enum class LayerBase : std::int32_t { kBonded = 0, kSlip = 1 };
 
 // thickness_m <= 0: a half space.
-struct Layer {
+struct ElasticLayer {
   double thickness_m = 0;
   double poisson_ratio = 0.5;
   LayerBase base = LayerBase::kBonded;
@@ -40,7 +40,7 @@ struct LayerState {
 class LayerContact {
  public:
   // For contact radii up to largest_radius_m.
-  LayerContact(const Layer& layer, double largest_radius_m);
+  LayerContact(const ElasticLayer& layer, double largest_radius_m);
   // Contact of radius a > 0; for a flat punch (a = its radius) per metre of depth: depth_m = 1.
   LayerState at_radius(const Indenter& indenter, double radius_m) const;
   // Contact at a depth > 0 of a curved indenter. Depths beyond largest_radius_m's are not allowed.
@@ -50,7 +50,7 @@ class LayerContact {
 
  private:
   double kernel(double distance_over_thickness) const;
-  Layer layer_;
+  ElasticLayer layer_;
   double step_ = 0;
   std::vector<double> value_, slope_;  // of the kernel, over distance / thickness
 };

@@ -14,7 +14,7 @@ namespace palpate {
 struct TipDesc {
   Indenter indenter;
   double modulus_Pa = 0;   // E* = E/(1 - nu^2)
-  Layer layer;             // thickness 0: half space
+  ElasticLayer layer;      // thickness 0: half space
   double depth_max_m = 0;  // of the local indentation
   double c0_m_per_N = 0, c1_m_per_N2 = 0;
 };
