@@ -8,6 +8,8 @@ namespace {
 
 // Shorter steps have no direction: a femtometre.
 constexpr Real kNoStep_m = 1e-15;
+// A stretch longer than the slip distance by rounding alone has not slid.
+constexpr Real kRounding = 1.0 + 1e-12;
 
 // Stretch after sliding by `distance` along unit vector e, from a point of the circle on its forward half. With the
 // half-angle's tangent no angle is needed: cos = (1 - t^2)/(1 + t^2), sin = 2 t/(1 + t^2).
@@ -29,7 +31,7 @@ Presliding preslide(Vec3 stretch, Vec3 step, Real slip_m) PALPATE_RT {
   const Real before = norm(stretch);
   if (before > slip_m) {
     result.stretch_w = (slip_m / before) * stretch;
-    result.sliding = true;
+    result.sliding = before > slip_m * kRounding;
   }
   const Real length = norm(step);
   if (!(length > kNoStep_m)) return result;

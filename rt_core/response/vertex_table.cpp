@@ -43,6 +43,7 @@ LawPoint curve_at(const TableLaw& law, const ResponseKnot* curve, const Place& p
   const Cubic c = cubic_of(curve[place.interval], curve[place.interval + 1], place.h);
   const Real u = place.u;
   LawPoint point{c.c0 + u * (c.c1 + u * (c.c2 + u * c.c3)), (c.c1 + u * (2.0 * c.c2 + 3.0 * u * c.c3)) / place.h};
+  if (u >= 1.0) point.force_N = curve[place.interval + 1].force_N;  // the last sample to the bit, as all others
   // dF/de = (dF/dx) / (2 x); at x = 0 the bakers give curves of zero slope, whose limit is c2 / h^2.
   if (law.root) {
     point.tangent_N_per_m = place.x > 1e-9 ? 0.5 * point.tangent_N_per_m / place.x : c.c2 / (place.h * place.h);

@@ -54,7 +54,9 @@ TEST(Presliding, FollowsTheMotionAndNeverLeavesTheCircle) {
     const Presliding moved = preslide(stretch, step, 0.2);
     ASSERT_LE(norm(moved.stretch_w), 0.2 * (1 + 1e-12));
     // Sliding pulls the stretch towards the motion.
-    if (moved.sliding) ASSERT_GE(dot(moved.stretch_w, step), -1e-12 * length);
+    if (moved.sliding) {
+      ASSERT_GE(dot(moved.stretch_w, step), -1e-12 * length);
+    }
     stretch = moved.stretch_w;
   }
   // Straight against the stretch: through the middle, no division by the vanishing side.

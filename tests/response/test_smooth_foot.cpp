@@ -189,7 +189,7 @@ TEST(SmoothFoot, StartingTriangleHardlyMatters) {
     EXPECT_LT(norm(foot.foot_w - reference.foot_w), 1e-12);
     EXPECT_NEAR(foot.height_m, reference.height_m, 1e-13);
   }
-  EXPECT_GT(found, 100);  // all within kFootWalk edges
+  EXPECT_GT(found, 50);  // those within kFootWalk edges; the collision stage starts within one
 }
 
 }  // namespace
