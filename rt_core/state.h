@@ -71,6 +71,22 @@ struct SafetyState {
   Wrench last_device_w;       // last output
 };
 
+// Joints of an articulated tool. Written by articulate; rigid tools leave it untouched.
+struct ArticulationState {
+  double closing[kMaxFingers] = {};
+  double joint[kMaxJoints] = {};  // rad or m
+  std::int32_t started = 0;       // 0: joints take their open positions at the next tick
+  std::int32_t moved = 0;         // 1: some joint moved this tick
+  // Motion of each piece from its place with all joints at zero, tool frame: at this and at the last tick.
+  Pose motion_tool[kMaxPieces];
+  Pose motion_previous_tool[kMaxPieces];
+  Vec3 axis_tool[kMaxJoints];      // of each joint where it is now
+  Vec3 origin_tool_m[kMaxJoints];  // a point on it
+  // Normal contact load of each piece, of the last tick. Written by compute_force.
+  Vec3 piece_force_tool_N[kMaxPieces];
+  Vec3 piece_torque_tool_Nm[kMaxPieces];  // about the tool's origin
+};
+
 // Largest number of each pool's entries used since reset.
 struct HighWater {
   std::int32_t contacts = 0, regions = 0, traversal_stack = 0, gjk_support_calls = 0;
@@ -91,6 +107,7 @@ struct State {
   Vec3 anchor_by_region[kMaxRegions][kMaxAnchors];  // displacement of each anchor by each region
   SafetyState safety;
   HighWater high_water;
+  ArticulationState articulation;
 };
 
 // One tool point in contact. Written by collide, completed by regions and force.
@@ -105,7 +122,7 @@ struct Contact {
 };
 
 // Where a tool point's centre stands over the smooth surface (rt_core/response/smooth_foot.h). Written by collide when
-// the model has corner normals; indexed by tool point.
+// the model has corner normals; indexed by piece: such tools have one point per piece at most.
 struct SurfaceFoot {
   Vec3 centre_w;  // of the tool point
   std::int32_t triangle = -1;
@@ -117,7 +134,7 @@ struct Scratch {
   std::uint32_t status = 0;
   std::int32_t contact_count = 0;
   Contact contact[kMaxContacts];
-  SurfaceFoot foot[kMaxToolPoints];
+  SurfaceFoot foot[kMaxPieces];
   Wrench contact_wrench_w;  // sum over regions, on the tool, about the tool's origin
   double energy_J = 0;
   double residual_m = 0;

@@ -2,6 +2,8 @@
 // state.region, contact.force_N and weight, state.contact_stiffness, scratch.contact_wrench_w, energy_J, residual_m.
 // Instructions per tick with the coupled solve (callgrind, gcc 12 -O2, 2026-11-21): 12 k for one region of 16 contacts,
 // 150 k for 16 regions of 64 contacts, of which 90 k are the solve.
+#include "rt_core/articulate/articulate.h"
+#include "rt_core/articulate/carrier.h"
 #include "rt_core/deform/transfer.h"
 #include "rt_core/force/contact_stiffness.h"
 #include "rt_core/force/coupled_regions.h"
@@ -23,7 +25,9 @@ Vec3 usual_normal(const Region& region, const RegionContacts& contacts) PALPATE_
 // Where a region leans on the body, once, at its first touch: from the depths of the rest surface. Fixed to the tool
 // from then on, so that the compliance between two regions of a rigid tool is a constant of their common life. Were it
 // to follow the centres of pressure, its change under load, F.dC F / 2, would be work that no force renders: a compass
-// sliding on a heart gave back 4e-6 J in a loop (measured 2026-11-21).
+// sliding on a heart gave back 4e-6 J in a loop (measured 2026-11-21). Fingers move against one another, so for an
+// articulated tool it is the body that the place is fixed to: constant again, at the price of a far field that stays
+// behind when a finger slides.
 void set_lean(const Model& model, const State& state, Region& region, const RegionContacts& contacts) PALPATE_RT {
   if (squared_norm(region.lean_normal_tool) > 0.5) return;
   const CubicLaw law = contact_law(model.params);
@@ -31,8 +35,9 @@ void set_lean(const Model& model, const State& state, Region& region, const Regi
     contacts[k].force_N = contacts[k].weight * law_force_N(law, contacts[k].depth_m);
   }
   const RegionCentre centre = region_centre(contacts, usual_normal(region, contacts));
-  region.lean_tool_m = inverse_transform(state.tool_w, centre.position_w);
-  region.lean_normal_tool = rotate(conjugate(state.tool_w.orientation), centre.normal_w);
+  const Pose frame_w = is_articulated(model) ? Pose{} : state.tool_w;
+  region.lean_tool_m = inverse_transform(frame_w, centre.position_w);
+  region.lean_normal_tool = rotate(conjugate(frame_w.orientation), centre.normal_w);
 }
 
 void fill_compliance(const Model& model, const State& state, const SortedContacts& sorted,
@@ -126,8 +131,8 @@ void add_transferred(const Model& model, State& state, const SortedContacts& sor
 }
 
 // Friction of one region: its tangential spring is the points' own law.
-void slide_on_points(const Model& model, const State& state, Region& region, Real self_compliance,
-                     ContactStiffness& stiffness) PALPATE_RT {
+void slide_on_points(const Model& model, const State& state, Region& region, const RegionContacts& contacts,
+                     Real self_compliance, ContactStiffness& stiffness) PALPATE_RT {
   region.depth_equivalent_m = law_depth_m(contact_law(model.params), region.normal_force_N);
   FrictionLoad load;
   // With the surface yielding under the region, its stiffness is that of the two springs in series.
@@ -135,7 +140,7 @@ void slide_on_points(const Model& model, const State& state, Region& region, Rea
   const FrictionParameters parameters = friction_parameters(model.params);
   const Real tangent = law_tangent_N_per_m(parameters.contact, region.depth_equivalent_m);
   load.depth_rate = tangent > 0 ? load.tangent_N_per_m / tangent : 1.0;
-  slide(state, parameters, load, region, stiffness);
+  slide(model, state, parameters, contacts, load, region, stiffness);
 }
 
 }  // namespace
@@ -145,7 +150,10 @@ void compute_force(const Model& model, State& state, Scratch& scratch) PALPATE_R
   SortedContacts sorted;
   if (is_finite(state.tool_w)) sort_contacts(state, scratch, sorted);
   clear_idle_regions(state, sorted);
-  if (sorted.region_count == 0) return;
+  if (sorted.region_count == 0) {
+    if (is_articulated(model)) load_pieces(model, state, scratch);
+    return;
+  }
   if (static_cast<ResponseLaw>(model.params.response_law) != ResponseLaw::kPoints) {
     return compute_response(model, state, scratch, sorted);
   }
@@ -164,12 +172,13 @@ void compute_force(const Model& model, State& state, Scratch& scratch) PALPATE_R
   if (coupling == CouplingLaw::kTemporal) add_transferred(model, state, sorted);
   for (std::int32_t r = 0; r < sorted.region_count; ++r) {  // bound: kMaxRegions
     Region& region = state.region[sorted.slot[r]];
-    slide_on_points(model, state, region, scratch.vector[kSelfCompliance][r], stiffness);
+    slide_on_points(model, state, region, sorted.contacts[r], scratch.vector[kSelfCompliance][r], stiffness);
     scratch.contact_wrench_w.force_N += region.wrench_w.force_N;
     scratch.contact_wrench_w.torque_Nm += region.wrench_w.torque_Nm;
     scratch.energy_J += region.energy_J;
   }
   store(stiffness, state.contact_stiffness);
+  if (is_articulated(model)) load_pieces(model, state, scratch);
 }
 
 }  // namespace palpate

@@ -1,12 +1,35 @@
 #include "rt_core/force/region_friction.h"
 
+#include "rt_core/articulate/articulate.h"
+#include "rt_core/articulate/carrier.h"
+
 namespace palpate {
 
 namespace {
 
-// Motion since the last tick of the tool material that is at `point` now: exact for a rigid tool, rotation included.
-Vec3 material_motion(const State& state, Vec3 point) PALPATE_RT {
-  return point - transform(state.tool_previous_w, inverse_transform(state.tool_w, point));
+// Motion since the last tick of the material at `point` that moves rigidly from `before` to `now`.
+Vec3 carried_motion(const Pose& before, const Pose& now, Vec3 point) PALPATE_RT {
+  return point - transform(before, inverse_transform(now, point));
+}
+
+// Motion since the last tick of the tool material that is at `point` now, rotation included: exact where one piece
+// touches; the mean by force where pieces that move against one another share the region.
+Vec3 material_motion(const Model& model, const State& state, const RegionContacts& contacts, Vec3 point) PALPATE_RT {
+  if (!is_articulated(model)) return carried_motion(state.tool_previous_w, state.tool_w, point);
+  Vec3 sum;
+  Real total = 0;
+  std::int32_t last = -1;
+  Vec3 motion;
+  for (std::int32_t k = 0; k < contacts.count; ++k) {  // bound: points
+    const std::int32_t piece = model.tool_point[static_cast<std::size_t>(contacts[k].point)].piece;
+    if (piece != last) {
+      motion = carried_motion(carrier_previous_w(model, state, piece), carrier_w(model, state, piece), point);
+      last = piece;
+    }
+    sum += contacts[k].force_N * motion;
+    total += contacts[k].force_N;
+  }
+  return total > 0 ? (1.0 / total) * sum : motion;
 }
 
 void add_tangential_stiffness(ContactStiffness& stiffness, const FrictionForce& friction, Vec3 normal,
@@ -20,9 +43,9 @@ void add_tangential_stiffness(ContactStiffness& stiffness, const FrictionForce& 
 
 }  // namespace
 
-void slide(const State& state, const FrictionParameters& parameters, FrictionLoad& load, Region& region,
-           ContactStiffness& stiffness) PALPATE_RT {
-  load.step_w = material_motion(state, region.centre_w);
+void slide(const Model& model, const State& state, const FrictionParameters& parameters, const RegionContacts& contacts,
+           FrictionLoad& load, Region& region, ContactStiffness& stiffness) PALPATE_RT {
+  load.step_w = material_motion(model, state, contacts, region.centre_w);
   load.normal_w = region.normal_w;
   load.force_N = region.normal_force_N;
   load.depth_m = region.depth_equivalent_m;

@@ -3,13 +3,14 @@
 
 #include "rt_core/force/contact_stiffness.h"
 #include "rt_core/force/friction.h"
+#include "rt_core/force/region_load.h"
 #include "rt_core/state.h"
 
 namespace palpate {
 
 // Friction at the region's centre, added to its wrench, energy and to `stiffness`. The caller fills
 // region.depth_equivalent_m and `load`'s tangent and depth rate; motion, normal and force are taken from the region.
-void slide(const State& state, const FrictionParameters& parameters, FrictionLoad& load, Region& region,
-           ContactStiffness& stiffness) PALPATE_RT;
+void slide(const Model& model, const State& state, const FrictionParameters& parameters, const RegionContacts& contacts,
+           FrictionLoad& load, Region& region, ContactStiffness& stiffness) PALPATE_RT;
 
 }  // namespace palpate

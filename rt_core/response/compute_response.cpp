@@ -1,5 +1,8 @@
 #include "rt_core/response/compute_response.h"
 
+#include "rt_core/articulate/articulate.h"
+#include "rt_core/articulate/carrier.h"
+
 #include "rt_core/force/far_field.h"
 #include "rt_core/force/region_friction.h"
 #include "rt_core/force/region_output.h"
@@ -15,8 +18,8 @@ struct TipLoad {
   TipRegion region[kMaxRegions];
 };
 
-const SurfaceFoot& foot_of(const Scratch& scratch, const Contact& contact) PALPATE_RT {
-  return scratch.foot[contact.point];
+const SurfaceFoot& foot_of(const Model& model, const Scratch& scratch, const Contact& contact) PALPATE_RT {
+  return scratch.foot[model.tool_point[static_cast<std::size_t>(contact.point)].piece];
 }
 
 Tip make_tip(const Model& model, const Scratch& scratch, const Contact& contact) PALPATE_RT {
@@ -24,7 +27,7 @@ Tip make_tip(const Model& model, const Scratch& scratch, const Contact& contact)
   tip.depth_m = contact.depth_m;
   tip.tabulated = static_cast<ResponseLaw>(model.params.response_law) != ResponseLaw::kTip;
   if (tip.tabulated) {
-    const SurfaceFoot& foot = foot_of(scratch, contact);
+    const SurfaceFoot& foot = foot_of(model, scratch, contact);
     tip.table = table_law(model, foot.triangle, foot.weight);
   } else {
     tip.local = local_law(model, model.tool_point[static_cast<std::size_t>(contact.point)].piece);
@@ -141,8 +144,8 @@ Vec3 sideways_force(const Tip& tip, const SurfaceFoot& foot, Real e) PALPATE_RT 
 // Normal load of one region. Forces act at the tips' centres, which are fixed to the tool: as the field depends on the
 // centres alone, it is then conservative in rotation too. (The line of action of the normal force passes through the
 // foot.)
-void press(const State& state, Scratch& scratch, Region& region, const RegionContacts& contacts, const TipRegion& tips,
-           Real shift_m, ContactStiffness& stiffness) PALPATE_RT {
+void press(const Model& model, const State& state, Scratch& scratch, Region& region, const RegionContacts& contacts,
+           const TipRegion& tips, Real shift_m, ContactStiffness& stiffness) PALPATE_RT {
   const Vec3 before = region.normal_w;
   const LawPoint sum = region_at(tips, shift_m);
   const Real softening = 1.0 / (1.0 + far_slope_m_per_N(tips.far, sum.force_N) * sum.tangent_N_per_m);
@@ -151,7 +154,7 @@ void press(const State& state, Scratch& scratch, Region& region, const RegionCon
   region.energy_J = far_energy_J(tips.far, sum.force_N);
   for (std::int32_t k = 0; k < tips.count; ++k) {  // bound: tips
     Contact& contact = contacts[k];
-    const SurfaceFoot& foot = foot_of(scratch, contact);
+    const SurfaceFoot& foot = foot_of(model, scratch, contact);
     const Real e = tips.tip[k].depth_m - shift_m;
     const LawPoint point = tip_at(tips.tip[k], e);
     contact.force_N = point.force_N;
@@ -184,19 +187,20 @@ void compute_response(const Model& model, State& state, Scratch& scratch, const 
   shift_regions(model, state, scratch, sorted, load);
   ContactStiffness stiffness;
   for (std::int32_t r = 0; r < sorted.region_count; ++r) {  // bound: kMaxRegions
-    press(state, scratch, state.region[sorted.slot[r]], sorted.contacts[r], load.region[r], scratch.vector[kShift][r],
-          stiffness);
+    press(model, state, scratch, state.region[sorted.slot[r]], sorted.contacts[r], load.region[r],
+          scratch.vector[kShift][r], stiffness);
   }
   for (std::int32_t r = 0; r < sorted.region_count; ++r) {  // bound: kMaxRegions
     Region& region = state.region[sorted.slot[r]];
     FrictionLoad rub;
     rub.tangent_N_per_m = region.tangent_N_per_m;
-    slide(state, friction_parameters(model.params), rub, region, stiffness);
+    slide(model, state, friction_parameters(model.params), sorted.contacts[r], rub, region, stiffness);
     scratch.contact_wrench_w.force_N += region.wrench_w.force_N;
     scratch.contact_wrench_w.torque_Nm += region.wrench_w.torque_Nm;
     scratch.energy_J += region.energy_J;
   }
   store(stiffness, state.contact_stiffness);
+  if (is_articulated(model)) load_pieces(model, state, scratch);
 }
 
 }  // namespace palpate
