@@ -17,7 +17,18 @@ namespace palpate {
 inline constexpr double kAuto = std::numeric_limits<double>::quiet_NaN();
 inline bool is_auto(double x) { return std::isnan(x); }
 
-enum class BodyShape : std::int32_t { kEllipsoid, kSphere, kCylinder, kBox, kRevolution, kHeart, kMesh };
+enum class BodyShape : std::int32_t {
+  kEllipsoid,
+  kSphere,
+  kCylinder,
+  kBox,
+  kRevolution,
+  kHeart,
+  kMesh,
+  kHalfShell,
+  kRing,
+  kHollowCylinder
+};
 struct BodyDesc {
   BodyShape shape = BodyShape::kEllipsoid;
   Vec3 half_axes_m{0.040, 0.030, 0.025};
@@ -25,6 +36,8 @@ struct BodyDesc {
   double height_m = 0.060;
   Vec3 size_m{0.060, 0.060, 0.060};
   double width_m = 0.080;
+  double wall_m = 0.010;
+  BodyAxis axis = BodyAxis::kY;
   std::vector<ProfilePoint> profile;
   std::string mesh;
   double scale = 1e-3;
@@ -48,6 +61,9 @@ struct SkeletonDesc {
   std::int32_t anchors_min = 6;
   std::int32_t anchors_max = kMaxAnchors;
   double section_radius_m = kAuto;
+  double beam_width_m = kAuto;
+  double beam_thickness_m = kAuto;
+  double beam_allowance_m = 0.5e-3;
 };
 
 enum class ContactLaw : std::int32_t { kDuffing, kCubic, kHertz };
