@@ -19,7 +19,8 @@ void beam_lines(std::string& text, const CompileReport& r) {
   const BeamTableReport& b = r.beams;
   line(text, "beams      %.4g x %.4g mm in walls of at least %.4g mm, released over %.4g mm", 1e3 * b.width_m,
        1e3 * b.thickness_m, 1e3 * b.wall_m, 1e3 * b.release_length_m);
-  line(text, "           %lld straight, %lld by the surface's curvature, %lld fitted, %lld in a turned plane, %lld dropped",
+  line(text,
+       "           %lld straight, %lld by the surface's curvature, %lld fitted, %lld in a turned plane, %lld dropped",
        static_cast<long long>(b.count[1] + b.count[2]), static_cast<long long>(b.count[3]),
        static_cast<long long>(b.count[4]), static_cast<long long>(b.count[5]), static_cast<long long>(b.count[0]));
   line(text, "           %lld of them both ways round", static_cast<long long>(b.two_ways));
@@ -37,7 +38,8 @@ void size_lines(std::string& text, const CompileReport& r) {
   for (const ArrayBytes& a : array) {
     if (100 * a.bytes < r.image_bytes) break;
     char part[96];
-    std::snprintf(part, sizeof part, "%s%s %.3f MB", parts.empty() ? "" : ", ", a.name, 1e-6 * static_cast<double>(a.bytes));
+    std::snprintf(part, sizeof part, "%s%s %.3f MB", parts.empty() ? "" : ", ", a.name,
+                  1e-6 * static_cast<double>(a.bytes));
     parts += part;
   }
   text += "image      " + parts + '\n';

@@ -21,7 +21,8 @@ Cells cells_for(std::int32_t triangles, double around_m, double profile_m, std::
   const double ideal = std::sqrt(0.5 * triangles * around_m / profile_m);
   Cells best;
   double least = kHuge;
-  const auto from = std::max(8, static_cast<std::int32_t>(0.6 * ideal)), to = static_cast<std::int32_t>(1.6 * ideal) + 9;
+  const auto from = std::max(8, static_cast<std::int32_t>(0.6 * ideal)),
+             to = static_cast<std::int32_t>(1.6 * ideal) + 9;
   for (std::int32_t around = from + from % 2; around <= to; around += 2) {
     const double rows = std::round(0.5 * triangles / around / row_multiple) * row_multiple;
     if (rows < 4) continue;

@@ -26,8 +26,8 @@ void check_effect(const SceneDesc& scene, const std::string& table, std::initial
 void check_body_keys(const SceneDesc& scene) {
   const auto only = [&](std::initializer_list<const char*> used, const char* shape) {
     check_effect(scene, "body",
-                 {"half_axes_mm", "radius_mm", "height_mm", "size_mm", "width_mm", "wall_mm", "axis", "profile_mm", "mesh",
-                  "scale", "fix_orientation", "triangles"},
+                 {"half_axes_mm", "radius_mm", "height_mm", "size_mm", "width_mm", "wall_mm", "axis", "profile_mm",
+                  "mesh", "scale", "fix_orientation", "triangles"},
                  used, std::string("with shape = \"") + shape + "\"");
   };
   switch (scene.body.shape) {
@@ -77,7 +77,8 @@ void check_profile(const SceneDesc& scene) {
 void check_wall(const SceneDesc& scene) {
   const BodyDesc& body = scene.body;
   double room = kHuge;
-  if (body.shape == BodyShape::kHalfShell) room = std::min({body.half_axes_m.x, body.half_axes_m.y, body.half_axes_m.z});
+  if (body.shape == BodyShape::kHalfShell)
+    room = std::min({body.half_axes_m.x, body.half_axes_m.y, body.half_axes_m.z});
   if (body.shape == BodyShape::kRing) room = body.radius_m;
   if (body.shape == BodyShape::kHollowCylinder) room = body.radius_m;
   if (!(body.wall_m <= 0.9 * room))
@@ -89,7 +90,8 @@ void check_wall(const SceneDesc& scene) {
 void check_skeleton(const SceneDesc& scene) {
   const SkeletonLaw law = scene.skeleton.law;
   if (law == SkeletonLaw::kCircular || law == SkeletonLaw::kCircularPaper)
-    return check_effect(scene, "skeleton", {"section_radius_mm"}, {}, "with circular beams, whose section is beam_width_mm x beam_thickness_mm");
+    return check_effect(scene, "skeleton", {"section_radius_mm"}, {},
+                        "with circular beams, whose section is beam_width_mm x beam_thickness_mm");
   check_effect(scene, "skeleton", {"beam_width_mm", "beam_thickness_mm", "beam_allowance_mm"}, {},
                "unless skeleton.law is \"circular\" or \"circular_paper\"");
 }

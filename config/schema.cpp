@@ -64,12 +64,15 @@ const KeySpec kTop[] = {
 };
 
 const KeySpec kBody[] = {
-    choice<&BodyDesc::shape>("shape", "ellipsoid|sphere|cylinder|box|revolution|heart|mesh|half_shell|ring|hollow_cylinder",
+    choice<&BodyDesc::shape>("shape",
+                             "ellipsoid|sphere|cylinder|box|revolution|heart|mesh|half_shell|ring|hollow_cylinder",
                              "kind of surface", true),
     list<&BodyDesc::half_axes_m>(kVec3, "half_axes_mm", 1, 5000, kMilli,
-                              "ellipsoid, half_shell: half axes along x, y, z; a half shell stands on its rim"),
-    number<&BodyDesc::radius_m>("radius_mm", 1, 5000, kMilli, "sphere, cylinder: radius; ring, hollow_cylinder: outer radius"),
-    number<&BodyDesc::height_m>("height_mm", 1, 10000, kMilli, "cylinder: height along y; hollow_cylinder: length along its axis"),
+                                 "ellipsoid, half_shell: half axes along x, y, z; a half shell stands on its rim"),
+    number<&BodyDesc::radius_m>("radius_mm", 1, 5000, kMilli,
+                                "sphere, cylinder: radius; ring, hollow_cylinder: outer radius"),
+    number<&BodyDesc::height_m>("height_mm", 1, 10000, kMilli,
+                                "cylinder: height along y; hollow_cylinder: length along its axis"),
     list<&BodyDesc::size_m>(kVec3, "size_mm", 1, 10000, kMilli, "box: sides along x, y, z"),
     number<&BodyDesc::width_m>("width_mm", 1, 10000, kMilli, "heart: width along x; it is about as high"),
     number<&BodyDesc::wall_m>("wall_mm", 0.1, 5000, kMilli,

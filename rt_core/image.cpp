@@ -90,7 +90,7 @@ bool image_offsets(const ModelSizes& sizes, std::uint64_t (&offset)[kArrayCount 
   if (!(sizes.name >= (lowest) && sizes.name <= (highest))) return false;
   PALPATE_MODEL_SIZES(PALPATE_CHECK)
 #undef PALPATE_CHECK
-  // No overflow: every count is at most 2^26 and every element smaller than 2^8 bytes.
+  // No overflow: every count is at most 2^28 and every element smaller than 2^8 bytes.
   std::uint64_t at = kArraysOffset;
   std::size_t index = 0;
 #define PALPATE_FIELD(type, name, count, frame, meaning)        \

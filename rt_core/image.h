@@ -59,7 +59,9 @@ struct ImageSections {
 ImageSections image_sections() noexcept;
 // Byte offset of each array for the given sizes, in table order, after the params; the last entry is the total size.
 // Returns false when a size is out of range or the sum overflows.
-inline constexpr std::size_t kArrayCount = 13;
+#define PALPATE_COUNT(type, name, count, frame, meaning) +1
+inline constexpr std::size_t kArrayCount = 0 PALPATE_MODEL_ARRAYS(PALPATE_COUNT);
+#undef PALPATE_COUNT
 bool image_offsets(const ModelSizes& sizes, std::uint64_t (&offset)[kArrayCount + 1]) noexcept;
 // Validates `bytes` (aligned to kImageAlignment) completely and binds the views. On error `model` is untouched.
 ImageResult open_image(std::span<const std::byte> bytes, Model& model) noexcept;

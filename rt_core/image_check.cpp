@@ -138,9 +138,9 @@ ImageResult check_beams(const Model& model) noexcept {
   }
   for (std::size_t i = 0; i < model.beam_response.size(); ++i) {
     const BeamResponse& r = model.beam_response[i];
-    for (const Vec3& v : {r.release_m_per_N[0], r.release_m_per_N[1], r.release_m_per_N[2], r.inner_Pa_per_N,
-                          r.outer_Pa_per_N, r.side_Pa_per_N, r.axial_Pa_per_N, r.shear_in_Pa_per_N,
-                          r.shear_out_Pa_per_N})
+    for (const Vec3& v :
+         {r.release_m_per_N[0], r.release_m_per_N[1], r.release_m_per_N[2], r.inner_Pa_per_N, r.outer_Pa_per_N,
+          r.side_Pa_per_N, r.axial_Pa_per_N, r.shear_in_Pa_per_N, r.shear_out_Pa_per_N})
       if (!is_finite(v)) return not_finite("beam_response", i);
   }
   return {};
@@ -182,6 +182,56 @@ ImageResult check_tool(const Model& model) noexcept {
   return {};
 }
 
+template <class Number>
+ImageResult check_numbers(std::span<const Number> values, const char* field) noexcept {
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (!is_finite(static_cast<Real>(values[i]))) return not_finite(field, i);
+  return {};
+}
+
+ImageResult check_nodal_vertices(const Model& model) noexcept {
+  for (std::size_t i = 0; i < model.nodal_vertex.size(); ++i) {
+    const NodalVertex& v = model.nodal_vertex[i];
+    if (!(v.area_m2 > 0 && v.area_m2 < kHuge)) return not_finite("nodal_vertex.area_m2", i);
+    if (v.is_free != 0 && v.is_free != 1) return broken("nodal_vertex.is_free", i);
+    if (!in_range(v.owner, model.triangle.size())) return broken("nodal_vertex.owner", i);
+    const auto& corner = model.triangle[static_cast<std::size_t>(v.owner)].vertex;
+    const auto vertex = static_cast<int64_t>(i);
+    if (corner[0] != vertex && corner[1] != vertex && corner[2] != vertex) return broken("nodal_vertex.owner", i);
+  }
+  return {};
+}
+
+// A response scene holds none of the nodal arrays; a nodal one all of them, in one precision.
+ImageResult check_nodal(const Model& model) noexcept {
+  const ModelSizes& n = model.sizes;
+  if (static_cast<Backend>(model.params.backend) != Backend::kNodal) {
+    if (n.n_nodal != 0) return broken("n_nodal", 0);
+    if (n.n_compliance_f32 != 0) return broken("n_compliance_f32", 0);
+    if (n.n_compliance_f64 != 0) return broken("n_compliance_f64", 0);
+    return n.n_strain_gauge == 0 ? ImageResult{} : broken("n_strain_gauge", 0);
+  }
+  if (n.n_nodal != n.n_vertex) return broken("n_nodal", 0);
+  if (n.n_vertex > kMaxNodalVertices) return broken("n_vertex", 0);
+  const int64_t entries = 9 * n.n_vertex * n.n_vertex;
+  if (n.n_compliance_f32 != 0 && n.n_compliance_f64 != 0) return broken("n_compliance_f64", 0);
+  if (n.n_compliance_f32 + n.n_compliance_f64 != entries) return broken("n_compliance_f32", 0);
+  if (n.n_strain_gauge % (18 * n.n_vertex) != 0) return broken("n_strain_gauge", 0);
+  if (n.n_strain_gauge > 18 * n.n_vertex * kMaxStrainGauges) return broken("n_strain_gauge", 0);
+  const double positive[] = {model.params.contact_margin_m, model.params.wall_N_per_m,
+                             model.params.proxy_speed_max_m_per_s};
+  for (const double value : positive)
+    if (!(value > 0)) return broken("nodal parameters", 0);
+  if (const ImageResult result = check_nodal_vertices(model); result.error != ImageError::kNone) return result;
+  if (const ImageResult result = check_numbers(model.compliance_f32, "compliance_f32");
+      result.error != ImageError::kNone)
+    return result;
+  if (const ImageResult result = check_numbers(model.compliance_f64, "compliance_f64");
+      result.error != ImageError::kNone)
+    return result;
+  return check_numbers(model.strain_gauge, "strain_gauge");
+}
+
 }  // namespace
 
 ImageResult check_arrays(const Model& model) noexcept {
@@ -189,7 +239,8 @@ ImageResult check_arrays(const Model& model) noexcept {
   if (const ImageResult result = check_hierarchy(model); result.error != ImageError::kNone) return result;
   if (const ImageResult result = check_skeleton(model); result.error != ImageError::kNone) return result;
   if (const ImageResult result = check_beams(model); result.error != ImageError::kNone) return result;
-  return check_tool(model);
+  if (const ImageResult result = check_tool(model); result.error != ImageError::kNone) return result;
+  return check_nodal(model);
 }
 
 }  // namespace palpate

@@ -12,6 +12,11 @@ inline constexpr std::int32_t kMaxPieces = 20;
 inline constexpr std::int32_t kMaxToolPoints = 128;
 // Tool points in contact at once. Overflow: the deepest are kept (ties by index), Status::kContactsDropped.
 inline constexpr std::int32_t kMaxContacts = 64;
+// Surface nodes of a finite-element body: at 5461 nodes the compliance in single precision is 1 GiB, locked in memory.
+// Refused when the scene is baked.
+inline constexpr std::int32_t kMaxNodalVertices = 5461;
+// Points of a finite-element body whose strain is watched: each costs 6 numbers per contact and tick. Refused at bake.
+inline constexpr std::int32_t kMaxStrainGauges = 16;
 // Contact regions at once: 15 finger parts and a palm. Overflow: the deepest are kept, Status::kRegionsDropped.
 inline constexpr std::int32_t kMaxRegions = 16;
 // Skeleton anchors of one body. Refused at bake (the baker keeps the most persistent).

@@ -12,49 +12,64 @@
 namespace palpate {
 
 enum class ContactWeight : std::int32_t { kWinkler = 0, kArea = 1, kPaper = 2 };  // A_i/A_ref · A_i/ΣA · 1/n
-enum class FrictionLaw : std::int32_t { kNone = 0, kReturnMap = 1, kPaper = 2, kMindlin = 3 };
+enum class FrictionLaw : std::int32_t { kNone = 0, kReturnMap = 1, kPaper = 2, kMindlin = 3, kCoulomb = 4 };
 enum class TangentialLaw : std::int32_t { kSeparable = 0, kRadial = 1 };
 enum class SkeletonLaw : std::int32_t { kNone = 0, kStiffness = 1, kPaper = 2, kCircular = 3, kCircularPaper = 4 };
 enum class ShapeLaw : std::int32_t { kRbf = 0, kDisplacementAngle = 1 };
 enum class NeighbourhoodLaw : std::int32_t { kNone = 0, kLog = 1, kLogC1 = 2, kPunch = 3 };
 enum class CouplingLaw : std::int32_t { kNone = 0, kCoupled = 1, kTemporal = 2 };
+// Who measures contact and makes force. Response: tool points on the rest surface, one law per region. Nodal: surface
+// nodes of a finite-element body against the tool's pieces (rt_core/nodal).
+enum class Backend : std::int32_t { kResponse = 0, kNodal = 1 };
+enum class NodalSolver : std::int32_t { kPivoting = 0, kGaussSeidel = 1 };
+// Where the tool's gap and normal are taken: at the node carried by the body's far field, at rest, or where it is.
+enum class NodalCarry : std::int32_t { kFarField = 0, kRest = 1, kTotal = 2 };
 
 // X(type, name, unit, lowest, highest, meaning). All are finite; the loader checks every range.
-#define PALPATE_MODEL_PARAMS(X)                                                                        \
-  X(std::int32_t, contact_weight, "-", 0, 2, "how sample forces are weighted (ContactWeight)")         \
-  X(std::int32_t, friction_law, "-", 0, 3, "FrictionLaw")                                              \
-  X(std::int32_t, tangential_law, "-", 0, 1, "TangentialLaw")                                          \
-  X(std::int32_t, skeleton_law, "-", 0, 4, "SkeletonLaw")                                              \
-  X(std::int32_t, shape_law, "-", 0, 1, "ShapeLaw: how anchor displacements spread over the surface")  \
-  X(std::int32_t, neighbourhood_law, "-", 0, 3, "NeighbourhoodLaw: dent around a contact")             \
-  X(std::int32_t, coupling_law, "-", 0, 2, "CouplingLaw: how regions influence one another")           \
-  X(std::int32_t, rbf_tail, "-", 0, 1, "0 constant tail, 1 linear tail of the surface interpolation")  \
-  X(std::int32_t, silence_hold_ticks, "ticks", 1, 5, "ticks the last sample is held")                  \
-  X(std::int32_t, silence_passive_ticks, "ticks", 1, 20, "ticks after which force ramps to zero")      \
-  X(std::int32_t, silence_fault_ticks, "ticks", 2, 1000, "ticks of silence that latch a fault")        \
-  X(std::int32_t, reserved, "-", 0, 0, "keeps the doubles aligned")                                    \
-  X(double, period_s, "s", 1e-5, 1e-1, "tick period")                                                  \
-  X(double, k1_N_per_m, "N/m", 0, 1e9, "linear coefficient of the contact law, per unit weight")       \
-  X(double, k3_N_per_m3, "N/m3", 0, 1e15, "cubic coefficient of the contact law, per unit weight")     \
-  X(double, max_depth_m, "m", 1e-6, 1, "depth beyond which the law continues by its tangent")          \
-  X(double, friction_k_N, "N^(1-beta)", 0, 1e6, "K of the static limit K F^beta")                      \
-  X(double, friction_beta, "-", 0.5, 1, "exponent of the static limit")                                \
-  X(double, friction_mu_dynamic, "-", 0, 10, "sliding coefficient")                                    \
-  X(double, cluster_distance_m, "m", 1e-6, 1, "contact points nearer than this are one region")        \
-  X(double, youngs_modulus_Pa, "Pa", 1, 1e13, "E")                                                     \
-  X(double, poisson_ratio, "-", -0.999, 0.5, "nu")                                                     \
-  X(double, density_kg_per_m3, "kg/m3", 1, 1e5, "rho")                                                 \
-  X(double, far_field_radius_m, "m", 1e-6, 1, "core radius of the far-field kernel between regions")   \
-  X(double, neighbourhood_radius_m, "m", 1e-6, 1, "R of the local dent")                               \
-  X(double, surface_size_m, "m", 1e-6, 100, "largest extent of the body; scale of tolerances")         \
-  X(double, coupling_N_per_m, "N/m", 1, 1e6, "translational stiffness of the virtual coupling")        \
-  X(double, coupling_Nm_per_rad, "N*m/rad", 1e-6, 1e4, "rotational stiffness of the virtual coupling") \
-  X(double, force_max_N, "N", 0, 1000, "magnitude limit of the rendered force")                        \
-  X(double, torque_max_Nm, "N*m", 0, 100, "magnitude limit of the rendered torque")                    \
-  X(double, force_rate_max_N_per_s, "N/s", 1, 1e7, "fault limiter of the force change")                \
-  X(double, ramp_in_s, "s", 0, 10, "force ramp after arming")                                          \
-  X(double, ramp_out_s, "s", 1e-3, 1, "force ramp to zero after a fault")                              \
-  X(double, speed_max_m_per_s, "m/s", 0.01, 100, "a device sample that implies a faster motion is rejected")
+#define PALPATE_MODEL_PARAMS(X)                                                                              \
+  X(std::int32_t, contact_weight, "-", 0, 2, "how sample forces are weighted (ContactWeight)")               \
+  X(std::int32_t, friction_law, "-", 0, 4, "FrictionLaw")                                                    \
+  X(std::int32_t, tangential_law, "-", 0, 1, "TangentialLaw")                                                \
+  X(std::int32_t, skeleton_law, "-", 0, 4, "SkeletonLaw")                                                    \
+  X(std::int32_t, shape_law, "-", 0, 1, "ShapeLaw: how anchor displacements spread over the surface")        \
+  X(std::int32_t, neighbourhood_law, "-", 0, 3, "NeighbourhoodLaw: dent around a contact")                   \
+  X(std::int32_t, coupling_law, "-", 0, 2, "CouplingLaw: how regions influence one another")                 \
+  X(std::int32_t, rbf_tail, "-", 0, 1, "0 constant tail, 1 linear tail of the surface interpolation")        \
+  X(std::int32_t, silence_hold_ticks, "ticks", 1, 5, "ticks the last sample is held")                        \
+  X(std::int32_t, silence_passive_ticks, "ticks", 1, 20, "ticks after which force ramps to zero")            \
+  X(std::int32_t, silence_fault_ticks, "ticks", 2, 1000, "ticks of silence that latch a fault")              \
+  X(std::int32_t, backend, "-", 0, 1, "Backend: who measures contact and makes force")                       \
+  X(std::int32_t, nodal_solver, "-", 0, 1, "NodalSolver")                                                    \
+  X(std::int32_t, nodal_sweeps, "-", 0, 100, "Gauss-Seidel sweeps of the normal problem")                    \
+  X(std::int32_t, friction_sweeps, "-", 0, 20, "Gauss-Seidel sweeps of the problem with friction")           \
+  X(std::int32_t, nodal_carry, "-", 0, 2, "NodalCarry: where gaps and normals are taken")                    \
+  X(double, period_s, "s", 1e-5, 1e-1, "tick period")                                                        \
+  X(double, k1_N_per_m, "N/m", 0, 1e9, "linear coefficient of the contact law, per unit weight")             \
+  X(double, k3_N_per_m3, "N/m3", 0, 1e15, "cubic coefficient of the contact law, per unit weight")           \
+  X(double, max_depth_m, "m", 1e-6, 1, "depth beyond which the law continues by its tangent")                \
+  X(double, friction_k_N, "N^(1-beta)", 0, 1e6, "K of the static limit K F^beta")                            \
+  X(double, friction_beta, "-", 0.5, 1, "exponent of the static limit")                                      \
+  X(double, friction_mu_dynamic, "-", 0, 10, "sliding coefficient")                                          \
+  X(double, cluster_distance_m, "m", 1e-6, 1, "contact points nearer than this are one region")              \
+  X(double, youngs_modulus_Pa, "Pa", 1, 1e13, "E")                                                           \
+  X(double, poisson_ratio, "-", -0.999, 0.5, "nu")                                                           \
+  X(double, density_kg_per_m3, "kg/m3", 1, 1e5, "rho")                                                       \
+  X(double, far_field_radius_m, "m", 1e-6, 1, "core radius of the far-field kernel between regions")         \
+  X(double, neighbourhood_radius_m, "m", 1e-6, 1, "R of the local dent")                                     \
+  X(double, surface_size_m, "m", 1e-6, 100, "largest extent of the body; scale of tolerances")               \
+  X(double, coupling_N_per_m, "N/m", 1, 1e6, "translational stiffness of the virtual coupling")              \
+  X(double, coupling_Nm_per_rad, "N*m/rad", 1e-6, 1e4, "rotational stiffness of the virtual coupling")       \
+  X(double, force_max_N, "N", 0, 1000, "magnitude limit of the rendered force")                              \
+  X(double, torque_max_Nm, "N*m", 0, 100, "magnitude limit of the rendered torque")                          \
+  X(double, force_rate_max_N_per_s, "N/s", 1, 1e7, "fault limiter of the force change")                      \
+  X(double, ramp_in_s, "s", 0, 10, "force ramp after arming")                                                \
+  X(double, ramp_out_s, "s", 1e-3, 1, "force ramp to zero after a fault")                                    \
+  X(double, speed_max_m_per_s, "m/s", 0.01, 100, "a device sample that implies a faster motion is rejected") \
+  X(double, contact_margin_m, "m", 0, 1, "nodes with a smaller gap take part in the contact problem")        \
+  X(double, regularisation, "-", 0, 0.1, "share added to the diagonal of the contact problem")               \
+  X(double, wall_N_per_m, "N/m", 0, 1e9, "stiffness of the body's held nodes")                               \
+  X(double, proxy_speed_max_m_per_s, "m/s", 0, 100, "fastest motion of the tool in contact")                 \
+  X(double, strain_limit, "-", 0, 10, "largest strain for which the linear body is trusted")
 
 struct ModelParams {
 #define PALPATE_FIELD(type, name, unit, lowest, highest, meaning) type name;
@@ -126,6 +141,12 @@ struct PatchWeight {
   std::int32_t reserved;
   double weight[3];
 };
+// A surface node of a finite-element body: vertex i of the surface, with the same index.
+struct NodalVertex {
+  double area_m2;        // a third of the areas of its triangles
+  std::int32_t owner;    // the one of its triangles that presents it to a search of the hierarchy
+  std::int32_t is_free;  // 0: held in some direction
+};
 
 // A circular (or other baked) beam from one surface vertex to one anchor. Beams are stored vertex by vertex, anchor by
 // anchor: element vertex * n_anchor + anchor. A beam that could not be laid inside the body is all zeros.
@@ -138,29 +159,35 @@ struct BeamRatio {
 };
 // What one newton on the tip does at the anchor: rows to be multiplied by the tip force.
 struct BeamResponse {
-  Vec3 release_m_per_N[3];           // x, y, z displacement of the anchor released over its release length
-  Vec3 inner_Pa_per_N;               // stress along the beam at the inner and outer fibre of the clamped section,
-  Vec3 outer_Pa_per_N;               //
-  Vec3 side_Pa_per_N;                // what bending out of the beam's plane adds at its sides,
-  Vec3 axial_Pa_per_N;               // the mean, and the shear in the section's middle, in and out of the plane
+  Vec3 release_m_per_N[3];  // x, y, z displacement of the anchor released over its release length
+  Vec3 inner_Pa_per_N;      // stress along the beam at the inner and outer fibre of the clamped section,
+  Vec3 outer_Pa_per_N;      //
+  Vec3 side_Pa_per_N;       // what bending out of the beam's plane adds at its sides,
+  Vec3 axial_Pa_per_N;      // the mean, and the shear in the section's middle, in and out of the plane
   Vec3 shear_in_Pa_per_N, shear_out_Pa_per_N;
 };
 
 // X(element type, name, number of elements, frame, meaning). Sizes are fields of ModelSizes.
-#define PALPATE_MODEL_ARRAYS(X)                                                                        \
-  X(Vec3, vertex_m, n_vertex, "world", "rest surface vertices")                                        \
-  X(Vec3, vertex_normal, n_vertex, "world", "outward angle-weighted unit normals")                     \
-  X(Triangle, triangle, n_triangle, "-", "rest surface triangles, sorted by hierarchy leaf")           \
-  X(BvhNode, bvh, n_bvh, "world", "4-wide hierarchy; node 0 is the root, children after their parent") \
-  X(Anchor, anchor, n_anchor, "world", "skeleton anchors")                                             \
-  X(double, rbf_inverse, n_rbf2, "-", "inverse of the bordered RBF matrix, row-major, n_rbf x n_rbf")  \
-  X(PatchWeight, patch, n_patch, "-", "patch of each vertex (displacement-angle interpolation only)")  \
-  X(BeamStiffness, beam_stiffness, n_beam_stiffness, "world", "baked beams: vertex x anchor")          \
-  X(BeamRatio, beam_ratio, n_beam_ratio, "world", "baked beams of the paper's law: vertex x anchor")   \
-  X(BeamResponse, beam_response, n_beam_response, "world", "anchors' response: vertex x anchor")       \
-  X(ToolPiece, piece, n_piece, "tool", "convex pieces of the tool")                                    \
-  X(ToolPoint, tool_point, n_tool_point, "tool", "sample points of the tool")                          \
-  X(Vec3, hull_vertex_m, n_hull, "piece", "vertices of hull pieces")
+#define PALPATE_MODEL_ARRAYS(X)                                                                                 \
+  X(Vec3, vertex_m, n_vertex, "world", "rest surface vertices")                                                 \
+  X(Vec3, vertex_normal, n_vertex, "world", "outward angle-weighted unit normals")                              \
+  X(Triangle, triangle, n_triangle, "-", "rest surface triangles, sorted by hierarchy leaf")                    \
+  X(BvhNode, bvh, n_bvh, "world", "4-wide hierarchy; node 0 is the root, children after their parent")          \
+  X(Anchor, anchor, n_anchor, "world", "skeleton anchors")                                                      \
+  X(double, rbf_inverse, n_rbf2, "-", "inverse of the bordered RBF matrix, row-major, n_rbf x n_rbf")           \
+  X(PatchWeight, patch, n_patch, "-", "patch of each vertex (displacement-angle interpolation only)")           \
+  X(BeamStiffness, beam_stiffness, n_beam_stiffness, "world", "baked beams: vertex x anchor")                   \
+  X(BeamRatio, beam_ratio, n_beam_ratio, "world", "baked beams of the paper's law: vertex x anchor")            \
+  X(BeamResponse, beam_response, n_beam_response, "world", "anchors' response: vertex x anchor")                \
+  X(ToolPiece, piece, n_piece, "tool", "convex pieces of the tool")                                             \
+  X(ToolPoint, tool_point, n_tool_point, "tool", "sample points of the tool")                                   \
+  X(Vec3, hull_vertex_m, n_hull, "piece", "vertices of hull pieces")                                            \
+  X(NodalVertex, nodal_vertex, n_nodal, "-", "surface nodes of a finite-element body: one per vertex")          \
+  X(float, compliance_f32, n_compliance_f32, "world",                                                           \
+    "surface compliance, m/N: row-major (3 n_vertex)^2, held components zero")                                  \
+  X(double, compliance_f64, n_compliance_f64, "world", "the same in double precision; one of the two is empty") \
+  X(float, strain_gauge, n_strain_gauge, "world",                                                               \
+    "strain per newton: 3 n_vertex rows of 6 components (xx yy zz xy yz zx) per gauge")
 
 // X(name, lowest, highest)
 #define PALPATE_MODEL_SIZES(X)       \
@@ -176,7 +203,11 @@ struct BeamResponse {
   X(n_beam_response, 0, 1 << 26)     \
   X(n_piece, 1, kMaxPieces)          \
   X(n_tool_point, 1, kMaxToolPoints) \
-  X(n_hull, 0, 1 << 16)
+  X(n_hull, 0, 1 << 16)              \
+  X(n_nodal, 0, 1 << 26)             \
+  X(n_compliance_f32, 0, 1 << 28)    \
+  X(n_compliance_f64, 0, 1 << 28)    \
+  X(n_strain_gauge, 0, 1 << 26)
 
 struct ModelSizes {
 #define PALPATE_FIELD(name, lowest, highest) std::int64_t name;

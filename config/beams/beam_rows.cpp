@@ -33,7 +33,7 @@ Matrix3d cross_of(Vec3 a) {
 }
 
 struct Frame {
-  Vec3 position_m;                // of the middle line
+  Vec3 position_m;                 // of the middle line
   Vec3 tangent, normal, binormal;  // normal: outwards, away from the centre of the circle
 };
 // The middle line at `along_m` from the clamp. Of an arc it lies half the width inside the circle.

@@ -34,7 +34,7 @@ struct BeamRows {
   Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();  // of tip with foot
   Eigen::Matrix3d release = Eigen::Matrix3d::Zero();
   Eigen::Matrix<double, 6, 3> stress = Eigen::Matrix<double, 6, 3>::Zero();  // rows as in BeamResponse
-  BeamRatio ratio{};                                                        // paper's law only
+  BeamRatio ratio{};                                                         // paper's law only
 };
 BeamRows beam_rows(const BeamCurve& curve, const BeamBuild& build, Vec3 anchor_normal);
 // Two ways round: stiffnesses add by weight, responses by the force each way carries.

@@ -99,7 +99,8 @@ bool BeamSelector::fits(BeamCurve& curve) const {
 // Outer radius 1/kappa + epsilon. A curve that is straight somewhere has no such circle.
 BeamCurve BeamSelector::by_rule(Vec3 tip, Vec3 anchor, Vec3 inside, const SectionCurve& way) const {
   const double c = norm(anchor - tip);
-  const double k = rule_.paper ? std::min(way.start_curvature_per_m, way.end_curvature_per_m) : way.least_curvature_per_m;
+  const double k =
+      rule_.paper ? std::min(way.start_curvature_per_m, way.end_curvature_per_m) : way.least_curvature_per_m;
   if (!(k > 1e-6 / c)) return straight_through(tip, anchor, -inside);
   const double b = 1 / k + rule_.allowance_m;
   if (!(rule_.width_m <= 0.5 * b)) return {};

@@ -24,7 +24,7 @@ inline constexpr int kBeamPaths = 6;
 struct BeamCurve {
   BeamPath path = BeamPath::kNone;
   Vec3 tip_m, anchor_m;
-  Vec3 centre_m;               // of the circle
+  Vec3 centre_m;                // of the circle
   Vec3 radial, tangential, up;  // frame at the tip; tangential points towards the anchor along the curve
   double outer_radius_m = 0;
   double angle = 0;
@@ -58,9 +58,9 @@ class BeamSelector {
  public:
   BeamSelector(const Model& surface, const DistanceGrid& grid, const BeamRule& rule, double tolerance_m,
                double mean_edge_m);
-  // The beam from a surface vertex to an anchor. Its plane holds the vertex's normal, along which a frictionless contact
-  // pushes: independent of the force, so that beams keep still when the force turns. Where the normal is along the
-  // chord: the anchor's normal; where that is too, any.
+  // The beam from a surface vertex to an anchor. Its plane holds the vertex's normal, along which a frictionless
+  // contact pushes: independent of the force, so that beams keep still when the force turns. Where the normal is along
+  // the chord: the anchor's normal; where that is too, any.
   BeamChoice choose(std::int32_t vertex, Vec3 anchor, Vec3 anchor_normal) const;
   // Least distance of both fibres from the surface, inside positive, sampled away from the ends.
   double clearance_m(const BeamCurve& curve) const;

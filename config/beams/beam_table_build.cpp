@@ -97,8 +97,8 @@ BeamTableReport build_beam_table(const BeamTableRule& rule, double volume_m3, Im
                       " mm is not below the thinnest wall, " + number_text(1e3 * report.wall_m) +
                       " mm; lower it, or thicken the wall");
 
-  const BeamSelector selector(surface, grid, {report.width_m, rule.allowance_m, rule.paper},
-                              kTolerance * report.wall_m, mean_edge_m(surface));
+  const BeamSelector selector(surface, grid, {report.width_m, rule.allowance_m, rule.paper}, kTolerance * report.wall_m,
+                              mean_edge_m(surface));
   std::vector<BeamChoice> choice(vertices * anchors);
   double length = 0;
   for (std::size_t v = 0; v < vertices; ++v) {

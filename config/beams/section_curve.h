@@ -29,8 +29,8 @@ struct SectionCurves {
   SectionCurve way[2];
 };
 // Curvature from circles through points `spacing_m` apart, or a twelfth of the stretch where that is more: facets are
-// flat and their edges sharp, and only over several of them is there a curvature. Positive: the surface is convex there,
-// `outward` being its normal at the start.
+// flat and their edges sharp, and only over several of them is there a curvature. Positive: the surface is convex
+// there, `outward` being its normal at the start.
 SectionCurves curves_between(const SectionLoop& loop, Vec3 to, double spacing_m, double tolerance_m, Vec3 normal,
                              Vec3 outward);
 

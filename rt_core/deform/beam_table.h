@@ -33,26 +33,25 @@ struct BeamTableSkeleton {
   bool minimum_norm = false;  // paper law only, as in Skeleton
   Real alpha = 0, beta = 0;   // paper law only: scales of F1 and F2
   SurfaceSpot spot;
-  Vec3 displacement_w;           // of the contact point, K^-1 F (not with the paper's law)
-  Vec3 force_w[kMaxAnchors];     // on each beam's tip
+  Vec3 displacement_w;        // of the contact point, K^-1 F (not with the paper's law)
+  Vec3 force_w[kMaxAnchors];  // on each beam's tip
 };
 
 // Looks the beams up at `spot` and shares the force among them.
-// kCircular: K = sum K_i, d = K^-1 F, F_i = K_i d: exact, and sum F_i = F. K_i are interpolated over the triangle, which
-// keeps them symmetric and positive definite.
-// kCircularPaper: the ratios of the circular-beam paper (2009, section III.D) with their two free scales, in the
-// least-squares sense, as distribute_by_ratios does for straight beams.
-// Returns false (and sets degenerate) when there is no stiffness or the force is not finite. Bound: 3 n_anchor beams.
+// kCircular: K = sum K_i, d = K^-1 F, F_i = K_i d: exact, and sum F_i = F. K_i are interpolated over the triangle,
+// which keeps them symmetric and positive definite. kCircularPaper: the ratios of the circular-beam paper (2009,
+// section III.D) with their two free scales, in the least-squares sense, as distribute_by_ratios does for straight
+// beams. Returns false (and sets degenerate) when there is no stiffness or the force is not finite. Bound: 3 n_anchor
+// beams.
 bool solve_beam_table(const Model& model, const SurfaceSpot& spot, Vec3 force_on_body_w,
                       BeamTableSkeleton& skeleton) PALPATE_RT;
 
-// Stress and displacement of anchor `index` (< count) under its beam's share of the force. stress.bending_Pa is what the
-// extreme fibre adds to the mean, so that |axial| + bending is the stress there. Bound: 3.
+// Stress and displacement of anchor `index` (< count) under its beam's share of the force. stress.bending_Pa is what
+// the extreme fibre adds to the mean, so that |axial| + bending is the stress there. Bound: 3.
 struct BeamTableAnchor {
   BeamStress stress;
   Vec3 displacement_w;  // zero for a fixed anchor
 };
-BeamTableAnchor beam_table_anchor(const Model& model, const BeamTableSkeleton& skeleton,
-                                  std::int32_t index) PALPATE_RT;
+BeamTableAnchor beam_table_anchor(const Model& model, const BeamTableSkeleton& skeleton, std::int32_t index) PALPATE_RT;
 
 }  // namespace palpate

@@ -83,11 +83,12 @@ struct ArcSums {
   Real bending = 0, couple = 0, shear = 0, mixed = 0, sinh = 0, cosh = 0;
 };
 ArcSums series_sums(Real s, Real nu) PALPATE_RT {
-  return {bending_sum(s), couple_sum(s), shear_sum(s), mixed_sum(s, nu), s + sinh_less_argument(s),
+  return {bending_sum(s),        couple_sum(s), shear_sum(s), mixed_sum(s, nu), s + sinh_less_argument(s),
           1.0 + cosh_less_one(s)};
 }
 ArcSums closed_sums(Real s, Real nu) PALPATE_RT {
-  const Hyperbolic h = hyperbolic(s), half = hyperbolic(0.5 * s), three = hyperbolic(1.5 * s), five = hyperbolic(2.5 * s);
+  const Hyperbolic h = hyperbolic(s), half = hyperbolic(0.5 * s), three = hyperbolic(1.5 * s),
+                   five = hyperbolic(2.5 * s);
   ArcSums sums;
   sums.bending = s * h.cosh - h.sinh;
   sums.couple = h.sinh * h.sinh - s * s;
@@ -145,8 +146,7 @@ struct Golovin {
   }
   // (5+nu) A r^2 + (1+nu) B / r^2 - (1-nu) D ln(r/r0) - (1+nu) D
   Real p(Real r) const PALPATE_RT {
-    return (5.0 + nu) * a1 * r * r + (1.0 + nu) * b1 / (r * r) - (1.0 - nu) * d1 * math::log(r / r0) -
-           (1.0 + nu) * d1;
+    return (5.0 + nu) * a1 * r * r + (1.0 + nu) * b1 / (r * r) - (1.0 - nu) * d1 * math::log(r / r0) - (1.0 + nu) * d1;
   }
   Real p_slope(Real r) const PALPATE_RT {
     return 2.0 * (5.0 + nu) * a1 * r - 2.0 * (1.0 + nu) * b1 / (r * r * r) - (1.0 - nu) * d1 / r;
@@ -294,8 +294,8 @@ ArcCompliance arc_tip_compliance(const ArcSection& section, const BeamMaterial& 
   const Real r = force_radius_m;
   c.rr_m_per_N = per_et * (0.5 * f.t * (angle - sine * cosine) + v * sine * cosine);
   c.rt_m_per_N = per_et * (0.5 * (2.0 * v - f.t) * sine * sine - r * j3 * less_cosine);
-  c.tt_m_per_N = per_et * (0.5 * f.t * (angle + sine * cosine) - v * sine * cosine + 2.0 * r * j3 * sine +
-                           r * r * j4 * angle);
+  c.tt_m_per_N =
+      per_et * (0.5 * f.t * (angle + sine * cosine) - v * sine * cosine + 2.0 * r * j3 * sine + r * r * j4 * angle);
 
   const Real h = section.outer_m - section.inner_m, t = section.thickness_m, g = e / (2.0 * (1.0 + nu));
   const Real radius = middle_radius_m(section), cube = radius * radius * radius;

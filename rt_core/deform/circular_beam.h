@@ -85,9 +85,9 @@ struct ArcCompliance {
 ArcCompliance arc_tip_compliance(const ArcSection& section, const BeamMaterial& material, Real angle,
                                  Real force_radius_m) PALPATE_RT;
 
-// The paper's own relation at radius r_p: displacements (u, v) of the tip per unit F1 and F2 of equations (2) to (5). F1
-// pushes inwards, -F1 r^; F2 acts through the centre, so that u and v per F2 are not those of a force at the tip, and
-// the matrix is neither symmetric nor definite.
+// The paper's own relation at radius r_p: displacements (u, v) of the tip per unit F1 and F2 of equations (2) to (5).
+// F1 pushes inwards, -F1 r^; F2 acts through the centre, so that u and v per F2 are not those of a force at the tip,
+// and the matrix is neither symmetric nor definite.
 struct ArcPaperCompliance {
   Real u1_m_per_N = 0, u2_m_per_N = 0, v1_m_per_N = 0, v2_m_per_N = 0;
 };

@@ -43,7 +43,8 @@ Vec3 force_on_body(const Region& region) PALPATE_RT {
   return -(region.normal_force_N * region.normal_w + region.friction_force_w);
 }
 
-// All regions with baked beams. The beams end at the anchors' rest positions: CouplingLaw::kTemporal moves none of them.
+// All regions with baked beams. The beams end at the anchors' rest positions: CouplingLaw::kTemporal moves none of
+// them.
 void deform_by_table(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   std::int32_t order[kMaxRegions];
   const std::int32_t count = contact_order(state, order);

@@ -1,34 +1,16 @@
-// The order in which regions came into contact, and what earlier ones did to the anchors.
+// What regions that came into contact earlier did to the anchors.
 #pragma once
 
 #include <cstdint>
 #include <span>
 
 #include "rt_core/model.h"
-#include "rt_core/state.h"
+#include "rt_core/regions/contact_order.h"
 
 namespace palpate {
 
-inline bool is_in_contact(const Region& region) PALPATE_RT { return region.id != 0 && region.lost_ticks == 0; }
-
-inline bool is_born_before(const Region& a, const Region& b) PALPATE_RT {
-  return a.born_tick != b.born_tick ? a.born_tick < b.born_tick : a.id < b.id;
-}
-
 inline bool uses_temporal_order(const Model& model) PALPATE_RT {
   return model.params.coupling_law == static_cast<std::int32_t>(CouplingLaw::kTemporal);
-}
-
-// Slots of the regions in contact, first born first. Returns how many. Bound: kMaxRegions^2 / 2 comparisons.
-inline std::int32_t contact_order(const State& state, std::int32_t (&order)[kMaxRegions]) PALPATE_RT {
-  std::int32_t count = 0;
-  for (std::int32_t slot = 0; slot < kMaxRegions; ++slot) {
-    if (!is_in_contact(state.region[slot])) continue;
-    std::int32_t at = count++;
-    for (; at > 0 && is_born_before(state.region[slot], state.region[order[at - 1]]); --at) order[at] = order[at - 1];
-    order[at] = slot;
-  }
-  return count;
 }
 
 // Where the anchors stand for the skeleton of region `slot`, relative to rest: moved by the regions born before it

@@ -1,19 +1,17 @@
 #include "rt_core/force/sort_contacts.h"
 
+#include "rt_core/regions/contact_order.h"
+
 namespace palpate {
 
 namespace {
-
-bool born_before(const Region& a, const Region& b) PALPATE_RT {
-  return a.born_tick != b.born_tick ? a.born_tick < b.born_tick : a.id < b.id;
-}
 
 Real size_of(Vec3 v) PALPATE_RT { return abs_of(v.x) + abs_of(v.y) + abs_of(v.z); }
 
 // One sum that is NaN or beyond kHuge if any of its terms is.
 bool usable(const State& state, const Contact& contact) PALPATE_RT {
   const std::int32_t slot = contact.region;
-  if (slot < 0 || slot >= kMaxRegions || state.region[slot].id == 0 || state.region[slot].lost_ticks != 0) return false;
+  if (slot < 0 || slot >= kMaxRegions || !is_in_contact(state.region[slot])) return false;
   const Real size = size_of(contact.position_w) + size_of(contact.normal_w) + abs_of(contact.weight);
   return contact.depth_m > 0 && contact.depth_m + size <= kHuge;
 }
@@ -29,14 +27,11 @@ void sort_contacts(const State& state, Scratch& scratch, SortedContacts& sorted)
     region_of[i] = use ? scratch.contact[i].region : -1;
     if (use) count_in[region_of[i]] += 1;
   }
+  std::int32_t order[kMaxRegions];
+  const std::int32_t in_contact = contact_order(state, order);
   sorted.region_count = 0;
-  for (std::int32_t s = 0; s < kMaxRegions; ++s) {  // insertion sort, bound: kMaxRegions^2 / 2
-    if (count_in[s] == 0) continue;
-    std::int32_t place = sorted.region_count++;
-    for (; place > 0 && born_before(state.region[s], state.region[sorted.slot[place - 1]]); --place) {
-      sorted.slot[place] = sorted.slot[place - 1];
-    }
-    sorted.slot[place] = s;
+  for (std::int32_t i = 0; i < in_contact; ++i) {  // bound: kMaxRegions
+    if (count_in[order[i]] > 0) sorted.slot[sorted.region_count++] = order[i];
   }
   std::int32_t next_in[kMaxRegions] = {};
   std::int32_t first = 0;

@@ -134,6 +134,50 @@ TEST(Image, EachRungNamesItsField) {
   }
 }
 
+// The same for the arrays of a finite-element body.
+const Damage kNodalDamages[] = {
+    {"no nodal vertices", ImageError::kCrossReference, "n_nodal",
+     [](ImageBytes& i) { i.params().backend = static_cast<std::int32_t>(Backend::kResponse); }},
+    {"area", ImageError::kNotFinite, "nodal_vertex.area_m2",
+     [](ImageBytes& i) { i.array<NodalVertex>(kNodalVertex)[1].area_m2 = 0; }},
+    {"free flag", ImageError::kCrossReference, "nodal_vertex.is_free",
+     [](ImageBytes& i) { i.array<NodalVertex>(kNodalVertex)[1].is_free = 2; }},
+    {"owner outside", ImageError::kCrossReference, "nodal_vertex.owner",
+     [](ImageBytes& i) { i.array<NodalVertex>(kNodalVertex)[3].owner = 4; }},
+    {"owner elsewhere", ImageError::kCrossReference, "nodal_vertex.owner",
+     [](ImageBytes& i) { i.array<NodalVertex>(kNodalVertex)[0].owner = 0; }},
+    {"compliance not finite", ImageError::kNotFinite, "compliance_f64",
+     [](ImageBytes& i) { i.array<double>(kCompliance64)[100] = kNan; }},
+    {"gauge not finite", ImageError::kNotFinite, "strain_gauge",
+     [](ImageBytes& i) { i.array<float>(kStrainGauge)[71] = std::numeric_limits<float>::infinity(); }},
+    {"no margin", ImageError::kCrossReference, "nodal parameters",
+     [](ImageBytes& i) { i.params().contact_margin_m = 0; }},
+    {"no wall", ImageError::kCrossReference, "nodal parameters", [](ImageBytes& i) { i.params().wall_N_per_m = 0; }},
+};
+
+TEST(Image, EachNodalRungNamesItsField) {
+  Model model;
+  ImageBytes whole = tiny_image(true);
+  ASSERT_EQ(open_image(whole.bytes(), model).error, ImageError::kNone) << open_image(whole.bytes(), model).field;
+  EXPECT_EQ(model.compliance_f64.size(), 144u);
+  for (const Damage& damage : kNodalDamages) {
+    ImageBytes image = tiny_image(true);
+    damage.apply(image);
+    image.seal();
+    const ImageResult result = open(image);
+    EXPECT_EQ(result.error, damage.error) << damage.what << ": " << describe(result.error);
+    EXPECT_STREQ(result.field, damage.field) << damage.what;
+  }
+}
+
+TEST(Image, NodalSceneWithoutItsArraysIsRefused) {
+  ImageBytes image = tiny_image();
+  image.params().backend = static_cast<std::int32_t>(Backend::kNodal);
+  image.seal();
+  EXPECT_EQ(open(image).error, ImageError::kCrossReference);
+  EXPECT_STREQ(open(image).field, "n_nodal");
+}
+
 TEST(Image, EveryParameterIsRangeChecked) {
 #define PALPATE_FIELD(type, name, unit, lowest, highest, meaning)                                            \
   for (const double value : {static_cast<double>(lowest) - 1.0, static_cast<double>(highest) + 1.0, kNan}) { \

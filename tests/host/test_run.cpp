@@ -20,49 +20,17 @@
 #include "sim_host/recorder.h"
 #include "sim_host/replay.h"
 #include "sim_host/run_session.h"
+#include "tests/support/ball_run.h"
 
 namespace palpate {
 namespace {
 
-// The ball's lowest point is the origin, y is up: the tool touches it at y = 68 mm.
-constexpr char kScene[] = R"(
-name = "ball"
-[body]
-shape = "sphere"
-radius_mm = 30
-triangles = 500
-[[tool.piece]]
-shape = "sphere"
-radius_mm = 8
-[path]
-hand_stiffness_N_per_m = 500
-[[path.point]]
-time_s = 0
-position_mm = [0, 75, 0]
-[[path.point]]
-time_s = 0.4
-position_mm = [0, 65, 0]
-[[path.point]]
-time_s = 0.8
-position_mm = [5, 65, 0]
-)";
-
-class Run : public testing::Test {
+class Run : public BallRun {
  protected:
   Run() {
-    folder_ = std::filesystem::temp_directory_path() / ("palpate_run_" + std::to_string(getpid()));
-    std::filesystem::create_directories(folder_);
-    std::ofstream(folder_ / "ball.toml") << kScene;
-    options_.scene = (folder_ / "ball.toml").string();
     options_.record = (folder_ / "run.plr").string();
-    options_.device = "loopback";
     options_.duration_s = 1.0;
-    options_.priority = 0;  // works without privileges
-    options_.quiet = true;
-    options_.program_folder =
-        (std::filesystem::read_symlink("/proc/self/exe").parent_path().parent_path() / "bin").string();
   }
-  ~Run() override { std::filesystem::remove_all(folder_); }
 
   // Every record of the finished run is there and replays to the same bits.
   void expect_whole_and_identical(std::uint64_t ticks) {
@@ -74,9 +42,6 @@ class Run : public testing::Test {
                                       << replayed.damage << " " << replayed.lost;
     EXPECT_EQ(replayed.ticks, ticks);
   }
-
-  std::filesystem::path folder_;
-  RunOptions options_;
 };
 
 TEST_F(Run, RecordsAndReplaysToTheSameBits) {

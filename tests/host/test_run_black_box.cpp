@@ -10,44 +10,18 @@
 #include "sim_host/image_file.h"
 #include "sim_host/replay.h"
 #include "sim_host/run_session.h"
+#include "tests/support/ball_run.h"
 
 namespace palpate {
 namespace {
 
-constexpr char kScene[] = R"(
-name = "ball"
-[body]
-shape = "sphere"
-radius_mm = 30
-triangles = 500
-[[tool.piece]]
-shape = "sphere"
-radius_mm = 8
-[[path.point]]
-time_s = 0
-position_mm = [0, 75, 0]
-[[path.point]]
-time_s = 0.4
-position_mm = [0, 65, 0]
-)";
-
-class RunBlackBox : public testing::Test {
+class RunBlackBox : public BallRun {
  protected:
   RunBlackBox() {
-    folder_ = std::filesystem::temp_directory_path() / ("palpate_runbox_" + std::to_string(getpid()));
-    std::filesystem::create_directories(folder_);
-    options_.scene = (folder_ / "ball.toml").string();
-    std::ofstream(options_.scene) << kScene;
     options_.record.clear();
     options_.image = (folder_ / "ball.pal").string();
-    options_.device = "loopback";
-    options_.priority = 0;
-    options_.quiet = true;
     options_.black_box = (folder_ / "box").string();
-    options_.program_folder =
-        (std::filesystem::read_symlink("/proc/self/exe").parent_path().parent_path() / "bin").string();
   }
-  ~RunBlackBox() override { std::filesystem::remove_all(folder_); }
 
   // Our own child that runs palpate-rt.
   static pid_t controller() {
@@ -61,9 +35,6 @@ class RunBlackBox : public testing::Test {
     }
     return 0;
   }
-
-  std::filesystem::path folder_;
-  RunOptions options_;
 };
 
 TEST_F(RunBlackBox, AKilledControllerLeavesItsLastSecondsEvenWithoutARecording) {

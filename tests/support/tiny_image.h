@@ -71,10 +71,31 @@ inline ModelParams tiny_params() {
 }
 
 // Indices into the array table, in its order.
-enum ArrayIndex { kVertex, kNormal, kTriangle, kBvh, kAnchor, kRbf, kPatch, kPiece, kToolPoint, kHull };
+enum ArrayIndex {
+  kVertex,
+  kNormal,
+  kTriangle,
+  kBvh,
+  kAnchor,
+  kRbf,
+  kPatch,
+  kPiece,
+  kToolPoint,
+  kHull,
+  kNodalVertex,
+  kCompliance32,
+  kCompliance64,
+  kStrainGauge
+};
 
-inline ImageBytes tiny_image() {
+// `nodal`: the tetrahedron as a finite-element body held at its fourth corner, 1e-4 m/N per free component.
+inline ImageBytes tiny_image(bool nodal = false) {
   ModelSizes sizes{};
+  if (nodal) {
+    sizes.n_nodal = 4;
+    sizes.n_compliance_f64 = 144;
+    sizes.n_strain_gauge = 72;
+  }
   sizes.n_vertex = 4;
   sizes.n_triangle = 4;
   sizes.n_bvh = 1;
@@ -116,6 +137,19 @@ inline ImageBytes tiny_image() {
   std::memcpy(image.array<double>(kRbf), rbf, sizeof(rbf));
   *image.array<ToolPiece>(kPiece) = {{}, {0, 0, 0}, 0.01, 0.01, 0, 0, 1, 0, 0, 0};
   *image.array<ToolPoint>(kToolPoint) = {{}, 0.01, 1e-4, 1, 0, 0};
+  if (nodal) {
+    ModelParams& p = image.params();
+    p.backend = static_cast<std::int32_t>(Backend::kNodal);
+    p.contact_margin_m = 2e-4;
+    p.wall_N_per_m = 5e4;
+    p.proxy_speed_max_m_per_s = 0.5;
+    for (std::int32_t i = 0; i < 4; ++i) {
+      const std::int32_t owner = i == 0 ? 1 : 0;
+      image.array<NodalVertex>(kNodalVertex)[i] = {1e-3, owner, i < 3 ? 1 : 0};
+    }
+    for (int i = 0; i < 9; ++i) image.array<double>(kCompliance64)[13 * i] = 1e-4;
+    for (int i = 0; i < 72; ++i) image.array<float>(kStrainGauge)[i] = 1e-3f;
+  }
   image.seal();
   return image;
 }

@@ -1,0 +1,46 @@
+// A linear elastic body reduced to its surface: the response of every surface node to a force on any other.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "config/fem/material.h"
+#include "config/fem/tet_mesh.h"
+#include "config/progress.h"
+
+namespace palpate {
+
+// Above this a body is refused unless the caller allows more: 1 GiB of doubles is 3860 surface nodes. The image holds
+// the same table, locked in memory, and a tick reads rows scattered over it.
+inline constexpr std::size_t kLargestCompliance_B = std::size_t{1} << 30;
+
+struct CondensedBody {
+  SurfaceMesh surface;             // vertex i is surface node i; counter-clockwise from outside
+  std::vector<Vec3> normal;        // outward unit normals of the vertices
+  std::vector<std::int32_t> node;  // the mesh's node of vertex i
+  std::vector<std::uint8_t> held;  // held components of vertex i: bit 0 x, 1 y, 2 z
+  // Row-major, (3 n)^2: displacement component a of vertex i by a unit force along b on vertex j, at
+  // [(3 i + a) * 3 n + 3 j + b]. m/N. Symmetric to the last bit; rows and columns of held components are zero.
+  std::vector<double> compliance_mpN;
+  std::size_t degrees_of_freedom = 0;  // of the whole mesh, held components excepted
+  std::size_t factor_entries = 0;      // of the sparse Cholesky factor
+};
+
+struct CondenseLimits {
+  std::size_t compliance_B = kLargestCompliance_B;
+};
+
+// Factors the stiffness once and solves for the surface columns; interior nodes carry no force, so this equals the
+// inverse of the Schur complement (Duriez, Andriot & Kheddar 2003, section 3.1). Checks mesh, material and supports.
+// Throws ConfigError naming `label`.
+CondensedBody condense(const TetMesh& mesh, const FemMaterial& material, const Supports& supports,
+                       const std::string& label, const Progress& progress = {}, const CondenseLimits& limits = {});
+
+// Bytes of the compliance table of n surface nodes, in doubles.
+constexpr std::size_t compliance_bytes(std::size_t surface_nodes) {
+  return 9 * surface_nodes * surface_nodes * sizeof(double);
+}
+
+}  // namespace palpate
