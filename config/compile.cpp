@@ -30,6 +30,7 @@ class Compiler {
     add_laws();
     add_surface();
     add_tool();
+    add_articulation();
     add_distances();
     add_device();
     add_skeleton();
@@ -131,6 +132,39 @@ class Compiler {
     image_.piece = std::move(tool.piece);
     image_.tool_point = std::move(tool.point);
     image_.hull_vertex_m = std::move(tool.hull_vertex_m);
+  }
+
+  void add_articulation() {
+    image_.params.articulation = static_cast<std::int32_t>(scene_.articulation);
+    image_.params.body_mass_kg = report_.mass_kg;
+    if (scene_.articulation == Articulation::kGripper) add_gripper();
+  }
+
+  // One sliding joint per jaw: closed where the pieces are described, open a slide away.
+  void add_gripper() {
+    image_.params.closing_rate_per_s = 1 / scene_.gripper.closing_s;
+    image_.params.stop_force_N = scene_.gripper.stop_force_N;
+    std::vector<Vec3> slides;
+    for (std::size_t i = 0; i < image_.piece.size(); ++i) {
+      const Vec3 slide = scene_.piece[i].slide_m;
+      const auto known = std::ranges::find(slides, slide) - slides.begin();
+      const bool moves = norm(slide) > 0;
+      if (moves && known == std::ssize(slides)) slides.push_back(slide);
+      image_.piece[i].joint = moves ? static_cast<std::int32_t>(known) : -1;
+      image_.piece[i].group = image_.piece[i].joint;
+    }
+    for (const Vec3 slide : slides) {
+      Joint joint{};
+      joint.before.orientation = rotation_between({0, 0, 1}, unit_or(slide, {0, 0, 1}));
+      if (slide.z < 0 && slide.x == 0 && slide.y == 0) joint.before.orientation = {0, 1, 0, 0};  // half a turn
+      joint.zero_inverse = {{}, conjugate(joint.before.orientation)};
+      joint.highest = joint.open = norm(slide);
+      joint.speed_max = joint.open / scene_.gripper.closing_s;
+      joint.sign = 1;
+      joint.parent = -1;
+      joint.kind = static_cast<std::int32_t>(JointKind::kSlide);
+      image_.joint.push_back(joint);
+    }
   }
 
   // Mean distance of a piece's tool points to their nearest neighbours; the smallest over the pieces; 0 without pairs.

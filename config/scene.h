@@ -125,6 +125,12 @@ struct PieceDesc {
   double margin_m = kAuto;
   std::int32_t points = 1;
   std::int32_t part = 0;
+  Vec3 slide_m;  // gripper: how far it has moved when the gripper is open; described where it is when closed
+};
+
+struct GripperDesc {
+  double closing_s = 0.5;
+  double stop_force_N = 5;
 };
 
 // A simulated device: the numbers its coupling stiffness and limits follow from.
@@ -157,7 +163,8 @@ struct DeviceDesc {
 struct PathPoint {
   double time_s = 0;
   Vec3 position_m;
-  Vec3 rotation_rad;  // rotation vector
+  Vec3 rotation_rad;                 // rotation vector
+  std::vector<double> closing = {};  // of each finger, or one for all; empty: as at the point before
 };
 struct PathDesc {
   double hand_stiffness_N_per_m = 800;
@@ -191,6 +198,8 @@ struct SceneDesc {
   ShapeDesc shape;
   CouplingDesc coupling;
   std::vector<PieceDesc> piece;
+  Articulation articulation = Articulation::kRigid;  // set by the presence of [gripper]
+  GripperDesc gripper;
   DeviceDesc device;
   PathDesc path;
   SceneSource source;

@@ -178,7 +178,9 @@ void check_piece_sizes(const SceneDesc& scene, const PieceDesc& piece, const std
   if (piece.shape == PieceShape::kHull && piece.vertices_m.size() > 64)
     fail(scene, label + ".vertices_mm", std::to_string(piece.vertices_m.size()) + " corners; allowed 1 to 64");
   if (piece.shape == PieceShape::kBox && piece.points > 0 && piece.points < 8)
-    fail(scene, label + ".points", std::to_string(piece.points) + "; a box needs its 8 corners: allowed 0 or 8 to 128");
+    fail(scene, label + ".points",
+         std::to_string(piece.points) + "; a box needs its 8 corners: allowed 0 or 8 to " +
+             std::to_string(kMaxToolPoints));
   const bool has_ends =
       piece.shape == PieceShape::kCapsule || piece.shape == PieceShape::kCylinder || piece.shape == PieceShape::kCone;
   if (piece.touches != TouchingEnd::kAll && !has_ends)
@@ -204,6 +206,28 @@ void check_tool(const SceneDesc& scene) {
              ": change the pieces' points");
 }
 
+void check_articulation(const SceneDesc& scene) {
+  std::vector<Vec3> slides;
+  for (std::size_t i = 0; i < scene.piece.size(); ++i) {
+    const Vec3 slide = scene.piece[i].slide_m;
+    if (!(norm(slide) > 0)) continue;
+    const std::string key = "tool.piece[" + std::to_string(i) + "].slide_mm";
+    if (scene.articulation != Articulation::kGripper)
+      fail(scene, key, "has no effect without a [gripper] table; add [gripper] or remove it");
+    if (std::ranges::find(slides, slide) == slides.end()) slides.push_back(slide);
+    if (slides.size() > kMaxJoints)
+      fail(scene, key,
+           "one jaw too many; allowed " + std::to_string(kMaxJoints) +
+               ": give pieces of one jaw the same "
+               "slide_mm");
+  }
+  if (scene.articulation == Articulation::kGripper && slides.empty())
+    fail(scene, "gripper", "no piece moves; give the pieces of at least one jaw a slide_mm");
+  for (std::size_t i = 0; i < scene.path.point.size(); ++i)
+    if (scene.articulation == Articulation::kRigid && !scene.path.point[i].closing.empty())
+      fail(scene, "path.point[" + std::to_string(i) + "].closing", "has no effect with a rigid tool; remove it");
+}
+
 void check_device_and_path(const SceneDesc& scene) {
   const DeviceDesc& d = scene.device;
   if (!(d.silence_hold_ticks <= d.silence_passive_ticks && d.silence_passive_ticks < d.silence_fault_ticks))
@@ -225,6 +249,7 @@ void check_scene(const SceneDesc& scene) {
   check_body(scene);
   check_contact(scene);
   check_tool(scene);
+  check_articulation(scene);
   check_device_and_path(scene);
 }
 

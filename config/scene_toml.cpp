@@ -183,6 +183,9 @@ class Reader {
       case KeyKind::kPairs:
         read_pairs(value, path, key, *static_cast<std::vector<ProfilePoint>*>(key.field(fields)));
         return;
+      case KeyKind::kFingers:
+        read_fingers(value, path, key, *static_cast<std::vector<double>*>(key.field(fields)));
+        return;
       case KeyKind::kPoints:
         read_points(value, path, key, *static_cast<std::vector<Vec3>*>(key.field(fields)));
         return;
@@ -235,6 +238,13 @@ class Reader {
       const std::vector<double> v = read_numbers(element, path, key, 2);
       pairs.push_back({v[0], v[1]});
     }
+  }
+  // One number for all fingers, or one for each.
+  void read_fingers(const toml::node& value, const std::string& path, const KeySpec& key,
+                    std::vector<double>& fingers) const {
+    const toml::array* list = value.as_array();
+    if (list == nullptr || (list->size() != 1 && list->size() != kMaxFingers)) fail_type(value, path, key);
+    for (const toml::node& element : *list) fingers.push_back(read_number(element, path, key));
   }
   void read_points(const toml::node& value, const std::string& path, const KeySpec& key,
                    std::vector<Vec3>& points) const {

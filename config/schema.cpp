@@ -207,6 +207,14 @@ const KeySpec kPiece[] = {
         "most tool points to spread; each costs about 800 instructions a tick; sphere: 1; box: 8 or more; "
         "0: never touches"),
     integer<&PieceDesc::part>("part", 0, 1 << 20, "label in recordings"),
+    list<&PieceDesc::slide_m>(kVec3, "slide_mm", -1000, 1000, kMilli,
+                              "gripper: how far the piece moves away when the gripper opens; it is described where it "
+                              "is when closed. Pieces with the same value are one jaw"),
+};
+const KeySpec kGripper[] = {
+    number<&GripperDesc::closing_s>("closing_s", 0.01, 100, 1, "shortest time from open to closed"),
+    number<&GripperDesc::stop_force_N>("stop_force_N", 0.01, 1e4, 1,
+                                       "a jaw stops where it would press a piece harder than this"),
 };
 const KeySpec kDevice[] = {
     text<&DeviceDesc::name>("name", 63, "name of the device"),
@@ -248,6 +256,10 @@ const KeySpec kPathPoint[] = {
     number<&PathPoint::time_s>("time_s", 0, 1e5, 1, "time from the start; increasing, the first is 0", true),
     list<&PathPoint::position_m>(kVec3, "position_mm", -1e4, 1e4, kMilli, "where the hand wants the tool frame, world"),
     list<&PathPoint::rotation_rad>(kVec3, "rotation_deg", -360, 360, kDegree, "rotation vector of the tool frame"),
+    list<&PathPoint::closing>(
+        KeyKind::kFingers, "closing", 0, 1, 1,
+        "articulated tools: 0 open to 1 closed, as [all] or [thumb, index, middle, ring, little]; "
+        "default: as at the point before"),
 };
 
 template <auto member>
@@ -257,6 +269,10 @@ void* open(SceneDesc& scene) {
 void* open_top(SceneDesc& scene) { return &scene; }
 void* open_piece(SceneDesc& scene) { return &scene.piece.emplace_back(); }
 void* open_point(SceneDesc& scene) { return &scene.path.point.emplace_back(); }
+void* open_gripper(SceneDesc& scene) {
+  scene.articulation = Articulation::kGripper;
+  return &scene.gripper;
+}
 
 const TableSpec kTables[] = {
     {"", false, "Top level.", kTop, open_top},
@@ -272,6 +288,8 @@ const TableSpec kTables[] = {
     {"shape", false, "How the deformed surface is drawn. No effect on forces.", kShape, open<&SceneDesc::shape>},
     {"coupling", false, "Several contact regions at once.", kCoupling, open<&SceneDesc::coupling>},
     {"tool.piece", true, "The rigid tool: convex pieces, at least one with points.", kPiece, open_piece},
+    {"gripper", false, "Makes the tool a gripper: pieces with slide_mm move by the closing of path or device.",
+     kGripper, open_gripper},
     {"device", false, "The haptic device: what it admits and where it must be stopped.", kDevice,
      open<&SceneDesc::device>},
     {"path", false, "What the simulated hand does in the demonstration. Not stored in the image.", kPath,

@@ -9,7 +9,7 @@
 
 namespace palpate {
 
-enum class KeyKind { kNumber, kNumberOrAuto, kInteger, kBool, kText, kChoice, kVec3, kPairs, kPoints };
+enum class KeyKind { kNumber, kNumberOrAuto, kInteger, kBool, kText, kChoice, kVec3, kPairs, kPoints, kFingers };
 
 struct KeySpec {
   const char* key;  // with its unit as suffix

@@ -106,6 +106,7 @@ std::string default_text(const KeySpec& key, void* table) {
       return vector_text(*static_cast<Vec3*>(key.field(table)), key.scale);
     case KeyKind::kPairs:
     case KeyKind::kPoints:
+    case KeyKind::kFingers:
       return "-";
   }
   return "-";
@@ -131,6 +132,8 @@ std::string allowed_text(const KeySpec& key) {
       return "[x, y, z], each " + range_text(key);
     case KeyKind::kPairs:
       return "list of [radius, height], each " + range_text(key);
+    case KeyKind::kFingers:
+      return "list of 1 or " + std::to_string(kMaxFingers) + " numbers, each " + range_text(key);
     case KeyKind::kPoints:
       return "list of [x, y, z], each " + range_text(key);
   }

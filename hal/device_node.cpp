@@ -73,7 +73,7 @@ void DeviceNode::send_status() noexcept {
     status.sequence = status_sequence_;
     status.command_sequence = sequence_.last();
     status.flags = flags();
-    status.buttons = buttons_;
+    status.buttons = buttons();
     status.error = error_;
     status.time_us = static_cast<std::uint32_t>(static_cast<std::uint64_t>(1e6 * (plant_.time_s() - started_s_) + 0.5));
     wire::set_pose(status, position_m, orientation);
@@ -83,7 +83,7 @@ void DeviceNode::send_status() noexcept {
     wire::ClassicOrientation o;
     p.sequence = o.sequence = status_sequence_ & 0xFFu;
     o.flags = flags() & 0x3Fu;
-    o.buttons = buttons_;
+    o.buttons = buttons();
     wire::set_pose(p, o, position_m, orientation);
     count = make_status_frames(options_.node, p, o, frames);
   }

@@ -7,6 +7,7 @@
 #include "hal/device_bus.h"
 #include "hal/device_sim.h"
 #include "hal/transport.h"
+#include "rt_core/io.h"
 
 namespace palpate {
 
@@ -52,6 +53,7 @@ class DeviceNode {
   void obey(std::uint32_t sequence, const DeviceCommand& command, std::int64_t now_ns) noexcept;
   void send_status() noexcept;
   std::uint32_t flags() const noexcept;
+  std::uint32_t buttons() const noexcept { return buttons_ | (plant_.trigger() ? kButtonClose : 0u); }
 
   Transport& transport_;
   NodeOptions options_;

@@ -49,6 +49,7 @@ class DevicePlant {
   void freeze_encoder(bool frozen) noexcept { frozen_ = frozen; }  // repeats the last measurement
   void shift_encoder(Vec3 offset_m) noexcept { encoder_shift_m_ += offset_m; }  // lost counts
   Wrench motor() const noexcept { return motor_; }                              // rendered in the last period
+  bool trigger() const noexcept { return path_.at(time_s()).trigger; }          // the hand holds the closing button
   bool saturated() const noexcept { return saturated_; }
   double time_s() const noexcept { return static_cast<double>(ticks_) * options_.period_s; }
   std::uint64_t ticks() const noexcept { return ticks_; }

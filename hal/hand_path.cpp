@@ -34,12 +34,12 @@ HandPath::HandPath(std::vector<HandPose> poses) : poses_(std::move(poses)) {
 
 HandTarget HandPath::at(double time_s) const noexcept {
   if (poses_.empty()) return {};
-  if (!(time_s > poses_.front().time_s)) return {poses_.front().pose, {}, {}};
+  if (!(time_s > poses_.front().time_s)) return {poses_.front().pose, {}, {}, poses_.front().trigger};
   // Binary search: a motion repeated for hours has thousands of poses.
   const auto next = std::upper_bound(poses_.begin() + 1, poses_.end(), time_s,
                                      [](double time, const HandPose& pose) { return time < pose.time_s; });
   const HandPose& from = *(next - 1);
-  if (next == poses_.end()) return {from.pose, {}, {}};
+  if (next == poses_.end()) return {from.pose, {}, {}, from.trigger};
   const HandPose& to = *next;
   const double span_s = to.time_s - from.time_s;
   const double u = (time_s - from.time_s) / span_s;
@@ -47,7 +47,10 @@ HandTarget HandPath::at(double time_s) const noexcept {
   const double rate = 30 * u * u * (1 - u) * (1 - u) / span_s;
   const Vec3 way = to.pose.position_m - from.pose.position_m;
   const Vec3 turn = rotation_vector(to.pose.orientation * conjugate(from.pose.orientation));
-  return {{from.pose.position_m + s * way, rotation_by(s * turn) * from.pose.orientation}, rate * way, rate * turn};
+  return {{from.pose.position_m + s * way, rotation_by(s * turn) * from.pose.orientation},
+          rate * way,
+          rate * turn,
+          from.trigger};
 }
 
 }  // namespace palpate

@@ -13,11 +13,13 @@ namespace palpate {
 struct HandPose {
   double time_s = 0;
   Pose pose;
+  bool trigger = false;  // held from this pose on: the device's closing button
 };
 struct HandTarget {
   Pose pose;
   Vec3 velocity_m_per_s;
   Vec3 spin_rad_per_s;
+  bool trigger = false;
 };
 
 class HandPath {

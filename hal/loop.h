@@ -52,7 +52,8 @@ concept Controller = requires(T c, const Input& in, Output& out, const StageProb
   c.step(in, out, probe);
   c.fill(in, out, record);
 };
-// Telemetry must never wait; commands are level bits, polled once per tick.
+// Telemetry must never wait; commands are level bits, polled once per tick. A source may also have joints(), the
+// command for an articulated tool that came with the last poll.
 template <typename T>
 concept RecordSink = requires(T sink, const TickRecord& record) {
   sink.publish(record);
@@ -196,6 +197,7 @@ class Loop {
     input_.stale_ticks = stale_;
     input_.overrun_ticks = slots_.missed();
     input_.commands = host_.poll() | (stopping ? Command::kStop : 0u);
+    if constexpr (requires { host_.joints(); }) input_.joints = host_.joints();
     input_.device_fault = sample_.faults;
     if (stale_ >= options_.silence_fault_ticks) input_.device_fault |= Fault::kDeviceSilent;
     if (slots_.fault()) input_.device_fault |= Fault::kOverrun;

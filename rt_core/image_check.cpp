@@ -160,6 +160,8 @@ ImageResult check_piece(const Model& model, std::size_t i) noexcept {
   const int64_t last_hull = int64_t{p.first_hull} + p.hull_count;
   if (p.first_hull < 0 || p.hull_count < 0 || last_hull > model.sizes.n_hull) return broken("piece.first_hull", i);
   if (p.shape == static_cast<int32_t>(PieceShape::kHull) && p.hull_count < 1) return broken("piece.hull_count", i);
+  if (model.params.articulation != 0 && p.joint != -1 && !in_range(p.joint, model.joint.size()))
+    return broken("piece.joint", i);
   for (int64_t k = p.first_point; k < last_point; ++k)
     if (model.tool_point[static_cast<std::size_t>(k)].piece != static_cast<int32_t>(i))
       return broken("piece.first_point", i);
@@ -179,6 +181,31 @@ ImageResult check_tool(const Model& model) noexcept {
     if (!is_finite(model.hull_vertex_m[i])) return not_finite("hull_vertex_m", i);
   for (std::size_t i = 0; i < model.piece.size(); ++i)
     if (const ImageResult result = check_piece(model, i); result.error != ImageError::kNone) return result;
+  return {};
+}
+
+// Parents come before their children, so that one pass places every link.
+ImageResult check_joint(const Joint& joint, std::size_t i) noexcept {
+  for (const Pose& pose : {joint.before, joint.after, joint.zero_inverse})
+    if (!is_finite(pose) || !is_unit(pose.orientation)) return not_finite("joint.pose", i);
+  const double lowest = joint.lowest, highest = joint.highest;
+  if (!(lowest >= -kHuge && lowest <= highest && highest <= kHuge)) return not_finite("joint.limits", i);
+  for (const double position : {joint.open, joint.closed})
+    if (!(position >= lowest && position <= highest)) return not_finite("joint.open", i);
+  if (!(joint.speed_max > 0 && joint.speed_max <= kHuge)) return not_finite("joint.speed_max", i);
+  if (joint.sign != 1 && joint.sign != -1) return broken("joint.sign", i);
+  if (joint.parent < -1 || joint.parent >= static_cast<int64_t>(i)) return broken("joint.parent", i);
+  if (joint.kind != 0 && joint.kind != 1) return broken("joint.kind", i);
+  if (joint.finger < 0 || joint.finger >= kMaxFingers) return broken("joint.finger", i);
+  return {};
+}
+
+ImageResult check_articulation(const Model& model) noexcept {
+  if ((model.params.articulation != 0) != (model.sizes.n_joint > 0)) return broken("n_joint", 0);
+  for (std::size_t i = 0; i < model.joint.size(); ++i)
+    if (const ImageResult result = check_joint(model.joint[i], i); result.error != ImageError::kNone) return result;
+  for (std::size_t i = 0; i < model.grasp_w.size(); ++i)
+    if (!is_finite(model.grasp_w[i]) || !is_unit(model.grasp_w[i].orientation)) return not_finite("grasp_w", i);
   return {};
 }
 
@@ -240,6 +267,7 @@ ImageResult check_arrays(const Model& model) noexcept {
   if (const ImageResult result = check_skeleton(model); result.error != ImageError::kNone) return result;
   if (const ImageResult result = check_beams(model); result.error != ImageError::kNone) return result;
   if (const ImageResult result = check_tool(model); result.error != ImageError::kNone) return result;
+  if (const ImageResult result = check_articulation(model); result.error != ImageError::kNone) return result;
   return check_nodal(model);
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "rt_core/limits.h"
 #include "rt_core/status.h"
 #include "rt_core/vec.h"
 
@@ -19,6 +20,17 @@ inline constexpr std::uint32_t kStop = 1u << 1;   // level: ramp to zero, then k
 inline constexpr std::uint32_t kReset = 1u << 2;  // edge: leave kFault for kIdle
 }  // namespace Command
 
+// What an articulated tool's joints are to do; rigid tools ignore it. Levels: repeated every tick. Single precision
+// resolves 1e-7 rad, and half the bytes travel in every record.
+struct JointCommand {
+  float closing[kMaxFingers] = {};  // per finger: 0 open, 1 closed; the first is a gripper's
+  float target[kMaxJoints] = {};    // rad or m, for the joints whose bit in `direct` is set
+  std::uint32_t direct = 0;         // bit i: joint i goes to target[i], whatever its finger's closing
+  std::uint32_t reserved = 0;
+};
+// Device button that closes every finger while it is held.
+inline constexpr std::uint32_t kButtonClose = 1u << 0;
+
 struct Input {
   Pose pose_w;                      // device handle (kDevice) or tool (kTool)
   Vec3 velocity_w;                  // m/s, of the handle; zero if unknown
@@ -28,6 +40,7 @@ struct Input {
   std::uint32_t overrun_ticks = 0;  // deadlines missed just before this tick
   std::uint32_t buttons = 0;
   Drive drive = Drive::kDevice;
+  JointCommand joints;
 };
 
 struct Output {
@@ -44,6 +57,8 @@ struct Output {
   std::int32_t regions = 0;
   std::int32_t contacts = 0;
   std::int32_t reserved = 0;
+  Wrench palm_w;  // hand only: what the palm must exert on the body to balance fingers and weight, about the tool's
+                  // origin
 };
 
 static_assert(std::is_trivially_copyable_v<Input> && std::is_trivially_copyable_v<Output>);

@@ -8,8 +8,13 @@ namespace palpate {
 
 // Convex pieces of one tool. A hand has 15 contact parts and a palm. Refused when the scene is baked.
 inline constexpr std::int32_t kMaxPieces = 20;
-// Sample points spread over the tool's pieces: each is one closest-point query in the worst tick. Refused at bake.
-inline constexpr std::int32_t kMaxToolPoints = 128;
+// Moving joints of an articulated tool: the 21 of a hand. Refused at bake.
+inline constexpr std::int32_t kMaxJoints = 21;
+// Groups of joints that one closing fraction drives: the five fingers of a hand.
+inline constexpr std::int32_t kMaxFingers = 5;
+// Sample points spread over the tool's pieces: each is one closest-point query in the worst tick. Room for a finely
+// sampled tool; what a scene can afford is decided by its instruction budget. Refused at bake.
+inline constexpr std::int32_t kMaxToolPoints = 2048;
 // Tool points in contact at once. Overflow: the deepest are kept (ties by index), Status::kContactsDropped.
 inline constexpr std::int32_t kMaxContacts = 64;
 // Surface nodes of a finite-element body: at 5461 nodes the compliance in single precision is 1 GiB, locked in memory.

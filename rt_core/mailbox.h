@@ -23,7 +23,7 @@
 namespace palpate {
 
 inline constexpr std::uint64_t kMailboxMagic = 0x31304C49414D504Cull;  // bytes "LPMAIL01"
-inline constexpr std::uint32_t kMailboxVersion = 1;
+inline constexpr std::uint32_t kMailboxVersion = 2;
 
 // What the host asks for. Levels, not events: the newest replaces the older ones.
 struct HostCommand {
@@ -31,11 +31,23 @@ struct HostCommand {
   std::uint32_t commands = 0;    // Command bits, given to every tick until changed
   std::uint32_t quit = 0;        // 1: ramp to zero force, then leave the loop
   std::uint64_t heartbeat = 0;   // +1 several times a second while the host lives
+  JointCommand joints;           // for an articulated tool; reserved must be 0
   std::uint64_t reserved = 0;    // must be 0
 };
 static_assert(std::is_trivially_copyable_v<HostCommand> && sizeof(HostCommand) % 8 == 0);
 inline constexpr std::size_t kCommandWords = sizeof(HostCommand) / 8;
 inline constexpr std::uint32_t kKnownCommands = Command::kArm | Command::kStop | Command::kReset;
+inline constexpr std::uint32_t kKnownJoints = (1u << kMaxJoints) - 1;
+
+// Whether a joint command is one a host may send: fractions, finite positions, known joints. Whether a position lies
+// within its joint's limits only the tick knows: it cuts to them (Status::kJointLimited).
+inline bool is_valid(const JointCommand& command) PALPATE_RT {
+  for (const float closing : command.closing)  // bound: kMaxFingers
+    if (!(closing >= 0.0f && closing <= 1.0f)) return false;
+  for (const float target : command.target)  // bound: kMaxJoints
+    if (!(target >= -10.0f && target <= 10.0f)) return false;
+  return (command.direct & ~kKnownJoints) == 0 && command.reserved == 0;
+}
 
 struct MailboxRegion {
   std::uint64_t magic;
@@ -70,6 +82,11 @@ class MailboxWriter {
     current_.generation += 1;
     current_.commands = commands;
     current_.quit = quit ? 1 : 0;
+    publish();
+  }
+  void set_joints(const JointCommand& joints) noexcept {
+    current_.generation += 1;
+    current_.joints = joints;
     publish();
   }
   void beat() noexcept {
@@ -115,6 +132,7 @@ class MailboxReader {
     HostCommand copy;
     if (region_ == nullptr || !read(copy)) return MailboxResult::kBusy;
     if ((copy.commands & ~kKnownCommands) != 0 || copy.quit > 1 || copy.reserved != 0) return MailboxResult::kInvalid;
+    if (!is_valid(copy.joints)) return MailboxResult::kInvalid;
     if (copy.generation < generation_) return MailboxResult::kInvalid;
     generation_ = copy.generation;
     command = copy;

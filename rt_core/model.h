@@ -18,6 +18,7 @@ enum class SkeletonLaw : std::int32_t { kNone = 0, kStiffness = 1, kPaper = 2, k
 enum class ShapeLaw : std::int32_t { kRbf = 0, kDisplacementAngle = 1 };
 enum class NeighbourhoodLaw : std::int32_t { kNone = 0, kLog = 1, kLogC1 = 2, kPunch = 3 };
 enum class CouplingLaw : std::int32_t { kNone = 0, kCoupled = 1, kTemporal = 2 };
+enum class Articulation : std::int32_t { kRigid = 0, kGripper = 1, kHand = 2 };
 // Who measures contact and makes force. Response: tool points on the rest surface, one law per region. Nodal: surface
 // nodes of a finite-element body against the tool's pieces (rt_core/nodal).
 enum class Backend : std::int32_t { kResponse = 0, kNodal = 1 };
@@ -42,6 +43,8 @@ enum class NodalCarry : std::int32_t { kFarField = 0, kRest = 1, kTotal = 2 };
   X(std::int32_t, nodal_solver, "-", 0, 1, "NodalSolver")                                                    \
   X(std::int32_t, nodal_sweeps, "-", 0, 100, "Gauss-Seidel sweeps of the normal problem")                    \
   X(std::int32_t, friction_sweeps, "-", 0, 20, "Gauss-Seidel sweeps of the problem with friction")           \
+  X(std::int32_t, articulation, "-", 0, 2, "Articulation: whether pieces of the tool move by joints")        \
+  X(std::int32_t, reserved, "-", 0, 0, "keeps the doubles aligned")                                          \
   X(std::int32_t, nodal_carry, "-", 0, 2, "NodalCarry: where gaps and normals are taken")                    \
   X(double, period_s, "s", 1e-5, 1e-1, "tick period")                                                        \
   X(double, k1_N_per_m, "N/m", 0, 1e9, "linear coefficient of the contact law, per unit weight")             \
@@ -69,7 +72,10 @@ enum class NodalCarry : std::int32_t { kFarField = 0, kRest = 1, kTotal = 2 };
   X(double, regularisation, "-", 0, 0.1, "share added to the diagonal of the contact problem")               \
   X(double, wall_N_per_m, "N/m", 0, 1e9, "stiffness of the body's held nodes")                               \
   X(double, proxy_speed_max_m_per_s, "m/s", 0, 100, "fastest motion of the tool in contact")                 \
-  X(double, strain_limit, "-", 0, 10, "largest strain for which the linear body is trusted")
+  X(double, strain_limit, "-", 0, 10, "largest strain for which the linear body is trusted")                 \
+  X(double, closing_rate_per_s, "1/s", 0, 1e3, "fastest change of a closing fraction")                       \
+  X(double, stop_force_N, "N", 0, 1e6, "a joint stops where it would press a part harder than this")         \
+  X(double, body_mass_kg, "kg", 0, 1e9, "mass of the body: what a palm has to hold")
 
 struct ModelParams {
 #define PALPATE_FIELD(type, name, unit, lowest, highest, meaning) type name;
@@ -103,6 +109,7 @@ struct BvhNode {
   std::int32_t count[4];  // triangles in a leaf (1..4; they are contiguous), 0 for inner nodes and empty slots
 };
 enum class PieceShape : std::int32_t { kSphere = 0, kCapsule = 1, kCylinder = 2, kCone = 3, kBox = 4, kHull = 5 };
+enum class JointKind : std::int32_t { kTurn = 0, kSlide = 1 };
 // Convex piece of the tool: a core shape (tool frame) rounded by a margin, as in "sphere = point + radius".
 struct ToolPiece {
   Pose pose_tool;           // piece frame in the tool frame; axis of revolution = piece z
@@ -114,6 +121,26 @@ struct ToolPiece {
   std::int32_t first_point, point_count;  // its tool points
   std::int32_t first_hull, hull_count;    // its hull vertices (kHull only)
   std::int32_t part;                      // label for telemetry: finger part, mallet head...
+  std::int32_t joint = -1;                // that carries it; -1: fixed to the tool frame
+  std::int32_t group = 0;  // articulated tools: contacts of different groups (fingers, jaws) never share a region
+  std::int32_t reserved = 0;
+};
+// One degree of freedom of an articulated tool. Its link's frame in the tool frame is
+//   link = link(parent) * before * motion(q) * after,   motion = rotation about z or translation along z,
+// which holds the standard Denavit-Hartenberg row Rz(theta) Tz(d) Tx(a) Rx(alpha) with theta = sign q and after = Tx(a)
+// Rx(alpha). Pieces are described in the tool frame with every joint at zero.
+struct Joint {
+  Pose before;             // parent's link frame to the joint's axis
+  Pose after;              // moved axis to the link's frame
+  Pose zero_inverse;       // tool frame to the link's frame with every joint at zero
+  double lowest, highest;  // rad or m
+  double open, closed;     // where closing fractions 0 and 1 put it, within the limits
+  double speed_max;        // rad/s or m/s
+  double sign;             // +1 or -1
+  std::int32_t parent;     // a lower joint, or -1: the tool frame
+  std::int32_t kind;       // JointKind
+  std::int32_t finger;     // whose closing fraction drives it
+  std::int32_t reserved;
 };
 // Point of a piece's core: the centre of a small sphere of radius margin_m that carries a share of the contact.
 struct ToolPoint {
@@ -187,7 +214,9 @@ struct BeamResponse {
     "surface compliance, m/N: row-major (3 n_vertex)^2, held components zero")                                  \
   X(double, compliance_f64, n_compliance_f64, "world", "the same in double precision; one of the two is empty") \
   X(float, strain_gauge, n_strain_gauge, "world",                                                               \
-    "strain per newton: 3 n_vertex rows of 6 components (xx yy zz xy yz zx) per gauge")
+    "strain per newton: 3 n_vertex rows of 6 components (xx yy zz xy yz zx) per gauge")                         \
+  X(Joint, joint, n_joint, "tool", "joints of an articulated tool, parents first")                              \
+  X(Pose, grasp_w, n_grasp, "world", "tool pose for which the closed joint positions were made: 0 or 1")
 
 // X(name, lowest, highest)
 #define PALPATE_MODEL_SIZES(X)       \
@@ -207,7 +236,9 @@ struct BeamResponse {
   X(n_nodal, 0, 1 << 26)             \
   X(n_compliance_f32, 0, 1 << 28)    \
   X(n_compliance_f64, 0, 1 << 28)    \
-  X(n_strain_gauge, 0, 1 << 26)
+  X(n_strain_gauge, 0, 1 << 26)      \
+  X(n_joint, 0, kMaxJoints)          \
+  X(n_grasp, 0, 1)
 
 struct ModelSizes {
 #define PALPATE_FIELD(name, lowest, highest) std::int64_t name;

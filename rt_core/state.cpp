@@ -38,6 +38,20 @@ void visit_safety(const SafetyState& s, Visitor&& visit) PALPATE_RT {
 }
 
 template <class Visitor>
+void visit_articulation(const Model& model, const ArticulationState& a, Visitor&& visit) PALPATE_RT {
+  for (const double closing : a.closing) visit("articulation.closing", closing);  // bound: kMaxFingers
+  visit("articulation.moved", a.started, a.moved);
+  for (std::int64_t j = 0; j < model.sizes.n_joint; ++j) {  // bound: kMaxJoints
+    visit("articulation.joint", a.joint[j]);
+    visit("articulation.axis_tool", a.axis_tool[j], a.origin_tool_m[j]);
+  }
+  for (std::int64_t p = 0; p < model.sizes.n_piece; ++p) {  // bound: kMaxPieces
+    visit("articulation.motion_tool", a.motion_tool[p], a.motion_previous_tool[p]);
+    visit("articulation.piece_force_tool_N", a.piece_force_tool_N[p], a.piece_torque_tool_Nm[p]);
+  }
+}
+
+template <class Visitor>
 void visit_state(const Model& model, const State& state, Visitor&& visit) PALPATE_RT {
   visit("tick", state.tick);
   visit("device_w", state.device_w, state.device_previous_w);
@@ -59,6 +73,7 @@ void visit_state(const Model& model, const State& state, Visitor&& visit) PALPAT
       if (state.region[r].id != 0) visit("anchor_by_region", state.anchor_by_region[r][i]);
   }
   visit_safety(state.safety, visit);
+  if (model.params.articulation != 0) visit_articulation(model, state.articulation, visit);
 }
 
 // Hashes of the visited fields of one state, for comparison. Host use: 128 KiB on the stack.

@@ -71,6 +71,22 @@ struct SafetyState {
   Wrench last_device_w;       // last output
 };
 
+// Joints of an articulated tool. Written by articulate; rigid tools leave it untouched.
+struct ArticulationState {
+  double closing[kMaxFingers] = {};
+  double joint[kMaxJoints] = {};  // rad or m
+  std::int32_t started = 0;       // 0: joints take their open positions at the next tick
+  std::int32_t moved = 0;         // 1: some joint moved this tick
+  // Motion of each piece from its place with all joints at zero, tool frame: at this and at the last tick.
+  Pose motion_tool[kMaxPieces];
+  Pose motion_previous_tool[kMaxPieces];
+  Vec3 axis_tool[kMaxJoints];      // of each joint where it is now
+  Vec3 origin_tool_m[kMaxJoints];  // a point on it
+  // Normal contact load of each piece, of the last tick. Written by compute_force.
+  Vec3 piece_force_tool_N[kMaxPieces];
+  Vec3 piece_torque_tool_Nm[kMaxPieces];  // about the tool's origin
+};
+
 // Largest number of each pool's entries used since reset.
 struct HighWater {
   std::int32_t contacts = 0, regions = 0, traversal_stack = 0, gjk_support_calls = 0;
@@ -91,6 +107,7 @@ struct State {
   Vec3 anchor_by_region[kMaxRegions][kMaxAnchors];  // displacement of each anchor by each region
   SafetyState safety;
   HighWater high_water;
+  ArticulationState articulation;
 };
 
 // One tool point in contact. Written by collide, completed by regions and force.

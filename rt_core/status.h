@@ -7,30 +7,36 @@
 namespace palpate {
 
 // X(name, bit, what was degraded, remedy)
-#define PALPATE_STATUS_BITS(X)                                                                                       \
-  X(kContactsDropped, 0, "more tool points in contact than kMaxContacts; the deepest are kept",                      \
-    "use fewer tool points (tool.piece.points) or raise kMaxContacts")                                               \
-  X(kRegionsDropped, 1, "more contact regions than kMaxRegions; the deepest are kept",                               \
-    "raise contact.cluster_distance_mm so that near contacts merge, or raise kMaxRegions")                           \
-  X(kTraversalTruncated, 2, "the surface hierarchy is deeper than kMaxTraversalStack; a closer point may be missed", \
-    "bake the mesh again")                                                                                           \
-  X(kOverlapInconclusive, 3, "the overlap test ran out of its support budget; the last contact is kept",             \
-    "simplify the tool piece (hull with fewer vertices)")                                                            \
-  X(kDepthBeyondRange, 4, "penetration beyond the law's stated range; the law is extended by its tangent",           \
-    "raise contact.max_depth_mm or press less deeply")                                                               \
-  X(kForceClamped, 5, "the commanded force or torque was scaled to the device limit",                                \
-    "soften the object or raise device.force_max_N within the device's data sheet")                                  \
-  X(kRateLimited, 6, "the force change per tick exceeded the fault limiter",                                         \
-    "look for a jump in the device position; raise device.force_rate_max_N_per_s")                                   \
-  X(kInputHeld, 7, "no fresh device sample this tick; the last one is held", "see docs/realtime.md, missed samples") \
-  X(kInputRejected, 8, "a device sample was not finite or jumped further than the device can move",                  \
-    "check encoder and bus")                                                                                         \
-  X(kCouplingSingular, 9, "a small linear system was singular; the step was skipped", "report this scene")           \
-  X(kSkeletonDegenerate, 10, "the beam skeleton had no usable stiffness; anchors keep still",                        \
-    "add anchors (body.min_anchors)")                                                                                \
-  X(kRamping, 11, "force is ramping in after start or out after a fault", "none: wait")                              \
-  X(kNotConverged, 12, "a fixed-iteration solve ended above its tolerance; the residual is in telemetry",            \
-    "report this scene")
+#define PALPATE_STATUS_BITS(X)                                                                                         \
+  X(kContactsDropped, 0, "more tool points in contact than kMaxContacts; the deepest are kept",                        \
+    "use fewer tool points (tool.piece.points) or raise kMaxContacts")                                                 \
+  X(kRegionsDropped, 1, "more contact regions than kMaxRegions; the deepest are kept",                                 \
+    "raise contact.cluster_distance_mm so that near contacts merge, or raise kMaxRegions")                             \
+  X(kTraversalTruncated, 2, "the surface hierarchy is deeper than kMaxTraversalStack; a closer point may be missed",   \
+    "bake the mesh again")                                                                                             \
+  X(kOverlapInconclusive, 3, "the overlap test ran out of its support budget; the last contact is kept",               \
+    "simplify the tool piece (hull with fewer vertices)")                                                              \
+  X(kDepthBeyondRange, 4, "penetration beyond the law's stated range; the law is extended by its tangent",             \
+    "raise contact.max_depth_mm or press less deeply")                                                                 \
+  X(kForceClamped, 5, "the commanded force or torque was scaled to the device limit",                                  \
+    "soften the object or raise device.force_max_N within the device's data sheet")                                    \
+  X(kRateLimited, 6, "the force change per tick exceeded the fault limiter",                                           \
+    "look for a jump in the device position; raise device.force_rate_max_N_per_s")                                     \
+  X(kInputHeld, 7, "no fresh device sample this tick; the last one is held", "see docs/realtime.md, missed samples")   \
+  X(kInputRejected, 8, "a device sample was not finite or jumped further than the device can move",                    \
+    "check encoder and bus")                                                                                           \
+  X(kCouplingSingular, 9, "a small linear system was singular; the step was skipped", "report this scene")             \
+  X(kSkeletonDegenerate, 10, "the beam skeleton had no usable stiffness; anchors keep still",                          \
+    "add anchors (body.min_anchors)")                                                                                  \
+  X(kRamping, 11, "force is ramping in after start or out after a fault", "none: wait")                                \
+  X(kNotConverged, 12, "a fixed-iteration solve ended above its tolerance; the residual is in telemetry",              \
+    "report this scene")                                                                                               \
+  X(kJointLimited, 13, "a joint command beyond the joint's limits was cut to them; one that is no number was ignored", \
+    "send closings of 0 to 1 and positions within the limits in the image")                                            \
+  X(kJointStopped, 14, "a joint stopped because it would press a loaded part harder than the stop force",              \
+    "none: this is how a grasp ends; raise the stop force to squeeze harder")                                          \
+  X(kGraspUnstable, 15, "the palm would have to pull to hold the body",                                                \
+    "close the fingers so that their forces push the body into the palm")
 
 // X(name, bit, cause, remedy)
 #define PALPATE_FAULT_BITS(X)                                                                                       \

@@ -1,5 +1,8 @@
 #include "rt_core/tick.h"
 
+#include "rt_core/articulate/articulate.h"
+#include "rt_core/articulate/carrier.h"
+
 namespace palpate {
 
 namespace {
@@ -28,6 +31,7 @@ void tick(const Model& model, State& state, Scratch& scratch, const Input& input
     if (probe.mark != nullptr) probe.mark(probe.context, stage);
   };
   sense(model, state, scratch, input);
+  if (is_articulated(model)) articulate(model, state, scratch, input);
   mark(Stage::kSense);
   collide(model, state, scratch);
   mark(Stage::kCollide);

@@ -43,10 +43,12 @@ int text_file(const std::string& text) {
 }  // namespace
 
 std::string path_csv(const PathDesc& path) {
-  std::string text = "time_s,x_mm,y_mm,z_mm,rx_deg,ry_deg,rz_deg\n";
+  std::string text = "time_s,x_mm,y_mm,z_mm,rx_deg,ry_deg,rz_deg,closing\n";
+  double closing = 0;
   for (const PathPoint& point : path.point) {
     const Vec3 p = 1e3 * point.position_m, r = kDegreesPerRadian * point.rotation_rad;
-    text += fmt::format("{},{},{},{},{},{},{}\n", point.time_s, p.x, p.y, p.z, r.x, r.y, r.z);
+    if (!point.closing.empty()) closing = *std::ranges::max_element(point.closing);
+    text += fmt::format("{},{},{},{},{},{},{},{}\n", point.time_s, p.x, p.y, p.z, r.x, r.y, r.z, closing);
   }
   return text;
 }

@@ -30,7 +30,8 @@ bool read_numbers(const std::string& line, std::vector<double>& numbers) {
 
 HandPose pose_of(const std::vector<double>& n) {
   HandPose pose{n[0], {{1e-3 * n[1], 1e-3 * n[2], 1e-3 * n[3]}, {}}};
-  if (n.size() == 7) pose.pose.orientation = rotation_by({kDegree * n[4], kDegree * n[5], kDegree * n[6]});
+  if (n.size() >= 7) pose.pose.orientation = rotation_by({kDegree * n[4], kDegree * n[5], kDegree * n[6]});
+  pose.trigger = n.size() == 8 && n[7] > 0.5;
   return pose;
 }
 
@@ -52,8 +53,8 @@ bool read_hand_path(const std::string& path, std::vector<HandPose>& poses, std::
     names_allowed = false;
     if (names) continue;
     const std::string where = path + ":" + std::to_string(number) + ": ";
-    if (!read_numbers(line, numbers) || (numbers.size() != 4 && numbers.size() != 7)) {
-      error = where + "expected time_s,x_mm,y_mm,z_mm[,rx_deg,ry_deg,rz_deg], got '" + line + "'";
+    if (!read_numbers(line, numbers) || (numbers.size() != 4 && numbers.size() != 7 && numbers.size() != 8)) {
+      error = where + "expected time_s,x_mm,y_mm,z_mm[,rx_deg,ry_deg,rz_deg[,closing]], got '" + line + "'";
       return false;
     }
     if (!poses.empty() && !(numbers[0] > poses.back().time_s)) {

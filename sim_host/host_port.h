@@ -44,6 +44,8 @@ class HostPort {
     if (command_.quit != 0 || faults_ != 0) stop_.store(true, std::memory_order_relaxed);
     return commands;
   }
+  // What the host last asked of an articulated tool's joints; open without a host.
+  const JointCommand& joints() const noexcept { return command_.joints; }
   // Fault bits; they stay for the rest of this controller's life.
   std::uint32_t faults() const noexcept { return faults_; }
 

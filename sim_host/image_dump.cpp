@@ -42,6 +42,8 @@ void extend(Range& range, const PatchWeight& p) {
   for (const double w : p.weight) range.add(w);
 }
 void extend(Range& range, const ToolPiece& p) { range.add(p.pose_tool.position_m); }
+void extend(Range& range, const Joint& j) { range.add(j.lowest), range.add(j.highest); }
+void extend(Range& range, const Pose& p) { range.add(p.position_m); }
 void extend(Range& range, const ToolPoint& p) { range.add(p.position_tool_m); }
 void extend(Range& range, const BeamStiffness& b) {
   for (const double k : b.k_N_per_m) range.add(k);

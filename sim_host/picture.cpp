@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rt_core/articulate/carrier.h"
 #include "sim_host/plot.h"
 #include "sim_host/png_file.h"
 
@@ -41,8 +42,10 @@ class Renderer {
     choose_scale();
     draw_body();
     draw_anchors();
-    for (const ToolPiece& piece : model_.piece)
-      tool_.draw(piece_mesh(model_, piece, state_.tool_w), projection_, kTool);
+    for (std::size_t i = 0; i < model_.piece.size(); ++i) {
+      const Pose carrier = carrier_w(model_, state_, static_cast<std::int32_t>(i));
+      tool_.draw(piece_mesh(model_, model_.piece[i], carrier), projection_, kTool);
+    }
     draw_arrows();
     make_shadow();
     Canvas canvas = resolve();

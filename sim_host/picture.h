@@ -33,7 +33,7 @@ void save_picture(const std::string& path, const Model& model, const State& stat
 
 // Colour map of displacement, t in 0..1: light sand to dark violet, lightness falling evenly.
 Colour displacement_colour(double t);
-// Surface of a tool piece in the world.
-RenderMesh piece_mesh(const Model& model, const ToolPiece& piece, const Pose& tool_w);
+// Surface of a tool piece in the world; `carrier_w` as rt_core/articulate/carrier.h has it.
+RenderMesh piece_mesh(const Model& model, const ToolPiece& piece, const Pose& carrier_w);
 
 }  // namespace palpate

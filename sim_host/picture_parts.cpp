@@ -41,8 +41,8 @@ Colour displacement_colour(double t) {
   return mix(kStops[k], kStops[k + 1], static_cast<float>(place - static_cast<double>(k)));
 }
 
-RenderMesh piece_mesh(const Model& model, const ToolPiece& piece, const Pose& tool_w) {
-  const Pose pose = tool_w * piece.pose_tool;
+RenderMesh piece_mesh(const Model& model, const ToolPiece& piece, const Pose& carrier_w) {
+  const Pose pose = carrier_w * piece.pose_tool;
   const double* half = piece.half_extent_m;
   const double r = half[0], h = half[2];
   switch (static_cast<PieceShape>(piece.shape)) {

@@ -22,11 +22,11 @@ constexpr double kDegree = 3.14159265358979323846 / 180.0;
 // Further than this from the origin a position in millimetres is a mistake of units (the loader's largest body: 10 m).
 constexpr double kFarthest_mm = 1e5;
 
-enum Column { kTime, kX, kY, kZ, kRx, kRy, kRz, kQw, kQx, kQy, kQz, kColumns };
+enum Column { kTime, kX, kY, kZ, kRx, kRy, kRz, kQw, kQx, kQy, kQz, kClosing, kColumns };
 constexpr std::array<const char*, kColumns> kNames = {"time_s", "x_mm", "y_mm", "z_mm", "rx_deg", "ry_deg",
-                                                      "rz_deg", "qw",   "qx",   "qy",   "qz"};
+                                                      "rz_deg", "qw",   "qx",   "qy",   "qz",     "closing"};
 constexpr const char* kAllowed =
-    "allowed are time_s, x_mm, y_mm, z_mm, and either rx_deg, ry_deg, rz_deg or qw, qx, qy, qz";
+    "allowed are time_s, x_mm, y_mm, z_mm, closing, and either rx_deg, ry_deg, rz_deg or qw, qx, qy, qz";
 
 [[noreturn]] void refuse(const std::string& name, int line, const std::string& what) {
   throw std::runtime_error(fmt::format("{}:{}: {}", name, line, what));
@@ -105,6 +105,9 @@ Row read_row(std::string_view text, const Header& header, const std::string& nam
     if (column >= kX && column <= kZ && std::abs(value) > kFarthest_mm) {
       refuse(name, line, fmt::format("{}: {:g} is outside -1e5 to 1e5 mm; check the unit", label, value));
     }
+    if (column == kClosing && !(value >= 0 && value <= 1)) {
+      refuse(name, line, fmt::format("{}: {:g} is outside 0 (open) to 1 (closed)", label, value));
+    }
     row[column] = value;
   }
   return row;
@@ -122,6 +125,34 @@ Pose pose_of(const Row& row, const Header& header, const std::string& name, int 
     pose.orientation = normalised(q);
   }
   return pose;
+}
+
+JointCommand all_fingers(double closing) {
+  JointCommand joints;
+  for (float& finger : joints.closing) finger = static_cast<float>(closing);
+  return joints;
+}
+
+// What each finger is told between two commands, `s` of the way: 0 the first, 1 the second.
+JointCommand between(const JointCommand& a, const JointCommand& b, double s) {
+  JointCommand joints;
+  for (std::size_t f = 0; f < kMaxFingers; ++f) {
+    const auto from = static_cast<double>(a.closing[f]), to = static_cast<double>(b.closing[f]);
+    joints.closing[f] = static_cast<float>(clamp_to(from + s * (to - from), 0, 1));
+  }
+  return joints;
+}
+
+// The command at each point of a path.
+std::vector<JointCommand> commands_of(const PathDesc& path) {
+  std::vector<JointCommand> commands;
+  JointCommand now;
+  for (const PathPoint& point : path.point) {
+    for (std::size_t f = 0; !point.closing.empty() && f < kMaxFingers; ++f)
+      now.closing[f] = static_cast<float>(point.closing[point.closing.size() == 1 ? 0 : f]);
+    commands.push_back(now);
+  }
+  return commands;
 }
 
 }  // namespace
@@ -142,7 +173,7 @@ std::vector<TimedPose> read_poses(std::istream& text, const std::string& name, d
     if (!poses.empty() && !(time_s > poses.back().time_s)) {
       refuse(name, number, fmt::format("time_s: {:g} does not come after {:g}", time_s, poses.back().time_s));
     }
-    poses.push_back({time_s, pose_of(row, *header, name, number)});
+    poses.push_back({time_s, pose_of(row, *header, name, number), all_fingers(row[kClosing])});
   }
   if (!header) throw std::runtime_error(fmt::format("{}: empty; the first row names the columns: {}", name, kAllowed));
   if (poses.empty()) throw std::runtime_error(name + ": no rows after the header");
@@ -172,7 +203,8 @@ std::vector<TimedPose> resample(std::span<const TimedPose> poses, double period_
     const Vec3 turn = rotation_vector(conjugate(a.tool_w.orientation) * b.tool_w.orientation);
     out.push_back({time_s,
                    {a.tool_w.position_m + t * (b.tool_w.position_m - a.tool_w.position_m),
-                    normalised(a.tool_w.orientation * rotation_by(t * turn))}});
+                    normalised(a.tool_w.orientation * rotation_by(t * turn))},
+                   between(a.joints, b.joints, t)});
   }
   return out;
 }
@@ -182,11 +214,18 @@ std::vector<TimedPose> scripted_poses(const PathDesc& path, double period_s) {
   for (const PathPoint& p : path.point) points.push_back({p.time_s, {p.position_m, rotation_by(p.rotation_rad)}});
   const HandPath hand(std::move(points));
   if (!hand.error().empty()) throw std::runtime_error("path: " + hand.error());
+  const std::vector<JointCommand> commands = commands_of(path);
   std::vector<TimedPose> poses;
   const auto ticks = static_cast<std::int64_t>(std::floor(hand.end_s() / period_s + 1e-6));
+  std::size_t k = 0;
   for (std::int64_t n = 0; n <= ticks; ++n) {
     const double time_s = period_s * static_cast<double>(n);
-    poses.push_back({time_s, hand.at(time_s).pose});
+    while (k + 2 < commands.size() && path.point[k + 1].time_s <= time_s) ++k;
+    const std::size_t next = std::min(k + 1, commands.size() - 1);
+    const double span_s = path.point[next].time_s - path.point[k].time_s;
+    const double u = span_s > 0 ? clamp_to((time_s - path.point[k].time_s) / span_s, 0, 1) : 0;
+    const double s = u * u * u * (10 + u * (-15 + 6 * u));  // minimum jerk, as the pose
+    poses.push_back({time_s, hand.at(time_s).pose, between(commands[k], commands[next], s)});
   }
   return poses;
 }

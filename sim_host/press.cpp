@@ -68,6 +68,7 @@ void press(const Model& model, std::span<const TimedPose> poses, const PressDriv
     Input input;
     input.drive = Drive::kTool;
     input.pose_w = pose.tool_w;
+    input.joints = pose.joints;
     if (drive.hand_N_per_m > 0 && sequence > 0) {
       const Vec3 from = state.tool_w.position_m;
       const Vec3 pull = drive.hand_N_per_m * (pose.tool_w.position_m - from) + output.contact_w.force_N;

@@ -1,24 +1,23 @@
 #include "config/fem/condense.h"
 
-#include <cmath>
 #include <cstdio>
 
 #include "config/config_error.h"
-#include "config/fem/linear_body.h"
 
 namespace palpate {
 
 namespace {
 
+double mebibytes(std::size_t surface_nodes) { return static_cast<double>(compliance_bytes(surface_nodes)) / 1048576.0; }
+
 void check_size(std::size_t surface_nodes, const CondenseLimits& limits, const std::string& label) {
-  if (compliance_bytes(surface_nodes) <= limits.compliance_B) return;
-  const auto most = static_cast<std::size_t>(std::sqrt(static_cast<double>(limits.compliance_B) / 72.0));
+  if (surface_nodes <= limits.surface_nodes) return;
   char text[320];
   std::snprintf(text, sizeof text,
-                ": the mesh has %zu surface nodes, whose compliance takes %.1f GiB; the limit is %.2f GiB, %zu nodes. "
-                "Coarsen the mesh, make it linear away from the contact zone, or raise the limit",
-                surface_nodes, static_cast<double>(compliance_bytes(surface_nodes)) / 1073741824.0,
-                static_cast<double>(limits.compliance_B) / 1073741824.0, most);
+                ": the mesh has %zu surface nodes, whose compliance table takes %.3g MiB (%.3g MiB in single "
+                "precision); allowed %zu nodes, %.3g MiB. Coarsen the mesh, or make it quadratic only near the contact",
+                surface_nodes, mebibytes(surface_nodes), 0.5 * mebibytes(surface_nodes), limits.surface_nodes,
+                mebibytes(limits.surface_nodes));
   throw ConfigError(label + text);
 }
 
@@ -28,17 +27,22 @@ CondensedBody condense(const TetMesh& mesh, const FemMaterial& material, const S
                        const std::string& label, const Progress& progress, const CondenseLimits& limits) {
   check_material(material, label);
   check_tet_mesh(mesh, label);
+  check_size(surface_of(mesh).node.size(), limits, label);  // before the minutes of a mesh that is too large
+  return condense(LinearBody(mesh, material, supports, label, progress), mesh, supports, label, progress, limits);
+}
+
+CondensedBody condense(const LinearBody& solver, const TetMesh& mesh, const Supports& supports,
+                       const std::string& label, const Progress& progress, const CondenseLimits& limits) {
   TetSurface surface = surface_of(mesh);
   check_size(surface.node.size(), limits, label);
-  const LinearBody body(mesh, material, supports, label, progress);
   CondensedBody out;
   for (const std::int32_t i : surface.node) out.held.push_back(supports[static_cast<std::size_t>(i)]);
-  out.compliance_mpN = body.compliance_mpN(surface.node, progress);
+  out.compliance_mpN = solver.compliance_mpN(surface.node, progress);
   out.surface = std::move(surface.mesh);
   out.normal = vertex_normals(out.surface);
   out.node = std::move(surface.node);
-  out.degrees_of_freedom = body.degrees_of_freedom();
-  out.factor_entries = body.factor_entries();
+  out.degrees_of_freedom = solver.degrees_of_freedom();
+  out.factor_entries = solver.factor_entries();
   return out;
 }
 

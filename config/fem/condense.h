@@ -6,15 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "config/fem/linear_body.h"
 #include "config/fem/material.h"
 #include "config/fem/tet_mesh.h"
 #include "config/progress.h"
+#include "rt_core/limits.h"
 
 namespace palpate {
-
-// Above this a body is refused unless the caller allows more: 1 GiB of doubles is 3860 surface nodes. The image holds
-// the same table, locked in memory, and a tick reads rows scattered over it.
-inline constexpr std::size_t kLargestCompliance_B = std::size_t{1} << 30;
 
 struct CondensedBody {
   SurfaceMesh surface;             // vertex i is surface node i; counter-clockwise from outside
@@ -29,13 +27,17 @@ struct CondensedBody {
 };
 
 struct CondenseLimits {
-  std::size_t compliance_B = kLargestCompliance_B;
+  std::size_t surface_nodes = kMaxNodalVertices;
 };
 
 // Factors the stiffness once and solves for the surface columns; interior nodes carry no force, so this equals the
 // inverse of the Schur complement (Duriez, Andriot & Kheddar 2003, section 3.1). Checks mesh, material and supports.
 // Throws ConfigError naming `label`.
 CondensedBody condense(const TetMesh& mesh, const FemMaterial& material, const Supports& supports,
+                       const std::string& label, const Progress& progress = {}, const CondenseLimits& limits = {});
+
+// The same from a body already factored, of the same mesh and supports.
+CondensedBody condense(const LinearBody& solver, const TetMesh& mesh, const Supports& supports,
                        const std::string& label, const Progress& progress = {}, const CondenseLimits& limits = {});
 
 // Bytes of the compliance table of n surface nodes, in doubles.

@@ -154,6 +154,30 @@ std::vector<Vec3> LinearBody::solve_m(const std::vector<Vec3>& force_N, const st
   return points(u);
 }
 
+std::vector<std::vector<Vec3>> LinearBody::solve_all_m(const std::vector<std::vector<Vec3>>& forces_N) const {
+  constexpr std::size_t kWidth = SparseFactor::kWidth;
+  const std::vector<std::int32_t>& equation = system_->equation;
+  std::vector<std::vector<Vec3>> out;
+  std::vector<SparseFactor::Lane> x(system_->free_count);
+  for (std::size_t block = 0; block < forces_N.size(); block += kWidth) {
+    const std::size_t end = std::min(block + kWidth, forces_N.size());
+    std::fill(x.begin(), x.end(), SparseFactor::Lane{});
+    for (std::size_t c = block; c < end; ++c) {
+      const std::vector<double> f = flat(forces_N[c]);
+      for (std::size_t i = 0; i < f.size(); ++i)
+        if (equation[i] >= 0) x[at(equation[i])].value[c - block] = f[i];
+    }
+    system_->factor->solve_from(0, x);
+    for (std::size_t c = block; c < end; ++c) {
+      std::vector<double> u(equation.size(), 0.0);
+      for (std::size_t i = 0; i < u.size(); ++i)
+        if (equation[i] >= 0) u[i] = x[at(equation[i])].value[c - block];
+      out.push_back(points(u));
+    }
+  }
+  return out;
+}
+
 std::vector<Vec3> LinearBody::forces_N(const std::vector<Vec3>& displacement_m) const {
   return points(system_->times(flat(displacement_m)));
 }

@@ -25,6 +25,8 @@ class LinearBody {
   std::vector<Vec3> solve_m(const std::vector<Vec3>& force_N) const;
   // The same where held components move by `held_m` instead of staying at zero.
   std::vector<Vec3> solve_m(const std::vector<Vec3>& force_N, const std::vector<Vec3>& held_m) const;
+  // Many loads at once: 16 cost little more than one.
+  std::vector<std::vector<Vec3>> solve_all_m(const std::vector<std::vector<Vec3>>& forces_N) const;
   // K u: the forces that hold the nodes where they are, supports' reactions included.
   std::vector<Vec3> forces_N(const std::vector<Vec3>& displacement_m) const;
   double energy_J(const std::vector<Vec3>& displacement_m) const;

@@ -79,8 +79,15 @@ Motions free_motions(const TetMesh& mesh, const Supports& supports, const std::v
   return motions;
 }
 
+// Rounding left by the elimination is not worth reading.
+Vec3 without_dust(Vec3 p, double size) {
+  for (double* c : {&p.x, &p.y, &p.z})
+    if (std::abs(*c) < 1e-9 * size) *c = 0;
+  return p;
+}
+
 std::string direction_text(Vec3 d) {
-  const Vec3 u = unit_or(d, {});
+  const Vec3 u = without_dust(unit_or(d, {}), 1);
   const double components[3] = {u.x, u.y, u.z};
   for (int k = 0; k < 3; ++k)
     if (std::abs(std::abs(components[k]) - 1.0) < 1e-6) return std::string(1, "xyz"[k]);
@@ -92,7 +99,8 @@ std::string direction_text(Vec3 d) {
 std::string motion_text(const Motion& m, const Frame& frame) {
   const Vec3 turn{m(0), m(1), m(2)}, slide{m(3), m(4), m(5)};
   if (norm(turn) < 1e-5) return "slide along " + direction_text(slide);
-  const Vec3 through_m = frame.centre_m + (frame.size_m / squared_norm(turn)) * cross(turn, slide);
+  const Vec3 through_m =
+      without_dust(frame.centre_m + (frame.size_m / squared_norm(turn)) * cross(turn, slide), frame.size_m);
   char text[128];
   std::snprintf(text, sizeof text, " through (%.4g, %.4g, %.4g) mm", 1e3 * through_m.x, 1e3 * through_m.y,
                 1e3 * through_m.z);

@@ -1,6 +1,7 @@
 // Stage collide: which tool points touch the rest surface, where and how deeply. Reads the tool's poses; writes
 // state.point (but region), scratch.contact. Bound: n_tool_point queries. Status: kContactsDropped,
 // kTraversalTruncated.
+#include "rt_core/articulate/carrier.h"
 #include "rt_core/collide/closest_point.h"
 #include "rt_core/deform/surface.h"
 #include "rt_core/stages.h"
@@ -86,20 +87,25 @@ class Collider {
     reach_m_ = kSearchMargin_m + (temporal ? max_of(displacement_bound(model, state), 0.0) : 0.0);
   }
 
-  void visit(const ToolPiece& piece) PALPATE_RT {
+  void visit(std::size_t index) PALPATE_RT {
+    const ToolPiece& piece = model_.piece[index];
+    if (is_articulated(model_)) {
+      now_ = RigidMap(carrier_w(model_, state_, static_cast<std::int32_t>(index)));
+      before_ = RigidMap(carrier_previous_w(model_, state_, static_cast<std::int32_t>(index)));
+    }
     const Real gap = distance_to(root_, now_(piece.pose_tool.position_m)) - piece.bounding_radius_m;
     const std::int32_t end = piece.first_point + piece.point_count;
     for (std::int32_t i = piece.first_point; i < end; ++i) {  // bound: kMaxToolPoints over all pieces
       if (gap > reach_m_ + kRefreshMargin_m) {
         skip(state_.point[i], gap);
       } else {
-        visit(i);
+        visit_point(i);
       }
     }
   }
 
  private:
-  void visit(std::int32_t index) PALPATE_RT {
+  void visit_point(std::int32_t index) PALPATE_RT {
     PointState& point = state_.point[index];
     const Vec3 p = now_(model_.tool_point[static_cast<std::size_t>(index)].position_tool_m);
     // Written so that a NaN in any term measures the point.
@@ -169,7 +175,7 @@ class Collider {
   const Model& model_;
   State& state_;
   Scratch& scratch_;
-  const RigidMap now_, before_;
+  RigidMap now_, before_;  // of the piece being visited
   const Box root_;
   Real reach_m_ = 0;
 };
@@ -183,7 +189,7 @@ void collide(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
     return;
   }
   Collider collider(model, state, scratch);
-  for (const ToolPiece& piece : model.piece) collider.visit(piece);  // bound: kMaxPieces
+  for (std::size_t i = 0; i < model.piece.size(); ++i) collider.visit(i);  // bound: kMaxPieces
   HighWater& high_water = state.high_water;
   if (scratch.contact_count > high_water.contacts) high_water.contacts = scratch.contact_count;
 }

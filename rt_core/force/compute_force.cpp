@@ -2,6 +2,8 @@
 // state.region, contact.force_N and weight, state.contact_stiffness, scratch.contact_wrench_w, energy_J, residual_m.
 // Instructions per tick with the coupled solve (callgrind, gcc 12 -O2, 2026-11-21): 12 k for one region of 16 contacts,
 // 150 k for 16 regions of 64 contacts, of which 90 k are the solve.
+#include "rt_core/articulate/articulate.h"
+#include "rt_core/articulate/carrier.h"
 #include "rt_core/deform/transfer.h"
 #include "rt_core/force/contact_stiffness.h"
 #include "rt_core/force/coupled_regions.h"
@@ -56,7 +58,9 @@ Vec3 usual_normal(const Region& region, const RegionContacts& contacts) PALPATE_
 // Where a region leans on the body, once, at its first touch: from the depths of the rest surface. Fixed to the tool
 // from then on, so that the compliance between two regions of a rigid tool is a constant of their common life. Were it
 // to follow the centres of pressure, its change under load, F.dC F / 2, would be work that no force renders: a compass
-// sliding on a heart gave back 4e-6 J in a loop (measured 2026-11-21).
+// sliding on a heart gave back 4e-6 J in a loop (measured 2026-11-21). Fingers move against one another, so for an
+// articulated tool it is the body that the place is fixed to: constant again, at the price of a far field that stays
+// behind when a finger slides.
 void set_lean(const Model& model, const State& state, Region& region, const RegionContacts& contacts) PALPATE_RT {
   if (squared_norm(region.lean_normal_tool) > 0.5) return;
   const CubicLaw law = contact_law(model.params);
@@ -64,8 +68,9 @@ void set_lean(const Model& model, const State& state, Region& region, const Regi
     contacts[k].force_N = contacts[k].weight * law_force_N(law, contacts[k].depth_m);
   }
   const RegionCentre centre = region_centre(contacts, usual_normal(region, contacts));
-  region.lean_tool_m = inverse_transform(state.tool_w, centre.position_w);
-  region.lean_normal_tool = rotate(conjugate(state.tool_w.orientation), centre.normal_w);
+  const Pose frame_w = is_articulated(model) ? Pose{} : state.tool_w;
+  region.lean_tool_m = inverse_transform(frame_w, centre.position_w);
+  region.lean_normal_tool = rotate(conjugate(frame_w.orientation), centre.normal_w);
 }
 
 void fill_compliance(const Model& model, const State& state, const SortedContacts& sorted,
@@ -165,15 +170,36 @@ void add_transferred(const Model& model, State& state, const SortedContacts& sor
   }
 }
 
-// Motion since the last tick of the tool material that is at `point` now: exact for a rigid tool, rotation included.
-Vec3 material_motion(const State& state, Vec3 point) PALPATE_RT {
-  return point - transform(state.tool_previous_w, inverse_transform(state.tool_w, point));
+// Motion since the last tick of the material at `point` that moves rigidly from `before` to `now`.
+Vec3 carried_motion(const Pose& before, const Pose& now, Vec3 point) PALPATE_RT {
+  return point - transform(before, inverse_transform(now, point));
 }
 
-FrictionForce drag(const Model& model, const State& state, Region& region, Real self_compliance) PALPATE_RT {
+// Motion since the last tick of the tool material that is at `point` now, rotation included: exact where one piece
+// touches; the mean by force where pieces that move against one another share the region.
+Vec3 material_motion(const Model& model, const State& state, const RegionContacts& contacts, Vec3 point) PALPATE_RT {
+  if (!is_articulated(model)) return carried_motion(state.tool_previous_w, state.tool_w, point);
+  Vec3 sum;
+  Real total = 0;
+  std::int32_t last = -1;
+  Vec3 motion;
+  for (std::int32_t k = 0; k < contacts.count; ++k) {  // bound: points
+    const std::int32_t piece = model.tool_point[static_cast<std::size_t>(contacts[k].point)].piece;
+    if (piece != last) {
+      motion = carried_motion(carrier_previous_w(model, state, piece), carrier_w(model, state, piece), point);
+      last = piece;
+    }
+    sum += contacts[k].force_N * motion;
+    total += contacts[k].force_N;
+  }
+  return total > 0 ? (1.0 / total) * sum : motion;
+}
+
+FrictionForce drag(const Model& model, const State& state, Region& region, const RegionContacts& contacts,
+                   Real self_compliance) PALPATE_RT {
   const FrictionParameters parameters = friction_parameters(model.params);
   FrictionLoad load;
-  load.step_w = material_motion(state, region.centre_w);
+  load.step_w = material_motion(model, state, contacts, region.centre_w);
   load.normal_w = region.normal_w;
   load.force_N = region.normal_force_N;
   load.depth_m = region.depth_equivalent_m;
@@ -199,10 +225,10 @@ void add_tangential_stiffness(ContactStiffness& stiffness, const FrictionForce& 
 }
 
 // Friction of one region at its centre of pressure, added to its wrench and energy.
-void slide(const Model& model, const State& state, Region& region, Real self_compliance,
+void slide(const Model& model, const State& state, Region& region, const RegionContacts& contacts, Real self_compliance,
            ContactStiffness& stiffness) PALPATE_RT {
   region.depth_equivalent_m = law_depth_m(contact_law(model.params), region.normal_force_N);
-  const FrictionForce friction = drag(model, state, region, self_compliance);
+  const FrictionForce friction = drag(model, state, region, contacts, self_compliance);
   const Vec3 arm = region.centre_w - state.tool_w.position_m;
   const Vec3 force = friction.force_w + friction.normal_gain_N * region.normal_w;
   region.normal_force_N += friction.normal_gain_N;
@@ -221,7 +247,10 @@ void compute_force(const Model& model, State& state, Scratch& scratch) PALPATE_R
   SortedContacts sorted;
   if (is_finite(state.tool_w)) sort_contacts(state, scratch, sorted);
   clear_idle_regions(state, sorted);
-  if (sorted.region_count == 0) return;
+  if (sorted.region_count == 0) {
+    if (is_articulated(model)) load_pieces(model, state, scratch);
+    return;
+  }
 
   const ContactWeight weight = static_cast<ContactWeight>(model.params.contact_weight);
   for (std::int32_t r = 0; r < sorted.region_count; ++r) {  // bound: kMaxContacts points
@@ -237,12 +266,13 @@ void compute_force(const Model& model, State& state, Scratch& scratch) PALPATE_R
   if (coupling == CouplingLaw::kTemporal) add_transferred(model, state, sorted);
   for (std::int32_t r = 0; r < sorted.region_count; ++r) {  // bound: kMaxRegions
     Region& region = state.region[sorted.slot[r]];
-    slide(model, state, region, scratch.vector[kSelfCompliance][r], stiffness);
+    slide(model, state, region, sorted.contacts[r], scratch.vector[kSelfCompliance][r], stiffness);
     scratch.contact_wrench_w.force_N += region.wrench_w.force_N;
     scratch.contact_wrench_w.torque_Nm += region.wrench_w.torque_Nm;
     scratch.energy_J += region.energy_J;
   }
   store(stiffness, state.contact_stiffness);
+  if (is_articulated(model)) load_pieces(model, state, scratch);
 }
 
 }  // namespace palpate

@@ -1,5 +1,7 @@
 #include "rt_core/regions/clusters.h"
 
+#include "rt_core/articulate/carrier.h"
+
 namespace palpate {
 
 namespace {
@@ -16,7 +18,22 @@ void sort_by_point(const Scratch& scratch, Clusters& out) PALPATE_RT {
   }
 }
 
+// Parts of an articulated tool: one part is one region however it touches, different fingers are different regions, and
+// neighbours on a finger join as the distances below say.
+enum class Kinship { kSame, kNeighbours, kStrangers };
+Kinship kinship(const Model& model, const Contact& a, const Contact& b) PALPATE_RT {
+  if (!is_articulated(model)) return Kinship::kNeighbours;
+  const std::int32_t i = model.tool_point[static_cast<std::size_t>(a.point)].piece;
+  const std::int32_t j = model.tool_point[static_cast<std::size_t>(b.point)].piece;
+  if (i == j) return Kinship::kSame;
+  const bool together =
+      model.piece[static_cast<std::size_t>(i)].group == model.piece[static_cast<std::size_t>(j)].group;
+  return together ? Kinship::kNeighbours : Kinship::kStrangers;
+}
+
 bool linked(const Model& model, const State& state, const Contact& a, const Contact& b) PALPATE_RT {
+  const Kinship kin = kinship(model, a, b);
+  if (kin != Kinship::kNeighbours) return kin == Kinship::kSame;
   const double distance2 = squared_norm(a.position_w - b.position_w);
   const double near = model.params.cluster_distance_m;
   if (distance2 < near * near) return true;

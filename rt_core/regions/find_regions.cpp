@@ -5,6 +5,7 @@
 // lost_ticks stays at 1, so that the memory does not run out, for as long as the exact piece still overlaps the surface
 // triangle it last touched: tool points only sample the piece, so a flat face can touch between them. An inconclusive
 // overlap test holds as well: "could not decide" must never be read as "no contact".
+#include "rt_core/articulate/carrier.h"
 #include "rt_core/collide/overlap.h"
 #include "rt_core/regions/identity.h"
 #include "rt_core/stages.h"
@@ -55,8 +56,9 @@ bool still_touching(const Model& model, State& state, Scratch& scratch, const Re
   const Triangle& triangle = model.triangle[static_cast<std::size_t>(state.point[point].triangle)];
   Vec3 corner[3];
   for (int k = 0; k < 3; ++k) corner[k] = model.vertex_m[static_cast<std::size_t>(triangle.vertex[k])];  // bound: 3
-  const auto piece = static_cast<std::size_t>(model.tool_point[static_cast<std::size_t>(point)].piece);
-  const OverlapResult result = overlap_piece_triangle(model, model.piece[piece], state.tool_w, corner);
+  const std::int32_t piece = model.tool_point[static_cast<std::size_t>(point)].piece;
+  const OverlapResult result = overlap_piece_triangle(model, model.piece[static_cast<std::size_t>(piece)],
+                                                      carrier_w(model, state, piece), corner);
   if (result.support_calls > state.high_water.gjk_support_calls) {
     state.high_water.gjk_support_calls = result.support_calls;
   }

@@ -1,0 +1,26 @@
+// Articulated tools: joints that move the tool's pieces. Rigid tools never come here.
+#pragma once
+
+#include "rt_core/io.h"
+#include "rt_core/model.h"
+#include "rt_core/state.h"
+
+namespace palpate {
+
+// Part of the stage `sense`, for articulated tools only. Moves the joints towards the command of `input`, at their
+// bounded speeds, within their limits, and never so that a part loaded above the stop force would be pressed harder;
+// then places every piece. At the first tick the joints stand at their open positions. Reads the loads of the last
+// tick. Writes state.articulation (but the loads), scratch.status: kJointLimited, kJointStopped. Bound: kMaxPieces *
+// kMaxJoints.
+void articulate(const Model& model, State& state, Scratch& scratch, const Input& input) PALPATE_RT;
+
+// Load of each piece from the contacts of this tick, for the next tick's stops; and the palm's share of a hand's
+// balance. Part of the stage `force`, for articulated tools only. Bound: kMaxContacts.
+void load_pieces(const Model& model, State& state, const Scratch& scratch) PALPATE_RT;
+
+// Frame of every link in the tool frame for the joint positions `joint`; writes sizes.n_joint poses, and the joints'
+// axes where the pointers are not null. Bound: kMaxJoints.
+void place_links(const Model& model, const double* joint, Pose* link_tool, Vec3* axis_tool,
+                 Vec3* origin_tool_m) PALPATE_RT;
+
+}  // namespace palpate
