@@ -17,11 +17,11 @@ struct AnchorPoint {
   double rank = 0;  // importance: the largest are kept first
 };
 
-// True for ellipsoid, sphere, cylinder, box and surfaces of revolution.
+// True for all shapes but hearts and meshes.
 bool has_exact_anchors(BodyShape shape);
 // Exact points of those shapes, in the frame of config/procedural.h: 6 on ellipsoids and spheres, 8 on cylinders and
 // boxes; on surfaces of revolution 4 on each circle of a profile corner, inflection or curvature extremum, and smooth
-// poles.
+// poles; on half shells, rings and hollow cylinders the same for the outer and the inner surface.
 std::vector<AnchorPoint> exact_anchors(const BodyDesc& body);
 
 // From a closed mesh that passed check_mesh. Curvature by quadric fits in a radius of 0.3 of the smallest half extent,

@@ -134,6 +134,64 @@ std::vector<AnchorPoint> revolution_anchors(const std::vector<ProfilePoint>& pro
   return anchors;
 }
 
+// Bodies with a hole, by the rules for surfaces of revolution: corners of the profile, extrema of its curvature and
+// poles, four points to a circle. Outer points before inner ones.
+std::vector<AnchorPoint> half_shell_anchors(const BodyDesc& body) {
+  const Vec3 outer = body.half_axes_m, w{body.wall_m, body.wall_m, body.wall_m}, inner = outer - w;
+  std::vector<AnchorPoint> anchors;
+  const auto add = [&](Vec3 half, double side) {
+    anchors.push_back({{0, half.y, 0}, {0, side, 0}, half.y});
+    const Vec3 direction[4] = {{1, 0, 0}, {0, 0, 1}, {-1, 0, 0}, {0, 0, -1}};
+    for (const Vec3& d : direction)  // the rim: its ellipse is most and least curved at the axes
+      anchors.push_back({{half.x * d.x, 0, half.z * d.z}, unit_or(side * d + Vec3{0, -1, 0}, d), half.x});
+  };
+  const auto add_middle = [&](Vec3 half, double side) {
+    // No curvature asks for these; without them half of the wall is farther from any anchor than its own height.
+    const Vec3 direction[4] = {{1, 0, 0}, {0, 0, 1}, {-1, 0, 0}, {0, 0, -1}};
+    const double c = square_root(0.5);
+    for (const Vec3& d : direction) {
+      const Vec3 p{c * half.x * d.x, c * half.y, c * half.z * d.z};
+      const Vec3 n{p.x / (half.x * half.x), p.y / (half.y * half.y), p.z / (half.z * half.z)};
+      anchors.push_back({p, side * unit_or(n, d), 0.5 * half.x});
+    }
+  };
+  add(outer, 1);
+  add(inner, -1);
+  add_middle(outer, 1);
+  add_middle(inner, -1);
+  return anchors;
+}
+
+// Points and normals given upright about the y axis and centred there, put where the body stands.
+std::vector<AnchorPoint> turned(std::vector<AnchorPoint> anchors, BodyAxis axis, double lift_m) {
+  for (AnchorPoint& a : anchors) {
+    if (axis == BodyAxis::kZ) {  // y -> z, as a right-handed turn: (x, y, z) -> (z, x, y)
+      a.position_m = {a.position_m.z, a.position_m.x, a.position_m.y};
+      a.normal = {a.normal.z, a.normal.x, a.normal.y};
+    }
+    a.position_m.y += lift_m;
+  }
+  return anchors;
+}
+
+std::vector<AnchorPoint> ring_anchors(const BodyDesc& body) {
+  const double tube = 0.5 * body.wall_m, centre = body.radius_m - tube;
+  std::vector<AnchorPoint> anchors;
+  add_circle(anchors, body.radius_m, 0, 1, 0);  // where the Gaussian curvature is largest,
+  add_circle(anchors, centre, tube, 0, 1);      // zero,
+  add_circle(anchors, centre, -tube, 0, -1);
+  add_circle(anchors, centre - tube, 0, -1, 0);  // and least
+  return turned(std::move(anchors), body.axis, body.axis == BodyAxis::kZ ? body.radius_m : tube);
+}
+
+std::vector<AnchorPoint> hollow_cylinder_anchors(const BodyDesc& body) {
+  const double inner = body.radius_m - body.wall_m, half = 0.5 * body.height_m;
+  std::vector<AnchorPoint> anchors;
+  for (const double radius : {body.radius_m, inner})
+    for (const double s : {1.0, -1.0}) add_circle(anchors, radius, s * half, radius == inner ? -1 : 1, s);
+  return turned(std::move(anchors), body.axis, body.axis == BodyAxis::kZ ? body.radius_m : half);
+}
+
 }  // namespace
 
 bool has_exact_anchors(BodyShape shape) { return shape != BodyShape::kHeart && shape != BodyShape::kMesh; }
@@ -154,6 +212,12 @@ std::vector<AnchorPoint> exact_anchors(const BodyDesc& body) {
       return box_corners(body.size_m);
     case BodyShape::kRevolution:
       return revolution_anchors(body.profile);
+    case BodyShape::kHalfShell:
+      return half_shell_anchors(body);
+    case BodyShape::kRing:
+      return ring_anchors(body);
+    case BodyShape::kHollowCylinder:
+      return hollow_cylinder_anchors(body);
     case BodyShape::kHeart:
     case BodyShape::kMesh:
       break;

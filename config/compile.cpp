@@ -40,6 +40,7 @@ class Compiler {
     bake_response(scene_, image_, report_.response, report_.warnings);
     add_device();
     add_skeleton();
+    report_.array = array_bytes(image_);
     CompileResult result{write_image(image_), std::move(report_)};
     result.report.image_bytes = result.bytes.size();
     return result;
@@ -259,7 +260,41 @@ class Compiler {
     limit_anchors(mesh_, scene_.skeleton.anchors_min, scene_.skeleton.anchors_max, anchors);
     add_anchors(anchors);
     if (anchors.empty()) return;
+    add_beams();
     add_interpolation(anchors);
+  }
+
+  // Circular beams: their table, and the anchors' sections from it.
+  void add_beams() {
+    const SkeletonLaw law = scene_.skeleton.law;
+    if (law != SkeletonLaw::kCircular && law != SkeletonLaw::kCircularPaper) return;
+    const BeamTableRule rule{law == SkeletonLaw::kCircularPaper, scene_.skeleton.release, scene_.skeleton.beam_width_m,
+                             scene_.skeleton.beam_thickness_m, scene_.skeleton.beam_allowance_m};
+    try {
+      report_.beams = build_beam_table(rule, report_.volume_m3, image_);
+    } catch (const ConfigError& error) {
+      fail("skeleton.beam_width_mm", error.what());
+    }
+    report_.baked_beams = true;
+    report_.section_radius_m = image_.anchor[0].section_radius_m;
+    if (scene_.coupling.law == CouplingLaw::kTemporal)
+      warn("coupling.law = \"temporal\" displaces no anchor of circular beams: they are baked at rest");
+    const BeamTableReport& beams = report_.beams;
+    for (std::size_t a = 0; a < beams.dropped_by_anchor.size(); ++a)
+      if (beams.dropped_by_anchor[a] == report_.vertices)
+        warn("anchor " + std::to_string(a) + " at (" + position_text(image_.anchor[a].position_m) +
+             ") mm: no beam reaches it inside the body; lower skeleton.beam_width_mm or remove the anchor "
+             "(skeleton.anchors_max)");
+    if (beams.loose_anchors > 0 && rule.release == BeamRelease::kFrame && !rule.paper)
+      warn(std::to_string(beams.loose_anchors) +
+           " anchors are joined to no fixed one by beams and keep still; raise body.fixed.base_height_mm");
+    if (beams.lonely_vertices > 0)
+      warn(std::to_string(beams.lonely_vertices) +
+           " surface vertices have no beam at all; contacts there move no anchor: lower skeleton.beam_width_mm");
+  }
+  static std::string position_text(Vec3 p) {
+    return number_text(std::round(1e4 * p.x) / 10) + ", " + number_text(std::round(1e4 * p.y) / 10) + ", " +
+           number_text(std::round(1e4 * p.z) / 10);
   }
 
   // Sections: the beams share the body's volume, S = V / sum of lengths, lengths from the volume's centre; release
@@ -341,6 +376,15 @@ SurfaceMesh make_body(const SceneDesc& scene, std::vector<std::string>& warnings
       break;
     case BodyShape::kHeart:
       mesh = make_heart(body.width_m, body.triangles);
+      break;
+    case BodyShape::kHalfShell:
+      mesh = make_half_shell(body.half_axes_m, body.wall_m, body.triangles);
+      break;
+    case BodyShape::kRing:
+      mesh = make_ring(body.radius_m, body.wall_m, body.axis, body.triangles);
+      break;
+    case BodyShape::kHollowCylinder:
+      mesh = make_hollow_cylinder(body.radius_m, body.wall_m, body.height_m, body.axis, body.triangles);
       break;
     case BodyShape::kMesh: {
       const std::filesystem::path file(body.mesh);

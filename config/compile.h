@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "config/beams/beam_table_build.h"
 #include "config/contact_fit.h"
 #include "config/image_writer.h"
 #include "config/response/tip_bake.h"
@@ -29,6 +30,9 @@ struct CompileReport {
   double coupling_N_per_m = 0, coupling_Nm_per_rad = 0;
   std::int32_t tool_points = 0;
   std::vector<double> gap_m;  // per piece: largest distance from its touching surface to the nearest tool sphere
+  bool baked_beams = false;   // beams holds something
+  BeamTableReport beams;
+  std::vector<ArrayBytes> array;  // of the image, in its order
   std::vector<std::string> warnings;
 };
 // The report as lines for a terminal.

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 
 #include "config/compile.h"
@@ -14,6 +15,36 @@ void line(std::string& text, const char* pattern, Values... values) {
   text += '\n';
 }
 
+void beam_lines(std::string& text, const CompileReport& r) {
+  const BeamTableReport& b = r.beams;
+  line(text, "beams      %.4g x %.4g mm in walls of at least %.4g mm, released over %.4g mm", 1e3 * b.width_m,
+       1e3 * b.thickness_m, 1e3 * b.wall_m, 1e3 * b.release_length_m);
+  line(text,
+       "           %lld straight, %lld by the surface's curvature, %lld fitted, %lld in a turned plane, %lld dropped",
+       static_cast<long long>(b.count[1] + b.count[2]), static_cast<long long>(b.count[3]),
+       static_cast<long long>(b.count[4]), static_cast<long long>(b.count[5]), static_cast<long long>(b.count[0]));
+  line(text, "           %lld of them both ways round", static_cast<long long>(b.two_ways));
+  for (std::size_t a = 0; a < b.dropped_by_anchor.size(); ++a)
+    if (b.dropped_by_anchor[a] > 0)
+      line(text, "           anchor %d: dropped from %lld of %lld vertices", static_cast<int>(a),
+           static_cast<long long>(b.dropped_by_anchor[a]), static_cast<long long>(r.vertices));
+}
+
+// Arrays from the largest down to one per cent of the image.
+void size_lines(std::string& text, const CompileReport& r) {
+  std::vector<ArrayBytes> array = r.array;
+  std::stable_sort(array.begin(), array.end(), [](const auto& a, const auto& b) { return a.bytes > b.bytes; });
+  std::string parts;
+  for (const ArrayBytes& a : array) {
+    if (100 * a.bytes < r.image_bytes) break;
+    char part[96];
+    std::snprintf(part, sizeof part, "%s%s %.3f MB", parts.empty() ? "" : ", ", a.name,
+                  1e-6 * static_cast<double>(a.bytes));
+    parts += part;
+  }
+  text += "image      " + parts + '\n';
+}
+
 const char* reason(const StiffnessBound& bound) { return bound.by_damping ? "2b / (T + 2 tau)" : "2 f_c / Delta"; }
 
 }  // namespace
@@ -28,6 +59,7 @@ std::string report_text(const CompileReport& r) {
        r.traversal_stack, kMaxTraversalStack);
   line(text, "skeleton   %d anchors (%s), %d fixed, beam radius %.4g mm", r.anchors,
        r.exact_anchors ? "exact" : "from the mesh", r.fixed_anchors, 1e3 * r.section_radius_m);
+  if (r.baked_beams) beam_lines(text, r);
   line(text, "contact    k1 = %.6g N/m, k3 = %.6g N/m3 (%s)", r.contact.k1_N_per_m, r.contact.k3_N_per_m3,
        r.contact.derivation.c_str());
   line(text, "           reference area %.4g mm2, cluster distance %.4g mm", 1e6 * r.reference_area_m2,
@@ -45,6 +77,7 @@ std::string report_text(const CompileReport& r) {
   for (std::size_t i = 0; i < r.gap_m.size(); ++i)
     line(text, "           piece %d: surface at most %.2f mm from its points' spheres", static_cast<int>(i),
          1e3 * r.gap_m[i]);
+  size_lines(text, r);
   for (const std::string& warning : r.warnings) text += "warning    " + warning + '\n';
   return text;
 }

@@ -25,6 +25,14 @@ ModelSizes sizes_of(const ImageContents& contents) {
 
 }  // namespace
 
+std::vector<ArrayBytes> array_bytes(const ImageContents& contents) {
+  std::vector<ArrayBytes> sizes;
+#define PALPATE_FIELD(type, name, count, frame, meaning) sizes.push_back({#name, contents.name.size() * sizeof(type)});
+  PALPATE_MODEL_ARRAYS(PALPATE_FIELD)
+#undef PALPATE_FIELD
+  return sizes;
+}
+
 std::vector<std::byte> write_image(const ImageContents& contents) {
   const ModelSizes sizes = sizes_of(contents);
   if (contents.vertex_m.size() != contents.vertex_normal.size())

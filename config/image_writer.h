@@ -18,6 +18,13 @@ struct ImageContents {
 #undef PALPATE_FIELD
 };
 
+// Size of one array of the image.
+struct ArrayBytes {
+  const char* name;
+  std::size_t bytes;
+};
+std::vector<ArrayBytes> array_bytes(const ImageContents& contents);
+
 // Bytes of the image: header, sizes, parameters, arrays, checksum; unused bytes are zero, so the same contents always
 // give the same bytes. Throws ConfigError when an array's size is out of the format's range. Does not check contents:
 // open_image does.

@@ -32,6 +32,17 @@ std::vector<std::size_t> profile_corners(const std::vector<ProfilePoint>& profil
 SurfaceMesh make_revolution(const std::vector<ProfilePoint>& profile, std::int32_t triangles);
 SurfaceMesh make_cylinder(double radius_m, double height_m, std::int32_t triangles);
 
+// Bodies with a hole, each one closed surface, outward normals. Exactly symmetric: mirror images of vertices and of
+// triangles are in the mesh too, about x = 0 always, about the other middle planes where the number of cells around is
+// a multiple of four. So a symmetric press gives symmetric beams.
+enum class BodyAxis : std::int32_t { kY = 0, kZ = 1, kX = 2 };
+// A dome open below: upper half of the ellipsoid less that of the one with half axes smaller by the wall, rim at y = 0.
+SurfaceMesh make_half_shell(Vec3 half_axes_m, double wall_m, std::int32_t triangles);
+// A torus of outer radius `radius_m` and a round section of diameter `wall_m`. Genus 1, as the next.
+SurfaceMesh make_ring(double radius_m, double wall_m, BodyAxis axis, std::int32_t triangles);
+SurfaceMesh make_hollow_cylinder(double radius_m, double wall_m, double height_m, BodyAxis axis,
+                                 std::int32_t triangles);
+
 // A heart: Taubin's surface (x^2 + 9/4 y^2 + z^2 - 1)^3 = x^2 z^3 + 9/80 y^2 z^3 (Taubin 1994) with its point and notch
 // rounded, standing on its point with the two lobes up, its depth along z. `size_m` is its width along x.
 SurfaceMesh make_heart(double size_m, std::int32_t triangles);

@@ -18,16 +18,27 @@ namespace palpate {
 inline constexpr double kAuto = std::numeric_limits<double>::quiet_NaN();
 inline bool is_auto(double x) { return std::isnan(x); }
 
-enum class BodyShape : std::int32_t { kEllipsoid, kSphere, kCylinder, kBox, kRevolution, kHeart, kMesh };
-enum class BodyAxis : std::int32_t { kY, kX };
+enum class BodyShape : std::int32_t {
+  kEllipsoid,
+  kSphere,
+  kCylinder,
+  kBox,
+  kRevolution,
+  kHeart,
+  kMesh,
+  kHalfShell,
+  kRing,
+  kHollowCylinder
+};
 struct BodyDesc {
   BodyShape shape = BodyShape::kEllipsoid;
   Vec3 half_axes_m{0.040, 0.030, 0.025};
   double radius_m = 0.030;
   double height_m = 0.060;
-  BodyAxis axis = BodyAxis::kY;
   Vec3 size_m{0.060, 0.060, 0.060};
   double width_m = 0.080;
+  double wall_m = 0.010;
+  BodyAxis axis = BodyAxis::kY;
   std::vector<ProfilePoint> profile;
   std::string mesh;
   double scale = 1e-3;
@@ -44,6 +55,9 @@ struct FixedDesc {
   double base_height_m = 0.002;
 };
 
+// How an anchor of circular beams moves: as a joint of the frame that all beams make together, or as the end of its own
+// beam whose clamp is released over a short length (the paper's idea).
+enum class BeamRelease : std::int32_t { kFrame = 0, kClamp = 1 };
 enum class AnchorSource : std::int32_t { kShape, kMesh };
 struct SkeletonDesc {
   SkeletonLaw law = SkeletonLaw::kStiffness;
@@ -51,6 +65,10 @@ struct SkeletonDesc {
   std::int32_t anchors_min = 6;
   std::int32_t anchors_max = kMaxAnchors;
   double section_radius_m = kAuto;
+  double beam_width_m = kAuto;
+  double beam_thickness_m = kAuto;
+  double beam_allowance_m = 0.5e-3;
+  BeamRelease release = BeamRelease::kFrame;
 };
 
 enum class ContactLaw : std::int32_t { kDuffing, kCubic, kHertz, kTool, kTable };

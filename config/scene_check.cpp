@@ -24,10 +24,15 @@ void check_effect(const SceneDesc& scene, const std::string& table, std::initial
 }
 
 void check_body_keys(const SceneDesc& scene) {
+  const bool cylinder = scene.body.shape == BodyShape::kCylinder;
+  if (scene.body.axis == (cylinder ? BodyAxis::kZ : BodyAxis::kX))
+    fail(scene, "body.axis",
+         cylinder ? "a cylinder stands (\"y\") or lies along \"x\""
+                  : "a ring or hollow cylinder stands (\"y\") or lies along \"z\"");
   const auto only = [&](std::initializer_list<const char*> used, const char* shape) {
     check_effect(scene, "body",
-                 {"half_axes_mm", "radius_mm", "height_mm", "size_mm", "width_mm", "axis", "profile_mm", "mesh",
-                  "scale", "fix_orientation", "triangles"},
+                 {"half_axes_mm", "radius_mm", "height_mm", "size_mm", "width_mm", "wall_mm", "axis", "profile_mm",
+                  "mesh", "scale", "fix_orientation", "triangles"},
                  used, std::string("with shape = \"") + shape + "\"");
   };
   switch (scene.body.shape) {
@@ -45,6 +50,12 @@ void check_body_keys(const SceneDesc& scene) {
       return only({"width_mm", "triangles"}, "heart");
     case BodyShape::kMesh:
       return only({"mesh", "scale", "fix_orientation"}, "mesh");
+    case BodyShape::kHalfShell:
+      return only({"half_axes_mm", "wall_mm", "triangles"}, "half_shell");
+    case BodyShape::kRing:
+      return only({"radius_mm", "wall_mm", "axis", "triangles"}, "ring");
+    case BodyShape::kHollowCylinder:
+      return only({"radius_mm", "height_mm", "wall_mm", "axis", "triangles"}, "hollow_cylinder");
   }
 }
 
@@ -67,8 +78,33 @@ void check_profile(const SceneDesc& scene) {
     fail(scene, key, "runs from top to bottom; list the points from bottom to top");
 }
 
+// A wall must leave a hole.
+void check_wall(const SceneDesc& scene) {
+  const BodyDesc& body = scene.body;
+  double room = kHuge;
+  if (body.shape == BodyShape::kHalfShell)
+    room = std::min({body.half_axes_m.x, body.half_axes_m.y, body.half_axes_m.z});
+  if (body.shape == BodyShape::kRing) room = body.radius_m;
+  if (body.shape == BodyShape::kHollowCylinder) room = body.radius_m;
+  if (!(body.wall_m <= 0.9 * room))
+    fail(scene, "body.wall_mm",
+         number_text(1e3 * body.wall_m) + " mm leaves no hole; allowed up to " + number_text(900 * room) +
+             " mm, 0.9 of the outer radius");
+}
+
+void check_skeleton(const SceneDesc& scene) {
+  const SkeletonLaw law = scene.skeleton.law;
+  if (law == SkeletonLaw::kCircular || law == SkeletonLaw::kCircularPaper)
+    return check_effect(scene, "skeleton", {"section_radius_mm"}, {},
+                        "with circular beams, whose section is beam_width_mm x beam_thickness_mm");
+  check_effect(scene, "skeleton", {"beam_width_mm", "beam_thickness_mm", "beam_allowance_mm", "release"}, {},
+               "unless skeleton.law is \"circular\" or \"circular_paper\"");
+}
+
 void check_body(const SceneDesc& scene) {
   check_body_keys(scene);
+  check_wall(scene);
+  check_skeleton(scene);
   if (scene.body.shape == BodyShape::kMesh && scene.body.mesh.empty())
     fail(scene, "body.mesh", "missing; shape = \"mesh\" needs the path of an .obj, .stl or .ply file");
   if (scene.body.shape == BodyShape::kRevolution) check_profile(scene);

@@ -64,13 +64,21 @@ const KeySpec kTop[] = {
 };
 
 const KeySpec kBody[] = {
-    choice<&BodyDesc::shape>("shape", "ellipsoid|sphere|cylinder|box|revolution|heart|mesh", "kind of surface", true),
-    list<&BodyDesc::half_axes_m>(kVec3, "half_axes_mm", 1, 5000, kMilli, "ellipsoid: half axes along x, y, z"),
-    number<&BodyDesc::radius_m>("radius_mm", 1, 5000, kMilli, "sphere, cylinder: radius"),
-    number<&BodyDesc::height_m>("height_mm", 1, 10000, kMilli, "cylinder: height along its axis"),
-    choice<&BodyDesc::axis>("axis", "y|x", "cylinder: standing (y) or lying along x"),
+    choice<&BodyDesc::shape>("shape",
+                             "ellipsoid|sphere|cylinder|box|revolution|heart|mesh|half_shell|ring|hollow_cylinder",
+                             "kind of surface", true),
+    list<&BodyDesc::half_axes_m>(kVec3, "half_axes_mm", 1, 5000, kMilli,
+                                 "ellipsoid, half_shell: half axes along x, y, z; a half shell stands on its rim"),
+    number<&BodyDesc::radius_m>("radius_mm", 1, 5000, kMilli,
+                                "sphere, cylinder: radius; ring, hollow_cylinder: outer radius"),
+    number<&BodyDesc::height_m>("height_mm", 1, 10000, kMilli, "cylinder, hollow_cylinder: length along the axis"),
     list<&BodyDesc::size_m>(kVec3, "size_mm", 1, 10000, kMilli, "box: sides along x, y, z"),
     number<&BodyDesc::width_m>("width_mm", 1, 10000, kMilli, "heart: width along x; it is about as high"),
+    number<&BodyDesc::wall_m>("wall_mm", 0.1, 5000, kMilli,
+                              "half_shell, hollow_cylinder: wall; ring: thickness of its round section"),
+    choice<&BodyDesc::axis>(
+        "axis", "y|z|x",
+        "cylinder (y or x), ring, hollow_cylinder (y or z): y stands upright, others lie on their side"),
     list<&BodyDesc::profile>(KeyKind::kPairs, "profile_mm", -10000, 10000, kMilli,
                              "revolution: points [radius, height] from bottom to top; turns above 35 degrees stay "
                              "sharp, the rest is smoothed; open ends are closed by discs"),
@@ -93,9 +101,11 @@ const KeySpec kFixed[] = {
                                       "everything of the body up to this height above its lowest point is clamped"),
 };
 const KeySpec kSkeleton[] = {
-    choice<&SkeletonDesc::law>("law", "none|stiffness|paper",
-                               "beam skeleton: stiffness = sum of beam stiffnesses; paper = the ratios of Luo & Xiao "
-                               "2006, eqs. 6-8"),
+    choice<&SkeletonDesc::law>("law", "none|stiffness|paper|circular|circular_paper",
+                               "beam skeleton: stiffness = sum of straight beams' stiffnesses; paper = the ratios of "
+                               "Luo & Xiao 2006, eqs. 6-8; circular = circular beams where straight ones would leave "
+                               "the body (objects with holes), sum of stiffnesses; circular_paper = the circular beams "
+                               "and force ratios as printed in 2009 (docs/models_circular_beams.md)"),
     choice<&SkeletonDesc::anchors>("anchors", "auto|mesh",
                                    "auto: exact curvature-extremal points of the shape, from the mesh where the shape "
                                    "is a mesh or a heart; mesh: always from the mesh"),
@@ -104,6 +114,18 @@ const KeySpec kSkeleton[] = {
     number_or_auto<&SkeletonDesc::section_radius_m>(
         "section_radius_mm", 0.01, 5000, kMilli,
         "radius of the beams' circular section; auto: the beams share the body's volume, S = V / sum of lengths"),
+    number_or_auto<&SkeletonDesc::beam_width_m>(
+        "beam_width_mm", 0.01, 5000, kMilli,
+        "circular: width of the beams in their plane, below the thinnest wall; auto: a quarter of it"),
+    number_or_auto<&SkeletonDesc::beam_thickness_m>(
+        "beam_thickness_mm", 0.01, 5000, kMilli,
+        "circular: thickness across the plane; auto: the beams share the body's volume"),
+    number<&SkeletonDesc::beam_allowance_m>("beam_allowance_mm", 0, 1000, kMilli,
+                                            "circular: epsilon, added to the radius of curvature of the surface"),
+    choice<&SkeletonDesc::release>("release", "frame|clamp",
+                                   "circular: how anchors move: as joints of the frame that all beams make, held at "
+                                   "the fixed ones; or each as the "
+                                   "end of its own beam, its clamp released over a short length"),
 };
 const KeySpec kContact[] = {
     choice<&ContactDesc::law>("law", "duffing|cubic|hertz|tool|table",

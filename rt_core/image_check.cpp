@@ -119,6 +119,35 @@ ImageResult check_skeleton(const Model& model) noexcept {
   return {};
 }
 
+// Every array of beams holds all pairs of vertex and anchor, or none.
+bool holds_all_pairs(const Model& model, int64_t size, bool needed) noexcept {
+  return size == (needed ? model.sizes.n_vertex * model.sizes.n_anchor : 0);
+}
+
+ImageResult check_beams(const Model& model) noexcept {
+  const auto law = static_cast<SkeletonLaw>(model.params.skeleton_law);
+  const bool circular = law == SkeletonLaw::kCircular, paper = law == SkeletonLaw::kCircularPaper;
+  if (!holds_all_pairs(model, model.sizes.n_beam_stiffness, circular)) return broken("n_beam_stiffness", 0);
+  if (!holds_all_pairs(model, model.sizes.n_beam_ratio, paper)) return broken("n_beam_ratio", 0);
+  if (!holds_all_pairs(model, model.sizes.n_beam_response, circular || paper)) return broken("n_beam_response", 0);
+  for (std::size_t i = 0; i < model.beam_stiffness.size(); ++i)
+    for (const double k : model.beam_stiffness[i].k_N_per_m)
+      if (!is_finite(k)) return not_finite("beam_stiffness", i);
+  for (std::size_t i = 0; i < model.beam_ratio.size(); ++i) {
+    const BeamRatio& r = model.beam_ratio[i];
+    for (const Vec3& v : {r.f1_axis, r.f1_gain_N_per_m, r.f2_axis, r.f2_gain_N_per_m})
+      if (!is_finite(v)) return not_finite("beam_ratio", i);
+  }
+  for (std::size_t i = 0; i < model.beam_response.size(); ++i) {
+    const BeamResponse& r = model.beam_response[i];
+    for (const Vec3& v :
+         {r.release_m_per_N[0], r.release_m_per_N[1], r.release_m_per_N[2], r.inner_Pa_per_N, r.outer_Pa_per_N,
+          r.side_Pa_per_N, r.axial_Pa_per_N, r.shear_in_Pa_per_N, r.shear_out_Pa_per_N})
+      if (!is_finite(v)) return not_finite("beam_response", i);
+  }
+  return {};
+}
+
 ImageResult check_piece(const Model& model, std::size_t i) noexcept {
   const ToolPiece& p = model.piece[i];
   if (!is_finite(p.pose_tool) || !is_unit(p.pose_tool.orientation)) return not_finite("piece.pose_tool", i);
@@ -241,6 +270,7 @@ ImageResult check_arrays(const Model& model) noexcept {
   if (const ImageResult result = check_surface(model); result.error != ImageError::kNone) return result;
   if (const ImageResult result = check_hierarchy(model); result.error != ImageError::kNone) return result;
   if (const ImageResult result = check_skeleton(model); result.error != ImageError::kNone) return result;
+  if (const ImageResult result = check_beams(model); result.error != ImageError::kNone) return result;
   if (const ImageResult result = check_tool(model); result.error != ImageError::kNone) return result;
   if (const ImageResult result = check_articulation(model); result.error != ImageError::kNone) return result;
   if (const ImageResult result = check_nodal(model); result.error != ImageError::kNone) return result;

@@ -25,7 +25,7 @@ enum class FrictionLaw : std::int32_t {
 // over the surface.
 enum class ResponseLaw : std::int32_t { kPoints = 0, kTip = 1, kTable = 2 };
 enum class TangentialLaw : std::int32_t { kSeparable = 0, kRadial = 1 };
-enum class SkeletonLaw : std::int32_t { kNone = 0, kStiffness = 1, kPaper = 2 };
+enum class SkeletonLaw : std::int32_t { kNone = 0, kStiffness = 1, kPaper = 2, kCircular = 3, kCircularPaper = 4 };
 enum class ShapeLaw : std::int32_t { kRbf = 0, kDisplacementAngle = 1 };
 enum class NeighbourhoodLaw : std::int32_t { kNone = 0, kLog = 1, kLogC1 = 2, kPunch = 3 };
 enum class CouplingLaw : std::int32_t { kNone = 0, kCoupled = 1, kTemporal = 2 };
@@ -42,7 +42,7 @@ enum class NodalCarry : std::int32_t { kFarField = 0, kRest = 1 };
   X(std::int32_t, contact_weight, "-", 0, 2, "how sample forces are weighted (ContactWeight)")               \
   X(std::int32_t, friction_law, "-", 0, 6, "FrictionLaw")                                                    \
   X(std::int32_t, tangential_law, "-", 0, 1, "TangentialLaw")                                                \
-  X(std::int32_t, skeleton_law, "-", 0, 2, "SkeletonLaw")                                                    \
+  X(std::int32_t, skeleton_law, "-", 0, 4, "SkeletonLaw")                                                    \
   X(std::int32_t, shape_law, "-", 0, 1, "ShapeLaw: how anchor displacements spread over the surface")        \
   X(std::int32_t, neighbourhood_law, "-", 0, 3, "NeighbourhoodLaw: dent around a contact")                   \
   X(std::int32_t, coupling_law, "-", 0, 2, "CouplingLaw: how regions influence one another")                 \
@@ -229,6 +229,26 @@ struct ResponseKnot {
   double energy_J;
 };
 
+// A circular (or other baked) beam from one surface vertex to one anchor. Beams are stored vertex by vertex, anchor by
+// anchor: element vertex * n_anchor + anchor. A beam that could not be laid inside the body is all zeros.
+struct BeamStiffness {
+  double k_N_per_m[6];  // symmetric 3x3 (xx, xy, xz, yy, yz, zz), world: force on the tip per tip displacement
+};
+// The paper's ratios instead: F1 along f1_axis in proportion to f1_gain . D, F2 along f2_axis to f2_gain . D.
+struct BeamRatio {
+  Vec3 f1_axis, f1_gain_N_per_m, f2_axis, f2_gain_N_per_m;
+};
+// What one newton does at the anchor: rows to be multiplied by a force, the beam's own share of the contact's unless
+// stated otherwise.
+struct BeamResponse {
+  Vec3 release_m_per_N[3];  // x, y, z displacement of the anchor; per force of the whole contact (kCircular)
+  Vec3 inner_Pa_per_N;      // stress along the beam at the inner and outer fibre of the clamped section,
+  Vec3 outer_Pa_per_N;      //
+  Vec3 side_Pa_per_N;       // what bending out of the beam's plane adds at its sides,
+  Vec3 axial_Pa_per_N;      // the mean, and the shear in the section's middle, in and out of the plane
+  Vec3 shear_in_Pa_per_N, shear_out_Pa_per_N;
+};
+
 // X(element type, name, number of elements, frame, meaning). Sizes are fields of ModelSizes.
 #define PALPATE_MODEL_ARRAYS(X)                                                                                 \
   X(Vec3, vertex_m, n_vertex, "world", "rest surface vertices")                                                 \
@@ -238,6 +258,9 @@ struct ResponseKnot {
   X(Anchor, anchor, n_anchor, "world", "skeleton anchors")                                                      \
   X(double, rbf_inverse, n_rbf2, "-", "inverse of the bordered RBF matrix, row-major, n_rbf x n_rbf")           \
   X(PatchWeight, patch, n_patch, "-", "patch of each vertex (displacement-angle interpolation only)")           \
+  X(BeamStiffness, beam_stiffness, n_beam_stiffness, "world", "baked beams: vertex x anchor")                   \
+  X(BeamRatio, beam_ratio, n_beam_ratio, "world", "baked beams of the paper's law: vertex x anchor")            \
+  X(BeamResponse, beam_response, n_beam_response, "world", "anchors' response: vertex x anchor")                \
   X(ToolPiece, piece, n_piece, "tool", "convex pieces of the tool")                                             \
   X(ToolPoint, tool_point, n_tool_point, "tool", "sample points of the tool")                                   \
   X(Vec3, hull_vertex_m, n_hull, "piece", "vertices of hull pieces")                                            \
@@ -266,6 +289,9 @@ struct ResponseKnot {
   X(n_rbf, 0, kMaxAnchors + 4)       \
   X(n_rbf2, 0, 1 << 12)              \
   X(n_patch, 0, 1 << 26)             \
+  X(n_beam_stiffness, 0, 1 << 26)    \
+  X(n_beam_ratio, 0, 1 << 26)        \
+  X(n_beam_response, 0, 1 << 26)     \
   X(n_piece, 1, kMaxPieces)          \
   X(n_tool_point, 1, kMaxToolPoints) \
   X(n_hull, 0, 1 << 16)              \

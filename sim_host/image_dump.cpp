@@ -45,6 +45,16 @@ void extend(Range& range, const ToolPiece& p) { range.add(p.pose_tool.position_m
 void extend(Range& range, const Joint& j) { range.add(j.lowest), range.add(j.highest); }
 void extend(Range& range, const Pose& p) { range.add(p.position_m); }
 void extend(Range& range, const ToolPoint& p) { range.add(p.position_tool_m); }
+void extend(Range& range, const BeamStiffness& b) {
+  for (const double k : b.k_N_per_m) range.add(k);
+}
+void extend(Range& range, const BeamRatio& b) {
+  range.add(b.f1_gain_N_per_m);
+  range.add(b.f2_gain_N_per_m);
+}
+void extend(Range& range, const BeamResponse& b) {
+  for (const Vec3& row : b.release_m_per_N) range.add(row);
+}
 void extend(Range& range, const NodalVertex& v) { range.add(v.area_m2); }
 void extend(Range& range, float x) { range.add(static_cast<double>(x)); }
 void extend(Range& range, std::int32_t i) { range.add(i); }

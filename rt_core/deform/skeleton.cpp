@@ -1,14 +1,10 @@
 #include "rt_core/deform/skeleton.h"
 
 #include "rt_core/cholesky.h"
+#include "rt_core/deform/ratio_scales.h"
 
 namespace palpate {
 namespace {
-
-// Columns of the paper's system nearer to parallel than this (sine of the angle) are taken as parallel. Below it the
-// two scales are the difference of nearly equal things: an anchor misplaced by 1 % of the body moves them by their own
-// size.
-constexpr Real kParallelSine = 1e-2;
 
 void clear_forces(Skeleton& skeleton) PALPATE_RT {
   skeleton.degenerate = false;
@@ -86,24 +82,12 @@ bool distribute_by_ratios(Real youngs_modulus_Pa, Vec3 force_on_body_w, Skeleton
     u += (per_axial * beam.axial_N_per_m) * along;
     v += (per_bending * beam.bending_N_per_m) * (direction - along);
   }
-  const Vec3 f = force_on_body_w;
-  const Real uu = squared_norm(u);
-  const Real vv = squared_norm(v);
-  const Vec3 normal = cross(u, v);
-  const Real area2 = squared_norm(normal);  // |u|^2 |v|^2 sin^2
-  if (area2 > kParallelSine * kParallelSine * uu * vv) {
-    // Least squares by the dual basis: cross products keep the digits that the normal equations would square away.
-    skeleton.alpha_Pa = dot(cross(v, normal), f) / area2;
-    skeleton.beta_Pa = dot(cross(normal, u), f) / area2;
-  } else if (uu + vv > 0) {
-    // Pseudo-inverse of a matrix of rank one: its transpose over its squared Frobenius norm.
-    skeleton.minimum_norm = true;
-    skeleton.alpha_Pa = dot(u, f) / (uu + vv);
-    skeleton.beta_Pa = dot(v, f) / (uu + vv);
-  } else {
-    skeleton.degenerate = squared_norm(f) > 0;
-    return !skeleton.degenerate;  // no force, nothing to share
-  }
+  const RatioScales scales = solve_ratio_scales(u, v, force_on_body_w);
+  skeleton.alpha_Pa = scales.alpha;
+  skeleton.beta_Pa = scales.beta;
+  skeleton.minimum_norm = scales.minimum_norm;
+  skeleton.degenerate = !scales.solvable;
+  if (skeleton.degenerate) return false;
   for (std::int32_t i = 0; i < skeleton.count; ++i) {
     const StraightBeam& beam = skeleton.beam[i];
     const Vec3 along = dot(beam.axis, direction) * beam.axis;
