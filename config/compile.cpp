@@ -255,7 +255,7 @@ class Compiler {
   void add_skeleton() {
     if (scene_.skeleton.law == SkeletonLaw::kNone) return;
     report_.exact_anchors = scene_.skeleton.anchors == AnchorSource::kShape && has_exact_anchors(scene_.body.shape) &&
-                            scene_.body.axis == BodyAxis::kY;
+                            scene_.body.axis != BodyAxis::kX;
     std::vector<AnchorPoint> anchors = report_.exact_anchors ? exact_anchors(scene_.body) : mesh_anchors(mesh_);
     limit_anchors(mesh_, scene_.skeleton.anchors_min, scene_.skeleton.anchors_max, anchors);
     add_anchors(anchors);
