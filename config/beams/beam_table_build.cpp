@@ -1,5 +1,6 @@
 #include "config/beams/beam_table_build.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
