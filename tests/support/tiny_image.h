@@ -70,23 +70,17 @@ inline ModelParams tiny_params() {
   return p;
 }
 
-// Indices into the array table, in its order.
+// Indices into the array table.
 enum ArrayIndex {
-  kVertex,
-  kNormal,
-  kTriangle,
-  kBvh,
-  kAnchor,
-  kRbf,
-  kPatch,
-  kPiece,
-  kToolPoint,
-  kHull,
-  kNodalVertex,
-  kCompliance32,
-  kCompliance64,
-  kStrainGauge
+#define PALPATE_FIELD(type, name, count, frame, meaning) k_##name,
+  PALPATE_MODEL_ARRAYS(PALPATE_FIELD)
+#undef PALPATE_FIELD
 };
+inline constexpr ArrayIndex kVertex = k_vertex_m, kNormal = k_vertex_normal, kTriangle = k_triangle, kBvh = k_bvh,
+                            kAnchor = k_anchor, kRbf = k_rbf_inverse, kPatch = k_patch, kPiece = k_piece,
+                            kToolPoint = k_tool_point, kHull = k_hull_vertex_m, kNodalVertex = k_nodal_vertex,
+                            kCompliance32 = k_compliance_f32, kCompliance64 = k_compliance_f64,
+                            kStrainGauge = k_strain_gauge;
 
 // `nodal`: the tetrahedron as a finite-element body held at its fourth corner, 1e-4 m/N per free component.
 inline ImageBytes tiny_image(bool nodal = false) {
