@@ -136,7 +136,10 @@ std::vector<AnchorPoint> revolution_anchors(const std::vector<ProfilePoint>& pro
 
 }  // namespace
 
-bool has_exact_anchors(BodyShape shape) { return shape != BodyShape::kHeart && shape != BodyShape::kMesh; }
+bool has_exact_anchors(BodyShape shape) {
+  return shape != BodyShape::kHeart && shape != BodyShape::kMesh && shape != BodyShape::kClip &&
+         shape != BodyShape::kTets;
+}
 
 std::vector<AnchorPoint> exact_anchors(const BodyDesc& body) {
   switch (body.shape) {
@@ -156,6 +159,8 @@ std::vector<AnchorPoint> exact_anchors(const BodyDesc& body) {
       return revolution_anchors(body.profile);
     case BodyShape::kHeart:
     case BodyShape::kMesh:
+    case BodyShape::kClip:
+    case BodyShape::kTets:
       break;
   }
   return {};

@@ -45,6 +45,10 @@ void check_body_keys(const SceneDesc& scene) {
       return only({"width_mm", "triangles"}, "heart");
     case BodyShape::kMesh:
       return only({"mesh", "scale", "fix_orientation"}, "mesh");
+    case BodyShape::kClip:
+      return only({}, "clip");
+    case BodyShape::kTets:
+      return only({"mesh", "scale"}, "tets");
   }
 }
 
@@ -71,6 +75,8 @@ void check_body(const SceneDesc& scene) {
   check_body_keys(scene);
   if (scene.body.shape == BodyShape::kMesh && scene.body.mesh.empty())
     fail(scene, "body.mesh", "missing; shape = \"mesh\" needs the path of an .obj, .stl or .ply file");
+  if (scene.body.shape == BodyShape::kTets && scene.body.mesh.empty())
+    fail(scene, "body.mesh", "missing; shape = \"tets\" needs the path of an .msh or .vtu file");
   if (scene.body.shape == BodyShape::kRevolution) check_profile(scene);
   const double nu = scene.material.poisson_ratio;
   if (nu > 0.5 && !(scene.material.legacy_paper_material && nu == 1.0))
@@ -99,6 +105,44 @@ void check_contact(const SceneDesc& scene) {
     fail(scene, "contact.duffing", "omega0 and beta0sq_eps are both 0: no force; set at least one");
   if (!is_auto(scene.friction.mu_ref) && !is_auto(scene.friction.k))
     fail(scene, "friction.k", "both k and mu_ref are given, and each determines the other; keep one");
+}
+
+// The nodal back-end has no tool-point law, no skeleton and no shape functions; the others no finite elements.
+void check_backend(const SceneDesc& scene) {
+  const bool nodal = scene.contact.backend == Backend::kNodal;
+  const bool coulomb = scene.friction.law == FrictionLaw::kCoulomb;
+  const auto no_table = [&](const char* name, const char* because) {
+    if (scene.source.has(name)) fail(scene, name, std::string("has no effect ") + because + "; remove the table");
+  };
+  if (!nodal) {
+    no_table("body.fem", "unless contact.backend = \"nodal\"");
+    no_table("contact.nodal", "unless contact.backend = \"nodal\"");
+    if (coulomb) fail(scene, "friction.law", "\"coulomb\" needs contact.backend = \"nodal\"; use \"return_map\"");
+    return;
+  }
+  for (const char* table : {"skeleton", "shape", "coupling", "contact.duffing", "contact.cubic", "contact.hertz"})
+    no_table(table, "with contact.backend = \"nodal\"");
+  check_effect(scene, "contact", {"law", "weight", "reference_area_mm2", "max_depth_mm"}, {},
+               "with contact.backend = \"nodal\"");
+  if (scene.friction.law != FrictionLaw::kNone && !coulomb)
+    fail(scene, "friction.law", "is not available with contact.backend = \"nodal\"; use \"none\" or \"coulomb\"");
+  check_effect(scene, "friction", {"tangential", "reference_force_N", "k", "beta", "mu_dynamic"}, {},
+               "with law = \"coulomb\" or \"none\"");
+  if (scene.material.poisson_ratio >= 0.5)
+    fail(scene, "body.material.poisson_ratio",
+         number_text(scene.material.poisson_ratio) + "; finite elements need less than 0.5: use 0.4999 or below");
+  if (scene.nodal.solver == NodalSolver::kPivoting)
+    check_effect(scene, "contact.nodal", {"sweeps"}, {}, "with solver = \"pivoting\"");
+  if (scene.body.shape != BodyShape::kClip)
+    check_effect(scene, "body.fem", {"level"}, {}, "unless body.shape = \"clip\"");
+  const bool own_mesh = scene.body.shape == BodyShape::kClip || scene.body.shape == BodyShape::kTets;
+  if (own_mesh) check_effect(scene, "body.fem", {"edge_mm"}, {}, "with a body that brings its own mesh");
+  if (scene.body.shape == BodyShape::kClip) no_table("body.fixed", "for a clip, whose foot is held");
+  for (std::size_t i = 0; i < scene.piece.size(); ++i)
+    if (scene.piece[i].shape == PieceShape::kHull)
+      fail(scene, "tool.piece[" + std::to_string(i) + "].shape",
+           "\"hull\" is not available with contact.backend = \"nodal\"; use spheres, capsules, cylinders, cones or "
+           "boxes");
 }
 
 // Which dimensions each piece shape needs.
@@ -217,6 +261,7 @@ void check_device_and_path(const SceneDesc& scene) {
 void check_scene(const SceneDesc& scene) {
   check_body(scene);
   check_contact(scene);
+  check_backend(scene);
   check_tool(scene);
   check_articulation(scene);
   check_device_and_path(scene);
