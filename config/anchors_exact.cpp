@@ -194,7 +194,10 @@ std::vector<AnchorPoint> hollow_cylinder_anchors(const BodyDesc& body) {
 
 }  // namespace
 
-bool has_exact_anchors(BodyShape shape) { return shape != BodyShape::kHeart && shape != BodyShape::kMesh; }
+bool has_exact_anchors(BodyShape shape) {
+  return shape != BodyShape::kHeart && shape != BodyShape::kMesh && shape != BodyShape::kClip &&
+         shape != BodyShape::kTets;
+}
 
 std::vector<AnchorPoint> exact_anchors(const BodyDesc& body) {
   switch (body.shape) {
@@ -220,6 +223,8 @@ std::vector<AnchorPoint> exact_anchors(const BodyDesc& body) {
       return hollow_cylinder_anchors(body);
     case BodyShape::kHeart:
     case BodyShape::kMesh:
+    case BodyShape::kClip:
+    case BodyShape::kTets:
       break;
   }
   return {};

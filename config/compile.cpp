@@ -7,6 +7,7 @@
 #include "config/anchors.h"
 #include "config/bvh_build.h"
 #include "config/config_error.h"
+#include "config/fem_body.h"
 #include "config/mesh_io.h"
 #include "config/patches.h"
 #include "config/schema.h"
@@ -27,13 +28,17 @@ bool has_tips(const SceneDesc& scene) {
 // One bake: fills `image` and `report` step by step; later steps use what earlier ones wrote.
 class Compiler {
  public:
-  explicit Compiler(const SceneDesc& scene) : scene_(scene) {}
+  Compiler(const SceneDesc& scene, const Progress& progress) : scene_(scene), progress_(progress) {}
 
   CompileResult run() {
     check_scene(scene_);
     report_.name = image_.name = scene_.name;
     add_laws();
-    add_surface();
+    if (is_nodal()) {
+      add_finite_elements();
+    } else {
+      add_surface();
+    }
     add_tool();
     add_articulation();
     add_distances();
@@ -51,6 +56,59 @@ class Compiler {
     throw ConfigError(scene_.source.where(key) + ": " + what);
   }
   void warn(const std::string& text) { report_.warnings.push_back(text); }
+
+  bool is_nodal() const { return scene_.contact.backend == Backend::kNodal; }
+
+  // Contact on finite elements: what the response back-end would use is left out.
+  void add_nodal_laws() {
+    ModelParams& p = image_.params;
+    p.backend = static_cast<std::int32_t>(Backend::kNodal);
+    p.skeleton_law = static_cast<std::int32_t>(SkeletonLaw::kNone);
+    p.neighbourhood_law = static_cast<std::int32_t>(NeighbourhoodLaw::kNone);
+    p.coupling_law = static_cast<std::int32_t>(CouplingLaw::kNone);
+    p.nodal_solver = static_cast<std::int32_t>(scene_.nodal.solver);
+    p.nodal_sweeps = scene_.nodal.sweeps;
+    p.friction_sweeps = scene_.nodal.friction_sweeps;
+    p.nodal_carry = static_cast<std::int32_t>(scene_.nodal.carry);
+    p.wall_N_per_m = scene_.nodal.wall_N_per_m;
+    p.strain_limit = scene_.nodal.strain_limit;
+    p.proxy_speed_max_m_per_s = scene_.nodal.proxy_speed_max_m_per_s;
+    p.friction_mu_dynamic = scene_.friction.law == FrictionLaw::kCoulomb
+                                ? (is_auto(scene_.friction.mu_ref) ? 0.5 : std::min(scene_.friction.mu_ref, 10.0))
+                                : 0.0;
+  }
+
+  void add_finite_elements() {
+    const FemBody body = make_fem_body(scene_, report_.warnings, progress_);
+    mesh_ = body.condensed.surface;
+    const BvhBuild bvh = add_nodal_body(body.condensed, body.precision, scene_.source.where("body.shape"), image_);
+    image_.strain_gauge = body.strain_gauge;
+    ModelParams& p = image_.params;
+    const double edge = mean_edge_m(mesh_);
+    p.contact_margin_m = is_auto(scene_.nodal.margin_m) ? 0.5 * edge : scene_.nodal.margin_m;
+    // Singular where nodes are redundant; the table's own rounding sets how much regularisation it takes.
+    p.regularisation = body.precision == CompliancePrecision::kDouble ? 1e-6 : 1e-5;
+    cluster_distance_m_ = 3 * edge;
+    report_surface(bvh);
+    report_.fem_nodes = static_cast<std::int64_t>(body.mesh.node_m.size());
+    report_.fem_elements = static_cast<std::int64_t>(body.mesh.tet.size());
+    report_.fem_gauges = body.gauges;
+    report_.compliance_bytes =
+        image_.compliance_f32.size() * sizeof(float) + image_.compliance_f64.size() * sizeof(double);
+    report_.single_precision = body.precision == CompliancePrecision::kSingle;
+    report_.precision_error = body.precision_error;
+  }
+
+  void report_surface(const BvhBuild& bvh) {
+    report_.volume_m3 = signed_volume_m3(mesh_);
+    report_.surface_m2 = surface_area_m2(mesh_);
+    report_.mass_kg = report_.volume_m3 * scene_.material.density_kg_per_m3;
+    report_.vertices = static_cast<std::int64_t>(image_.vertex_m.size());
+    report_.triangles = static_cast<std::int64_t>(image_.triangle.size());
+    report_.bvh_nodes = static_cast<std::int32_t>(image_.bvh.size());
+    report_.bvh_depth = bvh.depth;
+    report_.traversal_stack = bvh.stack_high_water;
+  }
 
   void add_laws() {
     ModelParams& p = image_.params;
@@ -81,6 +139,7 @@ class Compiler {
     p.friction_beta = report_.friction.beta;
     p.friction_slip_m = scene_.friction.slip_m;
     p.friction_mu_dynamic = report_.friction.mu_dynamic;
+    if (is_nodal()) add_nodal_laws();
   }
 
   void add_surface() {
@@ -128,8 +187,7 @@ class Compiler {
     for (std::size_t i = 0; i < tool.piece.size(); ++i) {
       const std::string label = "tool.piece[" + std::to_string(i) + "]";
       const ToolPiece& piece = tool.piece[i];
-      if (piece.point_count == 0) continue;
-      if (has_tips(scene_)) continue;
+      if (piece.point_count == 0 || is_nodal() || has_tips(scene_)) continue;  // nodal: the exact pieces touch
       if (piece.margin_m < scene_.contact.max_depth_m)
         warn(label + ": its margin of " + number_text(1e3 * piece.margin_m) +
              " mm is below contact.max_depth_mm; deeper than the margin the direction of contact can jump");
@@ -208,6 +266,7 @@ class Compiler {
     const double spacing = point_spacing_m();
     p.cluster_distance_m = !is_auto(scene_.contact.cluster_distance_m) ? scene_.contact.cluster_distance_m
                            : has_tips(scene_)                          ? tip_distance_m()
+                           : is_nodal()                                ? clamp_to(cluster_distance_m_, 1e-6, 1.0)
                            : spacing > 0                               ? clamp_to(2 * spacing, 1e-6, 1.0)
                                                                        : 0.010;
     report_.cluster_distance_m = p.cluster_distance_m;
@@ -253,7 +312,7 @@ class Compiler {
   }
 
   void add_skeleton() {
-    if (scene_.skeleton.law == SkeletonLaw::kNone) return;
+    if (is_nodal() || scene_.skeleton.law == SkeletonLaw::kNone) return;
     report_.exact_anchors = scene_.skeleton.anchors == AnchorSource::kShape && has_exact_anchors(scene_.body.shape) &&
                             scene_.body.axis != BodyAxis::kX;
     std::vector<AnchorPoint> anchors = report_.exact_anchors ? exact_anchors(scene_.body) : mesh_anchors(mesh_);
@@ -345,6 +404,8 @@ class Compiler {
   }
 
   const SceneDesc& scene_;
+  const Progress& progress_;
+  double cluster_distance_m_ = 0;  // nodal
   SurfaceMesh mesh_;
   ImageContents image_;
   CompileReport report_;
@@ -385,6 +446,9 @@ SurfaceMesh make_body(const SceneDesc& scene, std::vector<std::string>& warnings
       break;
     case BodyShape::kHollowCylinder:
       mesh = make_hollow_cylinder(body.radius_m, body.wall_m, body.height_m, body.axis, body.triangles);
+    case BodyShape::kClip:
+    case BodyShape::kTets:
+      mesh = surface_of(make_tet_mesh(scene, warnings)).mesh;
       break;
     case BodyShape::kMesh: {
       const std::filesystem::path file(body.mesh);
@@ -408,6 +472,8 @@ SurfaceMesh make_body(const SceneDesc& scene, std::vector<std::string>& warnings
   return mesh;
 }
 
-CompileResult compile_scene(const SceneDesc& scene) { return Compiler(scene).run(); }
+CompileResult compile_scene(const SceneDesc& scene, const Progress& progress) {
+  return Compiler(scene, progress).run();
+}
 
 }  // namespace palpate

@@ -8,6 +8,7 @@
 #include "config/beams/beam_table_build.h"
 #include "config/contact_fit.h"
 #include "config/image_writer.h"
+#include "config/progress.h"
 #include "config/response/tip_bake.h"
 #include "config/scene.h"
 
@@ -17,6 +18,11 @@ struct CompileReport {
   std::string name;
   std::size_t image_bytes = 0;
   std::int64_t vertices = 0, triangles = 0;
+  std::int64_t fem_nodes = 0, fem_elements = 0;  // 0: no finite elements
+  std::int32_t fem_gauges = 0;
+  std::size_t compliance_bytes = 0;
+  bool single_precision = false;
+  double precision_error = 0;  // relative, of a press's force, by rounding the table to single precision
   double volume_m3 = 0, surface_m2 = 0, mass_kg = 0;
   std::int32_t bvh_nodes = 0, bvh_depth = 0, traversal_stack = 0;
   bool exact_anchors = false;
@@ -43,7 +49,7 @@ struct CompileResult {
   CompileReport report;
 };
 // Same scene, same bytes: nothing of paths, time or addresses goes into them. Throws ConfigError.
-CompileResult compile_scene(const SceneDesc& scene);
+CompileResult compile_scene(const SceneDesc& scene, const Progress& progress = {});
 
 // The body's surface, checked: made or read, as the scene says. Throws ConfigError. Adds warnings.
 SurfaceMesh make_body(const SceneDesc& scene, std::vector<std::string>& warnings);

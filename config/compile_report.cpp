@@ -57,6 +57,12 @@ std::string report_text(const CompileReport& r) {
        r.mass_kg);
   line(text, "hierarchy  %d nodes, %d levels, traversal stack at most %d of %d", r.bvh_nodes, r.bvh_depth,
        r.traversal_stack, kMaxTraversalStack);
+  if (r.fem_nodes > 0) {
+    line(text, "elements   %lld nodes, %lld tetrahedra, %d strain gauges", static_cast<long long>(r.fem_nodes),
+         static_cast<long long>(r.fem_elements), r.fem_gauges);
+    line(text, "compliance %.2f MB in %s precision (rounding to single: %.1e of a press's force)",
+         1e-6 * static_cast<double>(r.compliance_bytes), r.single_precision ? "single" : "double", r.precision_error);
+  }
   line(text, "skeleton   %d anchors (%s), %d fixed, beam radius %.4g mm", r.anchors,
        r.exact_anchors ? "exact" : "from the mesh", r.fixed_anchors, 1e3 * r.section_radius_m);
   if (r.baked_beams) beam_lines(text, r);

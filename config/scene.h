@@ -28,7 +28,9 @@ enum class BodyShape : std::int32_t {
   kMesh,
   kHalfShell,
   kRing,
-  kHollowCylinder
+  kHollowCylinder,
+  kClip,
+  kTets
 };
 struct BodyDesc {
   BodyShape shape = BodyShape::kEllipsoid;
@@ -44,6 +46,16 @@ struct BodyDesc {
   double scale = 1e-3;
   bool fix_orientation = false;
   std::int32_t triangles = 3000;
+};
+// Finite elements of a body (contact.backend = "nodal").
+enum class FemOrder : std::int32_t { kQuadratic, kLinear };
+enum class FemPrecision : std::int32_t { kByError, kSingle, kDouble };
+struct FemDesc {
+  FemOrder order = FemOrder::kQuadratic;
+  FemPrecision precision = FemPrecision::kByError;
+  double edge_m = kAuto;
+  std::int32_t level = 1;
+  std::int32_t strain_gauges = 8;
 };
 struct MaterialDesc {
   double youngs_modulus_Pa = 3e6;
@@ -79,6 +91,17 @@ struct ContactDesc {
   double reference_area_m2 = kAuto;
   double max_depth_m = 0.006;
   double cluster_distance_m = kAuto;
+  Backend backend = Backend::kResponse;
+};
+struct NodalDesc {
+  NodalSolver solver = NodalSolver::kPivoting;
+  std::int32_t sweeps = 20;
+  std::int32_t friction_sweeps = 4;
+  NodalCarry carry = NodalCarry::kFarField;
+  double margin_m = kAuto;
+  double wall_N_per_m = 5e4;
+  double strain_limit = 0.1;
+  double proxy_speed_max_m_per_s = 0.5;
 };
 // Defaults: Luo & Xiao 2006, section VII, read in millimetres and newtons.
 struct DuffingDesc {
@@ -221,10 +244,12 @@ struct SceneSource {
 struct SceneDesc {
   std::string name = "scene";
   BodyDesc body;
+  FemDesc fem;
   MaterialDesc material;
   FixedDesc fixed;
   SkeletonDesc skeleton;
   ContactDesc contact;
+  NodalDesc nodal;
   DuffingDesc duffing;
   CubicDesc cubic;
   HertzDesc hertz;

@@ -56,6 +56,10 @@ void check_body_keys(const SceneDesc& scene) {
       return only({"radius_mm", "wall_mm", "axis", "triangles"}, "ring");
     case BodyShape::kHollowCylinder:
       return only({"radius_mm", "height_mm", "wall_mm", "axis", "triangles"}, "hollow_cylinder");
+    case BodyShape::kClip:
+      return only({}, "clip");
+    case BodyShape::kTets:
+      return only({"mesh", "scale"}, "tets");
   }
 }
 
@@ -107,6 +111,8 @@ void check_body(const SceneDesc& scene) {
   check_skeleton(scene);
   if (scene.body.shape == BodyShape::kMesh && scene.body.mesh.empty())
     fail(scene, "body.mesh", "missing; shape = \"mesh\" needs the path of an .obj, .stl or .ply file");
+  if (scene.body.shape == BodyShape::kTets && scene.body.mesh.empty())
+    fail(scene, "body.mesh", "missing; shape = \"tets\" needs the path of an .msh or .vtu file");
   if (scene.body.shape == BodyShape::kRevolution) check_profile(scene);
   const double nu = scene.material.poisson_ratio;
   if (nu > 0.5 && !(scene.material.legacy_paper_material && nu == 1.0))
@@ -180,10 +186,6 @@ void check_tips(const SceneDesc& scene) {
 }
 
 void check_friction(const SceneDesc& scene) {
-  if (scene.friction.law == FrictionLaw::kCoulomb)
-    fail(scene, "friction.law",
-         "\"coulomb\" is friction in contact space of a finite-element body; allowed here none, return_map, paper, "
-         "mindlin, presliding, presliding_paper");
   const bool presliding =
       scene.friction.law == FrictionLaw::kPresliding || scene.friction.law == FrictionLaw::kPreslidingPaper;
   if (presliding)
@@ -193,6 +195,44 @@ void check_friction(const SceneDesc& scene) {
              "has no effect with the presliding laws, whose limit is mu_ref times the normal force; remove it");
   if (scene.friction.law != FrictionLaw::kPreslidingPaper && scene.source.has("friction.slip_distance_mm"))
     fail(scene, "friction.slip_distance_mm", "has no effect unless friction.law = \"presliding_paper\"; remove it");
+}
+
+// The nodal back-end has no tool-point law, no skeleton and no shape functions; the others no finite elements.
+void check_backend(const SceneDesc& scene) {
+  const bool nodal = scene.contact.backend == Backend::kNodal;
+  const bool coulomb = scene.friction.law == FrictionLaw::kCoulomb;
+  const auto no_table = [&](const char* name, const char* because) {
+    if (scene.source.has(name)) fail(scene, name, std::string("has no effect ") + because + "; remove the table");
+  };
+  if (!nodal) {
+    no_table("body.fem", "unless contact.backend = \"nodal\"");
+    no_table("contact.nodal", "unless contact.backend = \"nodal\"");
+    if (coulomb) fail(scene, "friction.law", "\"coulomb\" needs contact.backend = \"nodal\"; use \"return_map\"");
+    return;
+  }
+  for (const char* table : {"skeleton", "shape", "coupling", "contact.duffing", "contact.cubic", "contact.hertz"})
+    no_table(table, "with contact.backend = \"nodal\"");
+  check_effect(scene, "contact", {"law", "weight", "reference_area_mm2", "max_depth_mm"}, {},
+               "with contact.backend = \"nodal\"");
+  if (scene.friction.law != FrictionLaw::kNone && !coulomb)
+    fail(scene, "friction.law", "is not available with contact.backend = \"nodal\"; use \"none\" or \"coulomb\"");
+  check_effect(scene, "friction", {"tangential", "reference_force_N", "k", "beta", "mu_dynamic"}, {},
+               "with law = \"coulomb\" or \"none\"");
+  if (scene.material.poisson_ratio >= 0.5)
+    fail(scene, "body.material.poisson_ratio",
+         number_text(scene.material.poisson_ratio) + "; finite elements need less than 0.5: use 0.4999 or below");
+  if (scene.nodal.solver == NodalSolver::kPivoting)
+    check_effect(scene, "contact.nodal", {"sweeps"}, {}, "with solver = \"pivoting\"");
+  if (scene.body.shape != BodyShape::kClip)
+    check_effect(scene, "body.fem", {"level"}, {}, "unless body.shape = \"clip\"");
+  const bool own_mesh = scene.body.shape == BodyShape::kClip || scene.body.shape == BodyShape::kTets;
+  if (own_mesh) check_effect(scene, "body.fem", {"edge_mm"}, {}, "with a body that brings its own mesh");
+  if (scene.body.shape == BodyShape::kClip) no_table("body.fixed", "for a clip, whose foot is held");
+  for (std::size_t i = 0; i < scene.piece.size(); ++i)
+    if (scene.piece[i].shape == PieceShape::kHull)
+      fail(scene, "tool.piece[" + std::to_string(i) + "].shape",
+           "\"hull\" is not available with contact.backend = \"nodal\"; use spheres, capsules, cylinders, cones or "
+           "boxes");
 }
 
 // Which dimensions each piece shape needs.
@@ -312,6 +352,7 @@ void check_scene(const SceneDesc& scene) {
   check_body(scene);
   check_contact(scene);
   check_friction(scene);
+  check_backend(scene);
   check_tool(scene);
   check_tips(scene);
   check_articulation(scene);

@@ -64,9 +64,11 @@ const KeySpec kTop[] = {
 };
 
 const KeySpec kBody[] = {
-    choice<&BodyDesc::shape>("shape",
-                             "ellipsoid|sphere|cylinder|box|revolution|heart|mesh|half_shell|ring|hollow_cylinder",
-                             "kind of surface", true),
+    choice<&BodyDesc::shape>(
+        "shape", "ellipsoid|sphere|cylinder|box|revolution|heart|mesh|half_shell|ring|hollow_cylinder|clip|tets",
+        "kind of body; clip: a pipe clip of 10 mm, open towards +y (Duriez et al. 2003); tets: a "
+        "tetrahedral mesh from a file",
+        true),
     list<&BodyDesc::half_axes_m>(kVec3, "half_axes_mm", 1, 5000, kMilli,
                                  "ellipsoid, half_shell: half axes along x, y, z; a half shell stands on its rim"),
     number<&BodyDesc::radius_m>("radius_mm", 1, 5000, kMilli,
@@ -82,11 +84,23 @@ const KeySpec kBody[] = {
     list<&BodyDesc::profile>(KeyKind::kPairs, "profile_mm", -10000, 10000, kMilli,
                              "revolution: points [radius, height] from bottom to top; turns above 35 degrees stay "
                              "sharp, the rest is smoothed; open ends are closed by discs"),
-    text<&BodyDesc::mesh>("mesh", 4096, "mesh: file (.obj, .stl, .ply), relative to the scene file; y is up"),
-    number<&BodyDesc::scale>("scale", 1e-9, 1e6, 1, "mesh: metres per unit of the file"),
+    text<&BodyDesc::mesh>(
+        "mesh", 4096, "mesh: file (.obj, .stl, .ply); tets: file (.msh, .vtu); relative to the scene file; y is up"),
+    number<&BodyDesc::scale>("scale", 1e-9, 1e6, 1, "mesh, tets: metres per unit of the file"),
     boolean<&BodyDesc::fix_orientation>("fix_orientation", "mesh: turn triangles that face inwards"),
     integer<&BodyDesc::triangles>("triangles", kFewestTriangles, kMostTriangles,
                                   "all but mesh: about this many triangles; the tick's cost hardly depends on it"),
+};
+const KeySpec kFem[] = {
+    choice<&FemDesc::order>("order", "quadratic|linear",
+                            "quadratic: 10-node tetrahedra; linear: 4-node ones, 12 to 22 % too stiff in bending"),
+    number_or_auto<&FemDesc::edge_m>("edge_mm", 0.01, 1000, kMilli,
+                                     "about this long an edge of a tetrahedron; auto: an eighth of the largest extent; "
+                                     "clip, tets: the mesh has its own"),
+    integer<&FemDesc::level>("level", 1, 3, "clip: fineness of its mesh; 1 has 717 nodes"),
+    choice<&FemDesc::precision>("precision", "auto|single|double",
+                                "numbers of the compliance table; auto: single where its force error is below 1e-4"),
+    integer<&FemDesc::strain_gauges>("strain_gauges", 0, kMaxStrainGauges, "points whose strain is watched every tick"),
 };
 const KeySpec kMaterial[] = {
     number<&MaterialDesc::youngs_modulus_Pa>("youngs_modulus_Pa", 1, 1e13, 1, "Young's modulus E"),
@@ -140,9 +154,30 @@ const KeySpec kContact[] = {
         "winkler: contact area over which the law holds as stated; auto: mean area of a tool point"),
     number<&ContactDesc::max_depth_m>("max_depth_mm", 0.001, 1000, kMilli,
                                       "deepest penetration of the law; beyond it the law continues by its tangent"),
-    number_or_auto<&ContactDesc::cluster_distance_m>(
-        "cluster_distance_mm", 0.001, 1000, kMilli,
-        "contact points nearer than this are one region; auto: twice the spacing of the tool points"),
+    number_or_auto<&ContactDesc::cluster_distance_m>("cluster_distance_mm", 0.001, 1000, kMilli,
+                                                     "contact points nearer than this are one region; auto: twice the "
+                                                     "spacing of the tool points; nodal: three edges"),
+    choice<&ContactDesc::backend>(
+        "backend", "response|nodal",
+        "response: tool points with a force law each; nodal: finite elements against the tool's "
+        "exact pieces (docs/models_contact_lcp.md)"),
+};
+const KeySpec kNodal[] = {
+    choice<&NodalDesc::solver>("solver", "pivoting|gauss_seidel",
+                               "normal forces: exact, by block principal pivoting; or approximate, by sweeps"),
+    integer<&NodalDesc::sweeps>("sweeps", 1, 100, "gauss_seidel: sweeps per tick"),
+    integer<&NodalDesc::friction_sweeps>("friction_sweeps", 1, 20,
+                                         "sweeps per tick of the problem with friction; each costs about 40,000 "
+                                         "instructions for 60 contacts"),
+    choice<&NodalDesc::carry>("carry", "far_field|rest",
+                              "where gaps and normals are taken: on the surface carried by its far field, or at rest"),
+    number_or_auto<&NodalDesc::margin_m>("margin_mm", 0.001, 100, kMilli,
+                                         "nodes nearer to the tool take part; auto: half a mean edge"),
+    number<&NodalDesc::wall_N_per_m>("wall_N_per_m", 1, 1e9, 1, "stiffness of held nodes"),
+    number<&NodalDesc::strain_limit>("strain_limit", 1e-6, 10, 1, "strain above which a tick says so"),
+    number<&NodalDesc::proxy_speed_max_m_per_s>("proxy_speed_max_m_per_s", 0.001, 100, 1,
+                                                "the tool in contact moves no faster than the handle and this: what a "
+                                                "snap may jump in a tick"),
 };
 const KeySpec kDuffing[] = {
     number<&DuffingDesc::mass_kg>("mass_kg", 1e-6, 1e6, 1, "m; with the two below in mm and N: k1 = m omega0^2 N/mm"),
@@ -201,7 +236,7 @@ const KeySpec kTable[] = {
 };
 const KeySpec kFriction[] = {
     choice<&FrictionDesc::law>("law", "none|return_map|paper|mindlin|coulomb|presliding|presliding_paper",
-                               "friction law"),
+                               "friction law; coulomb: nodal only, with the coefficient mu_ref"),
     choice<&FrictionDesc::tangential>("tangential", "separable|radial",
                                       "sticking force from each depth component by itself, or from the whole depth"),
     number_or_auto<&FrictionDesc::mu_ref>("mu_ref", 0, 100, 1,
@@ -324,6 +359,7 @@ void* open_gripper(SceneDesc& scene) {
 const TableSpec kTables[] = {
     {"", false, "Top level.", kTop, open_top},
     {"body", false, "The elastic object.", kBody, open<&SceneDesc::body>},
+    {"body.fem", false, "Finite elements, with contact.backend = \"nodal\".", kFem, open<&SceneDesc::fem>},
     {"body.material", false, "Homogeneous, isotropic.", kMaterial, open<&SceneDesc::material>},
     {"body.fixed", false, "What is clamped to the world.", kFixed, open<&SceneDesc::fixed>},
     {"skeleton", false, "Beams from each contact region to the anchors.", kSkeleton, open<&SceneDesc::skeleton>},
@@ -338,6 +374,7 @@ const TableSpec kTables[] = {
     {"contact.pair", true, "With law = \"tool\": how two tips lean on one another; other pairs use the far field.",
      kPair, open_pair},
     {"contact.table", false, "With law = \"table\": measured presses.", kTable, open<&SceneDesc::table>},
+    {"contact.nodal", false, "With backend = \"nodal\".", kNodal, open<&SceneDesc::nodal>},
     {"friction", false, "Friction per contact region.", kFriction, open<&SceneDesc::friction>},
     {"shape", false, "How the deformed surface is drawn. No effect on forces.", kShape, open<&SceneDesc::shape>},
     {"coupling", false, "Several contact regions at once.", kCoupling, open<&SceneDesc::coupling>},

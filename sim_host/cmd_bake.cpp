@@ -1,5 +1,6 @@
 // `palpate bake`: from a scene description to the image the controller maps; or shows an image or the schema.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
@@ -31,7 +32,8 @@ int dump_image(const std::string& path) {
 int bake(const BakeOptions& options) {
   const std::string output =
       options.output.empty() ? std::filesystem::path(options.scene).stem().string() + ".pal" : options.output;
-  const CompileResult result = compile_scene(load_scene(options.scene, options.overlays));
+  const CompileResult result = compile_scene(load_scene(options.scene, options.overlays),
+                                             isatty(STDERR_FILENO) != 0 ? progress_bar(stderr) : Progress{});
   std::string error;
   if (!save_image(output, result.bytes, error)) throw std::runtime_error(output + ": " + error);
   if (options.report) fmt::print("{}", report_text(result.report));

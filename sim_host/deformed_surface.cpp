@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "rt_core/deform/surface.h"
+#include "rt_core/nodal/nodal.h"
 
 namespace palpate {
 
@@ -46,7 +47,34 @@ void finish(DeformedSurface& surface) {
   surface.normal = mesh_normals(surface.position_m, surface.triangle);
 }
 
+template <class Number>
+std::vector<Vec3> response_m(const Model& model, const State& state, std::span<const Number> compliance) {
+  std::vector<double> u(static_cast<std::size_t>(3 * model.sizes.n_vertex));
+  for (std::int32_t i = 0; i < state.nodal.count; ++i) {
+    const NodalContact& contact = state.nodal.contact[i];
+    const double force[3] = {contact.force_w.x, contact.force_w.y, contact.force_w.z};
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (force[a] == 0) continue;
+      const Number* row = compliance.data() + (3 * at(contact.vertex) + a) * u.size();
+      for (std::size_t k = 0; k < u.size(); ++k) u[k] += static_cast<double>(row[k]) * force[a];
+    }
+  }
+  std::vector<Vec3> displacement;
+  for (std::size_t v = 0; v < u.size(); v += 3) displacement.push_back({u[v], u[v + 1], u[v + 2]});
+  return displacement;
+}
+
+// Displacement of the vertices of a finite-element body under its contact forces: u = C f.
+std::vector<Vec3> nodal_displacement_m(const Model& model, const State& state) {
+  return model.compliance_f64.empty() ? response_m(model, state, model.compliance_f32)
+                                      : response_m(model, state, model.compliance_f64);
+}
+
 void displace(const Model& model, const State& state, DeformedSurface& surface) {
+  if (is_nodal(model)) {
+    surface.displacement_m = nodal_displacement_m(model, state);
+    return;
+  }
   ShapeField field;
   prepare_shape(model, state, field);
   for (std::size_t i = 0; i < surface.rest_m.size(); ++i) {
@@ -99,7 +127,8 @@ DeformedSurface deformed_surface(const Model& model, const State& state) {
 DeformedSurface refined_surface(const Model& model, const State& state, std::size_t most_triangles) {
   DeformedSurface surface = rest_surface(model);
   std::vector<Vec3> normal(model.vertex_normal.begin(), model.vertex_normal.end());
-  const bool everywhere = static_cast<ShapeLaw>(model.params.shape_law) != ShapeLaw::kDisplacementAngle;
+  const bool everywhere =
+      !is_nodal(model) && static_cast<ShapeLaw>(model.params.shape_law) != ShapeLaw::kDisplacementAngle;
   while (everywhere && 4 * surface.triangle.size() <= most_triangles) refine(surface, normal);
   displace(model, state, surface);
   finish(surface);

@@ -1,0 +1,122 @@
+#include "config/fem_body.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "config/compile.h"
+#include "config/config_error.h"
+#include "config/fem/compliance_precision.h"
+#include "config/fem/strain_gauges.h"
+#include "config/fem/tet_io.h"
+#include "config/fem/tet_procedural.h"
+
+namespace palpate {
+
+namespace {
+
+double edge_m(const SceneDesc& scene, Vec3 size_m) {
+  return is_auto(scene.fem.edge_m) ? std::max({size_m.x, size_m.y, size_m.z}) / 8 : scene.fem.edge_m;
+}
+
+TetMesh box_mesh(const SceneDesc& scene) {
+  const Vec3 size = scene.body.size_m;
+  const double edge = edge_m(scene, size);
+  const auto cells = [&](double side) { return std::max(1, static_cast<std::int32_t>(std::lround(side / edge))); };
+  return make_box_tets(size, {cells(size.x), cells(size.y), cells(size.z)});
+}
+
+TetMesh file_mesh(const SceneDesc& scene, std::vector<std::string>& warnings) {
+  const std::filesystem::path file(scene.body.mesh);
+  const std::string path = file.is_absolute() ? scene.body.mesh : scene.source.directory + scene.body.mesh;
+  TetFile read;
+  try {
+    read = read_tet_mesh(path, scene.body.scale);
+  } catch (const ConfigError& error) {
+    throw ConfigError(scene.source.where("body.mesh") + ": " + error.what());
+  }
+  if (read.unused_nodes > 0)
+    warnings.push_back(path + ": dropped " + std::to_string(read.unused_nodes) + " nodes that no tetrahedron uses");
+  return read.mesh;
+}
+
+// Corners only.
+TetMesh without_middles(const TetMesh& mesh) {
+  TetMesh linear;
+  std::vector<std::int32_t> number(mesh.node_m.size(), -1);
+  for (const Tet& tet : mesh.tet) {
+    Tet corners;
+    for (std::size_t k = 0; k < 4; ++k) {
+      std::int32_t& n = number[static_cast<std::size_t>(tet.node[k])];
+      if (n < 0) {
+        n = static_cast<std::int32_t>(linear.node_m.size());
+        linear.node_m.push_back(mesh.node_m[static_cast<std::size_t>(tet.node[k])]);
+      }
+      corners.node[k] = n;
+    }
+    linear.tet.push_back(corners);
+  }
+  return linear;
+}
+
+Supports supports_of(const SceneDesc& scene, const TetMesh& mesh) {
+  if (scene.body.shape == BodyShape::kClip) return clip_supports(mesh);
+  double lowest = kHuge;
+  for (const Vec3& x : mesh.node_m) lowest = std::min(lowest, x.y);
+  const double base = lowest + scene.fixed.base_height_m + 1e-9;
+  return hold_where(mesh, [base](Vec3 x) { return x.y <= base; });
+}
+
+void add_gauges(const SceneDesc& scene, const LinearBody& solver, FemBody& body, const Progress& progress) {
+  if (scene.fem.strain_gauges == 0) return;
+  const StrainGauges gauges = place_strain_gauges(solver, body.mesh, body.condensed,
+                                                  static_cast<std::size_t>(scene.fem.strain_gauges), progress);
+  for (const double e : gauges.strain_1pN) body.strain_gauge.push_back(static_cast<float>(e));
+  body.gauges = static_cast<std::int32_t>(gauges.tet.size());
+}
+
+}  // namespace
+
+TetMesh make_tet_mesh(const SceneDesc& scene, std::vector<std::string>& warnings) {
+  TetMesh mesh;
+  switch (scene.body.shape) {
+    case BodyShape::kClip:
+      mesh = make_clip_mesh(scene.fem.level);
+      break;
+    case BodyShape::kBox:
+      mesh = box_mesh(scene);
+      break;
+    case BodyShape::kTets:
+      mesh = file_mesh(scene, warnings);
+      break;
+    default: {
+      const SurfaceMesh surface = make_body(scene, warnings);
+      mesh = tetrahedralise(surface, edge_m(scene, bounds_of(surface).size_m()), scene.source.where("body.shape"));
+    }
+  }
+  if (scene.fem.order == FemOrder::kLinear) return without_middles(mesh);
+  add_middle_nodes(mesh);
+  return mesh;
+}
+
+FemBody make_fem_body(const SceneDesc& scene, std::vector<std::string>& warnings, const Progress& progress) {
+  const std::string label = scene.source.where("body.shape");
+  FemBody body;
+  body.mesh = make_tet_mesh(scene, warnings);
+  const FemMaterial material{scene.material.youngs_modulus_Pa, scene.material.poisson_ratio};
+  const Supports supports = supports_of(scene, body.mesh);
+  body.condensed = condense(body.mesh, material, supports, label, progress);
+  const PrecisionReport report = single_precision_error(body.condensed);
+  body.precision_error = report.total_error;
+  const bool single = scene.fem.precision == FemPrecision::kSingle ||
+                      (scene.fem.precision == FemPrecision::kByError && single_precision_suffices(report));
+  body.precision = single ? CompliancePrecision::kSingle : CompliancePrecision::kDouble;
+  if (scene.fem.precision == FemPrecision::kSingle && !single_precision_suffices(report))
+    warnings.push_back(scene.source.where("body.fem.precision") +
+                       ": single precision changes forces by more than 1e-4; use \"auto\"");
+  const LinearBody solver(body.mesh, material, supports, label, progress);
+  add_gauges(scene, solver, body, progress);
+  return body;
+}
+
+}  // namespace palpate
