@@ -220,12 +220,11 @@ void bake_response(const SceneDesc& scene, ImageContents& image, ResponseReport&
   image.params.response_law = static_cast<std::int32_t>(ResponseLaw::kTip);
   for (std::size_t i = 0; i < scene.piece.size(); ++i) {
     std::string line;
+    const TipDesc tip = TipReader(scene, i).read(line);
     try {
-      image.tip_law.push_back(make_tip_law(TipReader(scene, i).read(line), image.factor));
+      image.tip_law.push_back(make_tip_law(tip, image.factor));
     } catch (const ConfigError& error) {
-      const std::string text = error.what();
-      if (text.find(": ") != std::string::npos && text.rfind(scene.source.file, 0) == 0) throw;
-      throw ConfigError(scene.source.where("contact") + ": " + text);
+      throw ConfigError(scene.source.where("contact") + ": " + error.what());
     }
     report.tip.push_back(line);
   }
