@@ -156,7 +156,9 @@ TEST(PressTools, FrictionlessLoopsAreConservative) {
 class TableScene : public ::testing::Test {
  protected:
   SceneModel make(const std::string& csv, std::vector<std::string> settings = {}) {
-    path_ = (std::filesystem::temp_directory_path() / "palpate_test_table.csv").string();
+    // Tests run side by side: a file of its own for each.
+    const std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
+    path_ = (std::filesystem::temp_directory_path() / ("palpate_" + name + ".csv")).string();
     std::ofstream(path_) << csv;
     settings.insert(settings.end(), {"contact.law=table", "contact.table.file=" + path_, "friction.law=none"});
     return SceneModel(cylinder_scene("", settings));
