@@ -215,8 +215,11 @@ const KeySpec kLayer[] = {
     choice<&LayerDesc::base>("base", "bonded|slip", "how the layer is held by its base"),
 };
 const KeySpec kSeries[] = {
-    number<&SeriesDesc::c0_m_per_N>("c0_mm_per_N", -1e3, 1e3, kMilli, "far-field compliance c0"),
-    number<&SeriesDesc::c1_m_per_N2>("c1_mm_per_N2", -1e3, 1e3, kMilli, "its change with the force, c1"),
+    number_or_auto<&SeriesDesc::c0_m_per_N>(
+        "c0_mm_per_N", -1e3, 1e3, kMilli,
+        "far-field compliance c0; auto: from one linear press by finite elements (bodies of revolution)"),
+    number_or_auto<&SeriesDesc::c1_m_per_N2>("c1_mm_per_N2", -1e3, 1e3, kMilli,
+                                             "its change with the force, c1; auto: from one large-strain press"),
 };
 const KeySpec kPair[] = {
     integer<&PairDesc::piece_a>("piece_a", 0, kMaxPieces - 1, "a tool piece, counted from 0"),
@@ -227,11 +230,13 @@ const KeySpec kPair[] = {
     number<&PairDesc::h_ba_m_per_N2>("h_ba_mm_per_N2", -1e3, 1e3, kMilli, "second order, the other way round"),
 };
 const KeySpec kTable[] = {
+    choice<&TableDesc::source>("source", "file|press",
+                               "measured presses from a file, or one computed by large-strain finite elements (bodies "
+                               "of revolution pressed at their top), used all over the surface"),
     text<&TableDesc::file>(
         "file", 4096,
         "CSV of presses, relative to the scene file: depth_mm,force_N, or with x_mm,y_mm,z_mm before "
-        "them for presses at several places; each starts at 0,0",
-        true),
+        "them for presses at several places; each starts at 0,0"),
     boolean<&TableDesc::smooth>("smooth", "pool rows whose force falls instead of refusing them"),
 };
 const KeySpec kFriction[] = {

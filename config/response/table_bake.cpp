@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "config/config_error.h"
+#include "config/response/press_bake.h"
 #include "config/schema.h"
 
 namespace palpate {
@@ -27,12 +28,16 @@ CubicPoint hermite(const std::vector<double>& x, const std::vector<double>& y, c
   return {y[i] + u * (p + u * (c2 + u * c3)), (p + u * (2 * c2 + 3 * u * c3)) / h};
 }
 
-void integrate(const std::vector<double>& knot, std::vector<ResponseKnot>& row) {
+// Energies at the knots: exact integrals of the cubics over the depth, which is x, or x^2 in a root table.
+void integrate(const std::vector<double>& knot, bool root, std::vector<ResponseKnot>& row) {
   row[0].energy_J = 0;
   for (std::size_t i = 0; i + 1 < row.size(); ++i) {
-    const double h = knot[i + 1] - knot[i];
-    row[i + 1].energy_J = row[i].energy_J + h * (0.5 * (row[i].force_N + row[i + 1].force_N) +
-                                                 h / 12 * (row[i].slope - row[i + 1].slope));
+    const double h = knot[i + 1] - knot[i], a = row[i].force_N, b = row[i + 1].force_N;
+    const double p = h * row[i].slope, q = h * row[i + 1].slope;
+    const double plain = h * (0.5 * (a + b) + (p - q) / 12);
+    // int f u du over the interval, u from 0 to 1.
+    const double moment = (3 * a + 7 * b) / 20 + p / 30 - q / 20;
+    row[i + 1].energy_J = row[i].energy_J + (root ? 2 * (knot[i] * plain + h * h * moment) : plain);
   }
 }
 
@@ -96,7 +101,11 @@ std::vector<double> pchip_slopes(const std::vector<double>& x, const std::vector
   return m;
 }
 
-CurveTable tabulate(const std::vector<ForceCurve>& curves) {
+CurveTable tabulate(const std::vector<ForceCurve>& presses, bool root) {
+  std::vector<ForceCurve> curves = presses;
+  if (root)
+    for (ForceCurve& curve : curves)
+      for (double& depth : curve.depth_m) depth = square_root(depth);
   CurveTable table;
   for (const ForceCurve& curve : curves)
     table.knot.insert(table.knot.end(), curve.depth_m.begin(), curve.depth_m.end());
@@ -106,13 +115,14 @@ CurveTable tabulate(const std::vector<ForceCurve>& curves) {
     throw ConfigError("the presses have " + std::to_string(table.knot.size()) + " different depths; allowed up to " +
                       std::to_string(kMaxResponseKnots) + ": sample them at the same depths, or at fewer");
   for (const ForceCurve& curve : curves) {
-    const std::vector<double> slope = pchip_slopes(curve.depth_m, curve.force_N);
+    std::vector<double> slope = pchip_slopes(curve.depth_m, curve.force_N);
+    if (root) slope[0] = 0;
     std::vector<ResponseKnot> row;
     for (const double x : table.knot) {
       const CubicPoint point = hermite(curve.depth_m, curve.force_N, slope, x);
       row.push_back({point.value, point.slope, 0});
     }
-    integrate(table.knot, row);
+    integrate(table.knot, root, row);
     table.row.push_back(std::move(row));
   }
   return table;
@@ -120,16 +130,19 @@ CurveTable tabulate(const std::vector<ForceCurve>& curves) {
 
 void bake_table(const SceneDesc& scene, ImageContents& image, ResponseReport& report,
                 std::vector<std::string>& warnings) {
+  const bool computed = scene.table.source == TableSource::kPress;
   const std::filesystem::path file(scene.table.file);
   const std::string path = file.is_absolute() ? scene.table.file : scene.source.directory + scene.table.file;
   std::vector<ForceCurve> curves;
   CurveTable table;
+  if (computed) curves = {press_curve(scene)};
   try {
-    curves = read_curves(path, scene.table.smooth);
-    table = tabulate(curves);
+    if (!computed) curves = read_curves(path, scene.table.smooth);
+    table = tabulate(curves, computed);
   } catch (const ConfigError& error) {
     throw ConfigError(scene.source.where("contact.table.file") + ": " + error.what());
   }
+  image.params.response_root = computed ? 1 : 0;
   image.params.response_law = static_cast<std::int32_t>(ResponseLaw::kTable);
   image.knot = table.knot;
   image.vertex_response.assign(image.vertex_m.size(), 0);
@@ -156,7 +169,7 @@ void bake_table(const SceneDesc& scene, ImageContents& image, ResponseReport& re
                           sizeof(std::int32_t) * image.vertex_response.size());
   report.bytes_per_vertex = bytes / static_cast<double>(image.vertex_m.size());
   for (const ForceCurve& curve : curves)
-    if (curve.depth_m.back() < scene.contact.max_depth_m)
+    if (curve.depth_m.back() < scene.contact.max_depth_m * (1 - 1e-12))
       warnings.push_back(scene.table.file + ": a press ends at " + number_text(1e3 * curve.depth_m.back()) +
                          " mm, before contact.max_depth_mm; deeper the force continues by its tangent");
 }

@@ -31,8 +31,9 @@ struct CurveTable {
   std::vector<double> knot;
   std::vector<std::vector<ResponseKnot>> row;
 };
-// Throws ConfigError when the union has more than kMaxResponseKnots depths.
-CurveTable tabulate(const std::vector<ForceCurve>& curves);
+// Throws ConfigError when the union has more than kMaxResponseKnots depths. `root`: cubics in the root of the depth,
+// with zero slope at zero, for computed presses that start like Hertz' law.
+CurveTable tabulate(const std::vector<ForceCurve>& curves, bool root = false);
 
 // Fills the tables of a scene with contact.law = "table".
 void bake_table(const SceneDesc& scene, ImageContents& image, ResponseReport& report,

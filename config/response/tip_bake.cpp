@@ -7,7 +7,7 @@
 #include "config/config_error.h"
 #include "config/contact_fit.h"
 #include "config/response/corner_normals.h"
-#include "config/response/table_bake.h"
+#include "config/response/press_bake.h"
 #include "config/schema.h"
 #include "rt_core/math.h"
 #include "rt_core/response/travel.h"
@@ -61,6 +61,17 @@ void check_stiffness(const TipLaw& law, const LocalLaw& local) {
 }
 
 }  // namespace
+
+Indenter tip_indenter(const PieceDesc& piece) {
+  switch (piece.shape) {
+    case PieceShape::kCylinder:
+      return {TipProfile::kFlat, piece.radius_m, 0};
+    case PieceShape::kCone:
+      return {TipProfile::kCone, 0, piece.radius_m / piece.length_m};
+    default:
+      return {TipProfile::kSphere, piece.radius_m, 0};
+  }
+}
 
 double tip_coefficient(const Indenter& indenter, double modulus_Pa) {
   switch (indenter.profile) {
@@ -116,27 +127,18 @@ class TipReader {
     tip.modulus_Pa = scene_.material.youngs_modulus_Pa / (1 - nu * nu);
     tip.layer = {scene_.layer.thickness_m, nu, scene_.layer.base};
     tip.depth_max_m = scene_.contact.max_depth_m;
-    tip.c0_m_per_N = scene_.series.c0_m_per_N;
-    tip.c1_m_per_N2 = scene_.series.c1_m_per_N2;
-    switch (piece_.shape) {
-      case PieceShape::kSphere:
-      case PieceShape::kCapsule:
-        tip.indenter = sphere();
-        break;
-      case PieceShape::kCylinder:
-        tip.indenter = {TipProfile::kFlat, auto_or(scene_.tip.radius_m, piece_.radius_m), 0};
-        break;
-      default: {
-        const double tangent = is_auto(scene_.tip.half_angle_rad)
-                                   ? piece_.radius_m / piece_.length_m
-                                   : math::sin(scene_.tip.half_angle_rad) / math::cos(scene_.tip.half_angle_rad);
-        tip.indenter = {TipProfile::kCone, 0, tangent};
-      }
-    }
+    tip.indenter = tip_indenter(piece_);
+    const double angle = scene_.tip.half_angle_rad;
+    if (tip.indenter.profile == TipProfile::kSphere) tip.indenter = sphere();
+    if (tip.indenter.profile == TipProfile::kFlat)
+      tip.indenter.radius_m = auto_or(scene_.tip.radius_m, piece_.radius_m);
+    if (tip.indenter.profile == TipProfile::kCone && !is_auto(angle))
+      tip.indenter.tan_half_angle = math::sin(angle) / math::cos(angle);
     if (tip.indenter.profile == TipProfile::kSphere && !(tip.depth_max_m <= tip.indenter.radius_m))
       fail("contact.max_depth_mm", number_text(1e3 * tip.depth_max_m) + " mm is more than the sphere's radius of " +
                                        number_text(1e3 * tip.indenter.radius_m) +
                                        " mm; lower it, or set contact.tip.sphere = \"parabola\"");
+    add_far_field(tip);
     line = describe(tip);
     return tip;
   }
@@ -166,6 +168,14 @@ class TipReader {
     }
   }
 
+  void add_far_field(TipDesc& tip) const {
+    const SeriesDesc& series = scene_.series;
+    FarFieldFit fit{series.c0_m_per_N, series.c1_m_per_N2, 0, 0, 0};
+    if (is_auto(series.c0_m_per_N) || is_auto(series.c1_m_per_N2)) fit = fit_far_field(scene_, index_, tip);
+    tip.c0_m_per_N = auto_or(series.c0_m_per_N, fit.c0_m_per_N);
+    tip.c1_m_per_N2 = auto_or(series.c1_m_per_N2, fit.c1_m_per_N2);
+  }
+
   Indenter sphere() const {
     double first = 0, second = 0;
     body_curvature(first, second);
@@ -184,10 +194,11 @@ class TipReader {
     static const char* const names[] = {"flat punch", "sphere (parabola)", "sphere", "cone"};
     char text[256];
     const bool cone = tip.indenter.profile == TipProfile::kCone;
-    std::snprintf(text, sizeof text, "piece %d: %s, %s %.5g, E* = %.5g Pa%s", static_cast<int>(index_),
-                  names[static_cast<int>(tip.indenter.profile)], cone ? "tan of half angle" : "effective radius in mm",
+    std::snprintf(text, sizeof text, "piece %d: %s, %s %.5g, E* = %.5g Pa%s, c0 = %.5g m/N, c1 = %.5g m/N2",
+                  static_cast<int>(index_), names[static_cast<int>(tip.indenter.profile)],
+                  cone ? "tan of half angle" : "effective radius in mm",
                   cone ? tip.indenter.tan_half_angle : 1e3 * tip.indenter.radius_m, tip.modulus_Pa,
-                  tip.layer.thickness_m > 0 ? ", on a layer" : "");
+                  tip.layer.thickness_m > 0 ? ", on a layer" : "", tip.c0_m_per_N, tip.c1_m_per_N2);
     return text;
   }
 
@@ -220,12 +231,11 @@ void bake_response(const SceneDesc& scene, ImageContents& image, ResponseReport&
   image.params.response_law = static_cast<std::int32_t>(ResponseLaw::kTip);
   for (std::size_t i = 0; i < scene.piece.size(); ++i) {
     std::string line;
+    const TipDesc tip = TipReader(scene, i).read(line);
     try {
-      image.tip_law.push_back(make_tip_law(TipReader(scene, i).read(line), image.factor));
+      image.tip_law.push_back(make_tip_law(tip, image.factor));
     } catch (const ConfigError& error) {
-      const std::string text = error.what();
-      if (text.find(": ") != std::string::npos && text.rfind(scene.source.file, 0) == 0) throw;
-      throw ConfigError(scene.source.where("contact") + ": " + text);
+      throw ConfigError(scene.source.where("contact") + ": " + error.what());
     }
     report.tip.push_back(line);
   }

@@ -23,6 +23,9 @@ struct TipDesc {
 // ConfigError when the stiffness of the whole law, far field included, is not positive everywhere in its range.
 TipLaw make_tip_law(const TipDesc& tip, std::vector<FactorKnot>& factor);
 
+// Shape of a piece's tip.
+Indenter tip_indenter(const PieceDesc& piece);
+
 // Coefficient of the half-space law.
 double tip_coefficient(const Indenter& indenter, double modulus_Pa);
 

@@ -67,16 +67,16 @@ SlideResult slide(const Model& model, const std::vector<TimedPose>& poses) {
   return result;
 }
 
-// A helix at constant depth, 3 m long, over more than a thousand edges: the force is as constant as the body is round,
-// and no step of 50 um changes it by 0.1 %.
-TEST(PressTools, SlidesOverAThousandEdgesWithoutASteps) {
+// A helix at constant depth, 3.7 m long, over more than a thousand edges: the force is as constant as the body is
+// round, and no step of 60 um changes it by 0.1 %.
+TEST(PressTools, SlidesOverAThousandEdgesWithoutAStep) {
   for (const char* tool : {"sphere_12_7", "flat_3_2", "cone_60"}) {
     const SceneModel scene(cylinder_scene(tool, {"friction.law=none"}));
     std::vector<TimedPose> poses;
     const int steps = 60000;
     for (int i = 0; i <= steps; ++i) {
       const double t = static_cast<double>(i) / steps;
-      poses.push_back({t, pose_at(-0.09 + 0.18 * t, 5 * kTwoPi * t, 0.002)});
+      poses.push_back({t, pose_at(-0.09 + 0.18 * t, 6 * kTwoPi * t, 0.002)});
     }
     const SlideResult r = slide(scene.model(), poses);
     const double mean = 0.5 * (r.force_min_N + r.force_max_N);
@@ -86,7 +86,7 @@ TEST(PressTools, SlidesOverAThousandEdgesWithoutASteps) {
     EXPECT_GT(r.edges, 1000);
     EXPECT_LT(r.step_max_N, 1e-3 * mean);
     EXPECT_LT(r.force_max_N - r.force_min_N, 5e-3 * mean);
-    EXPECT_EQ(r.status, 0u);
+    EXPECT_EQ(r.status & ~Status::kForceClamped, 0u);  // more than the simulated device can render
   }
 }
 
@@ -156,7 +156,9 @@ TEST(PressTools, FrictionlessLoopsAreConservative) {
 class TableScene : public ::testing::Test {
  protected:
   SceneModel make(const std::string& csv, std::vector<std::string> settings = {}) {
-    path_ = (std::filesystem::temp_directory_path() / "palpate_test_table.csv").string();
+    // Tests run side by side: a file of its own for each.
+    const std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
+    path_ = (std::filesystem::temp_directory_path() / ("palpate_" + name + ".csv")).string();
     std::ofstream(path_) << csv;
     settings.insert(settings.end(), {"contact.law=table", "contact.table.file=" + path_, "friction.law=none"});
     return SceneModel(cylinder_scene("", settings));
@@ -228,7 +230,7 @@ TEST(PressTools, DeepOverTheRimAndBackStaysFinite) {
     // Over the sharp rim of the end face at 3 mm depth and back; down to the axis; far beyond; a jump of 20 mm; NaN.
     for (int i = 0; i <= 2000; ++i) poses.push_back({0, pose_at(0.1 + 2e-5 * i, 0, 0.003)});
     for (int i = 0; i <= 2000; ++i) poses.push_back({0, pose_at(0.14 - 2e-5 * i, 0, 0.003)});
-    for (int i = 0; i <= 2000; ++i) poses.push_back({0, pose_at(0.1, 0.3, 1e-4 * i)});
+    for (int i = 0; i <= 2000; ++i) poses.push_back({0, pose_at(0, 0.3, 1e-4 * i)});
     for (int i = 0; i <= 100; ++i) poses.push_back({0, pose_at(0.02 * (i % 2), 0, 0.002)});
     Pose broken = pose_at(0, 0, 0.002);
     broken.position_m.x = std::numeric_limits<double>::quiet_NaN();

@@ -116,7 +116,9 @@ TEST(Pchip, RootTableHoldsHertzExactly) {
 class CurveFile : public ::testing::Test {
  protected:
   std::string write(const std::string& text) {
-    path_ = (std::filesystem::temp_directory_path() / "palpate_test_curves.csv").string();
+    // Tests run side by side: a file of its own for each.
+    const std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
+    path_ = (std::filesystem::temp_directory_path() / ("palpate_" + name + ".csv")).string();
     std::ofstream(path_) << text;
     return path_;
   }
