@@ -446,6 +446,7 @@ SurfaceMesh make_body(const SceneDesc& scene, std::vector<std::string>& warnings
       break;
     case BodyShape::kHollowCylinder:
       mesh = make_hollow_cylinder(body.radius_m, body.wall_m, body.height_m, body.axis, body.triangles);
+      break;
     case BodyShape::kClip:
     case BodyShape::kTets:
       mesh = surface_of(make_tet_mesh(scene, warnings)).mesh;
