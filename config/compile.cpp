@@ -327,7 +327,7 @@ class Compiler {
   void add_beams() {
     const SkeletonLaw law = scene_.skeleton.law;
     if (law != SkeletonLaw::kCircular && law != SkeletonLaw::kCircularPaper) return;
-    const BeamTableRule rule{law == SkeletonLaw::kCircularPaper, scene_.skeleton.release, scene_.skeleton.beam_width_m,
+    const BeamTableRule rule{law == SkeletonLaw::kCircularPaper, scene_.skeleton.beam_width_m,
                              scene_.skeleton.beam_thickness_m, scene_.skeleton.beam_allowance_m};
     try {
       report_.beams = build_beam_table(rule, report_.volume_m3, image_);
@@ -344,9 +344,6 @@ class Compiler {
         warn("anchor " + std::to_string(a) + " at (" + position_text(image_.anchor[a].position_m) +
              ") mm: no beam reaches it inside the body; lower skeleton.beam_width_mm or remove the anchor "
              "(skeleton.anchors_max)");
-    if (beams.loose_anchors > 0 && rule.release == BeamRelease::kFrame && !rule.paper)
-      warn(std::to_string(beams.loose_anchors) +
-           " anchors are joined to no fixed one by beams and keep still; raise body.fixed.base_height_mm");
     if (beams.lonely_vertices > 0)
       warn(std::to_string(beams.lonely_vertices) +
            " surface vertices have no beam at all; contacts there move no anchor: lower skeleton.beam_width_mm");

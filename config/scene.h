@@ -67,9 +67,6 @@ struct FixedDesc {
   double base_height_m = 0.002;
 };
 
-// How an anchor of circular beams moves: as a joint of the frame that all beams make together, or as the end of its own
-// beam whose clamp is released over a short length (the paper's idea).
-enum class BeamRelease : std::int32_t { kFrame = 0, kClamp = 1 };
 enum class AnchorSource : std::int32_t { kShape, kMesh };
 struct SkeletonDesc {
   SkeletonLaw law = SkeletonLaw::kStiffness;
@@ -80,7 +77,6 @@ struct SkeletonDesc {
   double beam_width_m = kAuto;
   double beam_thickness_m = kAuto;
   double beam_allowance_m = 0.5e-3;
-  BeamRelease release = BeamRelease::kFrame;
 };
 
 enum class ContactLaw : std::int32_t { kDuffing, kCubic, kHertz, kTool, kTable };

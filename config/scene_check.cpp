@@ -101,7 +101,7 @@ void check_skeleton(const SceneDesc& scene) {
   if (law == SkeletonLaw::kCircular || law == SkeletonLaw::kCircularPaper)
     return check_effect(scene, "skeleton", {"section_radius_mm"}, {},
                         "with circular beams, whose section is beam_width_mm x beam_thickness_mm");
-  check_effect(scene, "skeleton", {"beam_width_mm", "beam_thickness_mm", "beam_allowance_mm", "release"}, {},
+  check_effect(scene, "skeleton", {"beam_width_mm", "beam_thickness_mm", "beam_allowance_mm"}, {},
                "unless skeleton.law is \"circular\" or \"circular_paper\"");
 }
 

@@ -136,10 +136,6 @@ const KeySpec kSkeleton[] = {
         "circular: thickness across the plane; auto: the beams share the body's volume"),
     number<&SkeletonDesc::beam_allowance_m>("beam_allowance_mm", 0, 1000, kMilli,
                                             "circular: epsilon, added to the radius of curvature of the surface"),
-    choice<&SkeletonDesc::release>("release", "frame|clamp",
-                                   "circular: how anchors move: as joints of the frame that all beams make, held at "
-                                   "the fixed ones; or each as the "
-                                   "end of its own beam, its clamp released over a short length"),
 };
 const KeySpec kContact[] = {
     choice<&ContactDesc::law>("law", "duffing|cubic|hertz|tool|table",

@@ -238,10 +238,9 @@ struct BeamStiffness {
 struct BeamRatio {
   Vec3 f1_axis, f1_gain_N_per_m, f2_axis, f2_gain_N_per_m;
 };
-// What one newton does at the anchor: rows to be multiplied by a force, the beam's own share of the contact's unless
-// stated otherwise.
+// What one newton on the tip does at the anchor: rows to be multiplied by the tip force.
 struct BeamResponse {
-  Vec3 release_m_per_N[3];  // x, y, z displacement of the anchor; per force of the whole contact (kCircular)
+  Vec3 release_m_per_N[3];  // x, y, z displacement of the anchor released over its release length
   Vec3 inner_Pa_per_N;      // stress along the beam at the inner and outer fibre of the clamped section,
   Vec3 outer_Pa_per_N;      //
   Vec3 side_Pa_per_N;       // what bending out of the beam's plane adds at its sides,

@@ -8,6 +8,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "sim_host/anchor_loads.h"
 #include "sim_host/cli.h"
 #include "sim_host/force_csv.h"
 #include "sim_host/picture.h"
@@ -21,7 +22,8 @@ namespace palpate {
 namespace {
 
 struct PressOptions {
-  std::string scene, path = "demo", out = "forces.csv", vtu, png, plot;
+  std::string scene, path = "demo", out = "forces.csv", vtu, png, plot, anchors, anchor_plot;
+  std::vector<int> plotted_anchors;
   int every = 1;
   bool resample = false;
   double hand_N_per_m = -1;  // -1: the scene's for the demo, otherwise none
@@ -66,6 +68,7 @@ class Progress {
 // Keeps what the summary, the plot and the picture need.
 struct Collected {
   std::vector<ForceSample> samples;
+  std::vector<AnchorSample> anchors;
   std::uint64_t rows = 0;
   std::uint32_t status = 0, fault = 0;
   std::int64_t instructions_max = -1;
@@ -102,6 +105,18 @@ void print_summary(const Collected& all, const PressOptions& options) {
   fmt::print("wrote   {}\n", options.out);
 }
 
+void write_anchors(const PressOptions& options, const Model& model, const Collected& all) {
+  if (!options.anchors.empty()) {
+    write_anchor_csv(options.anchors, all.anchors);
+    fmt::print("wrote   {}\n", options.anchors);
+  }
+  if (!options.anchor_plot.empty()) {
+    const std::string title = fmt::format("{}: force at the anchors", model.name);
+    anchor_force_plot(model, all.anchors, options.plotted_anchors, title).save(options.anchor_plot);
+    fmt::print("wrote   {}\n", options.anchor_plot);
+  }
+}
+
 void write_pictures(const PressOptions& options, const Model& model, const Collected& all) {
   if (!options.plot.empty()) {
     force_history_plot(all.samples, fmt::format("{}: {} poses", model.name, all.rows)).save(options.plot);
@@ -129,10 +144,13 @@ int run_press(const PressOptions& options) {
   Collected all;
   const Progress progress(poses.size());
   const auto state = std::make_unique<State>();
+  const bool wants_anchors = !options.anchors.empty() || !options.anchor_plot.empty();
   press(model, poses, drive_of(options, scene), *state, &counter,
         [&](const PressRow& row, const State& now, const Scratch&) {
           all.add(row, now);
           csv.add(row);
+          if (wants_anchors)
+            all.anchors.push_back(sample_anchors(model, now, row.time_s, row.record.output.penetration_m));
           if (vtu && (all.rows - 1) % static_cast<std::uint64_t>(options.every) == 0) vtu->add(model, now, row.time_s);
           progress.at(all.rows);
         });
@@ -140,6 +158,7 @@ int run_press(const PressOptions& options) {
   if (vtu) vtu->finish();
   print_summary(all, options);
   write_pictures(options, model, all);
+  write_anchors(options, model, all);
   return all.fault == 0 ? kExitOk : kExitFailed;
 }
 
@@ -158,6 +177,12 @@ void add_press_command(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(1, 1000000000));
   command->add_option("--png", options->png, "draw the deformed body at the largest force");
   command->add_option("--plot", options->plot, "draw the force history (.svg or .png)");
+  command->add_option("--anchors", options->anchors, "write the forces and stresses at the skeleton's anchors (CSV)");
+  command->add_option("--anchor-plot", options->anchor_plot, "draw the anchors' forces against depth (.svg or .png)");
+  command
+      ->add_option("--plotted-anchors", options->plotted_anchors,
+                   "anchors in that plot, as 0,1,2; default: the eight that carry most")
+      ->delimiter(',');
   command
       ->add_option("--hand", options->hand_N_per_m,
                    "stiffness (N/m) of a hand that pulls the tool towards the poses; 0: the tool is at the poses; "

@@ -70,27 +70,20 @@ Matrix3d force_flexibility(const Frame& f, const Section& s, double e) {
   return tt / (e * s.area) + 1.2 * (Matrix3d::Identity() - tt) / (s.g * s.area);
 }
 
-// Calls visit(frame, weight) at the quadrature points of the middle line from the clamp to `end_m`.
-template <class Visit>
-void for_each_point(const BeamCurve& curve, const BeamBuild& build, double end_m, Visit visit) {
+// int over the middle line from the clamp to `end_m` of the flexibilities, between forces at `of` and at the tip.
+Matrix3d integrate_to(const BeamCurve& curve, const BeamBuild& build, double end_m, Vec3 of) {
+  const Section s = section_of(build);
+  Matrix3d sum = Matrix3d::Zero();
   const int pieces = curve.path == BeamPath::kStraight ? 1 : 1 + static_cast<int>(curve.angle / (0.5 * kPi));
   for (int piece = 0; piece < pieces; ++piece)
     for (int q = 0; q < kGauss; ++q) {
       const double x = end_m * (piece + 0.5 * (1 + kGaussAt[q])) / pieces;
-      visit(frame_at(curve, build, x), 0.5 * kGaussWeight[q] * end_m / pieces);
+      const Frame f = frame_at(curve, build, x);
+      const double e = build.material.youngs_modulus_Pa;
+      sum += 0.5 * kGaussWeight[q] * end_m / pieces *
+             (force_flexibility(f, s, e) + cross_of(of - f.position_m).transpose() * moment_flexibility(f, s, e) *
+                                               cross_of(curve.tip_m - f.position_m));
     }
-}
-
-// int over the middle line from the clamp to `end_m` of the flexibilities, between forces at `of` and at the tip.
-Matrix3d integrate_to(const BeamCurve& curve, const BeamBuild& build, double end_m, Vec3 of) {
-  const Section s = section_of(build);
-  const double e = build.material.youngs_modulus_Pa;
-  Matrix3d sum = Matrix3d::Zero();
-  for_each_point(curve, build, end_m, [&](const Frame& f, double weight) {
-    sum +=
-        weight * (force_flexibility(f, s, e) + cross_of(of - f.position_m).transpose() * moment_flexibility(f, s, e) *
-                                                   cross_of(curve.tip_m - f.position_m));
-  });
   return sum;
 }
 
@@ -178,21 +171,6 @@ double BeamBuild::equivalent_radius_m() const { return std::sqrt(width_m * thick
 
 Matrix3d curve_compliance(const BeamCurve& curve, const BeamBuild& build) {
   return integrate_to(curve, build, middle_length_m(curve, build), curve.tip_m);
-}
-
-Eigen::Matrix<double, 6, 6> curve_compliance6(const BeamCurve& curve, const BeamBuild& build) {
-  const Section s = section_of(build);
-  const double e = build.material.youngs_modulus_Pa;
-  Eigen::Matrix<double, 6, 6> sum = Eigen::Matrix<double, 6, 6>::Zero();
-  for_each_point(curve, build, middle_length_m(curve, build), [&](const Frame& f, double weight) {
-    // A force at the tip is also a moment rho x F in the section.
-    const Matrix3d rho = cross_of(curve.tip_m - f.position_m), m = moment_flexibility(f, s, e);
-    sum.topLeftCorner<3, 3>() += weight * (force_flexibility(f, s, e) + rho.transpose() * m * rho);
-    sum.topRightCorner<3, 3>() += weight * rho.transpose() * m;
-    sum.bottomLeftCorner<3, 3>() += weight * m * rho;
-    sum.bottomRightCorner<3, 3>() += weight * m;
-  });
-  return sum;
 }
 
 Matrix3d release_compliance(const BeamCurve& curve, const BeamBuild& build) {

@@ -23,8 +23,6 @@ struct BeamBuild {
 // rho from the section to the tip: axial force, shear, torsion and both bendings, exact for straight beams; for an arc
 // 8 points leave 1e-13 of the thin-beam integral, and that is 2 to 10 % from elasticity at h/R = 0.29.
 Eigen::Matrix3d curve_compliance(const BeamCurve& curve, const BeamBuild& build);
-// The same with couples: motion (translation, rotation) of the tip per (force, couple) there.
-Eigen::Matrix<double, 6, 6> curve_compliance6(const BeamCurve& curve, const BeamBuild& build);
 // Displacement of the middle line's point `release_length_m` from the clamp per tip force (the general form of
 // released_displacement; for a straight beam it is that).
 Eigen::Matrix3d release_compliance(const BeamCurve& curve, const BeamBuild& build);

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "config/beams/beam_frame.h"
 #include "config/config_error.h"
 #include "config/mesh.h"
+#include "config/scene.h"
 #include "config/schema.h"
 
 namespace palpate {
@@ -80,50 +80,6 @@ void count(const BeamChoice& choice, std::size_t anchor, BeamTableReport& report
   report.dropped_by_anchor[anchor] += choice.count == 0 ? 1 : 0;
 }
 
-std::int32_t nearest_vertex(const Model& surface, Vec3 p) {
-  std::size_t nearest = 0;
-  for (std::size_t v = 1; v < surface.vertex_m.size(); ++v)
-    if (squared_norm(surface.vertex_m[v] - p) < squared_norm(surface.vertex_m[nearest] - p)) nearest = v;
-  return static_cast<std::int32_t>(nearest);
-}
-
-// The anchors' frame: beams between all pairs that a beam can join. They share the body's volume.
-BeamFrame make_frame(const ImageContents& image, const Model& surface, const BeamSelector& selector, double volume_m3,
-                     BeamBuild& build) {
-  const std::size_t n = image.anchor.size();
-  std::vector<Vec3> joint;
-  std::vector<char> fixed;
-  for (const Anchor& a : image.anchor) {
-    joint.push_back(a.position_m);
-    fixed.push_back(a.fixed != 0 ? 1 : 0);
-  }
-  std::vector<BeamChoice> choice(n * n);
-  double length = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const std::int32_t vertex = nearest_vertex(surface, joint[i]);
-    for (std::size_t j = i + 1; j < n; ++j) {
-      choice[i * n + j] = selector.choose(vertex, joint[j], image.anchor[j].normal);
-      if (choice[i * n + j].count > 0) length += choice[i * n + j].curve[0].length_m;
-    }
-  }
-  build.thickness_m = volume_m3 / (build.width_m * std::max(length, 1e-9));
-  BeamFrame frame(joint, fixed);
-  for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = i + 1; j < n; ++j)
-      frame.add(static_cast<std::int32_t>(i), static_cast<std::int32_t>(j), choice[i * n + j], build);
-  frame.assemble();
-  return frame;
-}
-
-// Anchor displacements per contact force, from the clamped beams: H_a K_a K^-1.
-void release_clamps(std::vector<BeamRows>& rows) {
-  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-  for (const BeamRows& r : rows) sum += r.stiffness;
-  const bool any = sum.trace() > 0;
-  for (BeamRows& r : rows)
-    r.release = any ? Eigen::Matrix3d(r.release * r.stiffness * sum.inverse()) : Eigen::Matrix3d::Zero();
-}
-
 }  // namespace
 
 BeamTableReport build_beam_table(const BeamTableRule& rule, double volume_m3, ImageContents& image) {
@@ -174,31 +130,16 @@ BeamTableReport build_beam_table(const BeamTableRule& rule, double volume_m3, Im
     a.section_radius_m = build.equivalent_radius_m();
     a.release_length_m = build.release_length_m;
   }
-  BeamBuild joined = build;
-  const bool framed = rule.release == BeamRelease::kFrame && !rule.paper;
-  const BeamFrame frame = make_frame(image, surface, selector, volume_m3, joined);
-  report.frame_thickness_m = joined.thickness_m;
-  for (std::size_t a = 0; a < anchors; ++a)
-    report.loose_anchors += frame.is_grounded(static_cast<std::int32_t>(a)) ? 0 : 1;
-  std::vector<BeamRows> rows(anchors);
-  for (std::size_t v = 0; v < vertices; ++v) {
-    const BeamChoice* from = &choice[v * anchors];
-    for (std::size_t a = 0; a < anchors; ++a) rows[a] = beam_rows(from[a], build, image.anchor[a].normal);
-    if (framed) {
-      const std::vector<Eigen::Matrix3d> moved = frame.response(image.vertex_m[v], from, joined);
-      for (std::size_t a = 0; a < anchors; ++a) rows[a].release = moved[a];
-    } else if (!rule.paper) {
-      release_clamps(rows);
-    }
-    for (const BeamRows& r : rows) {
+  for (std::size_t v = 0; v < vertices; ++v)
+    for (std::size_t a = 0; a < anchors; ++a) {
+      const BeamRows rows = beam_rows(choice[v * anchors + a], build, image.anchor[a].normal);
       if (rule.paper) {
-        image.beam_ratio.push_back(r.ratio);
+        image.beam_ratio.push_back(rows.ratio);
       } else {
-        image.beam_stiffness.push_back(stiffness_entry(r.stiffness));
+        image.beam_stiffness.push_back(stiffness_entry(rows.stiffness));
       }
-      image.beam_response.push_back(response_entry(r));
+      image.beam_response.push_back(response_entry(rows));
     }
-  }
   return report;
 }
 

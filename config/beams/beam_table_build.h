@@ -7,13 +7,11 @@
 
 #include "config/beams/beam_rows.h"
 #include "config/image_writer.h"
-#include "config/scene.h"
 
 namespace palpate {
 
 struct BeamTableRule {
   bool paper = false;
-  BeamRelease release = BeamRelease::kFrame;
   double width_m = 0;      // in the beam's plane; NaN: a quarter of the thinnest wall
   double thickness_m = 0;  // across it; NaN: the beams share the body's volume
   double allowance_m = 0.5e-3;
@@ -25,8 +23,6 @@ struct BeamTableReport {
   std::array<std::int64_t, kBeamPaths> count{};  // by BeamPath
   std::int64_t two_ways = 0;                     // beams laid both ways round
   std::vector<std::int64_t> dropped_by_anchor;   // vertices that have no beam to it
-  double frame_thickness_m = 0;                  // of the beams among anchors
-  std::int64_t loose_anchors = 0;                // joined to no fixed anchor by any chain of beams: they keep still
   std::int64_t lonely_vertices = 0;              // without any beam: a contact there leaves the skeleton unloaded
 };
 

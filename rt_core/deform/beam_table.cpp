@@ -21,7 +21,6 @@ void clear(const Model& model, const SurfaceSpot& spot, BeamTableSkeleton& skele
   skeleton.minimum_norm = false;
   skeleton.alpha = skeleton.beta = 0;
   skeleton.spot = spot;
-  skeleton.load_w = {};
   skeleton.displacement_w = {};
   for (std::int32_t i = 0; i < skeleton.count; ++i) skeleton.force_w[i] = {};
 }
@@ -125,7 +124,6 @@ bool solve_beam_table(const Model& model, const SurfaceSpot& spot, Vec3 force_on
   clear(model, spot, skeleton);
   skeleton.degenerate = !(spot.found && is_finite(force_on_body_w) && skeleton.count > 0);
   if (skeleton.degenerate) return false;
-  skeleton.load_w = force_on_body_w;
   return static_cast<SkeletonLaw>(model.params.skeleton_law) == SkeletonLaw::kCircularPaper
              ? share_by_ratios(model, force_on_body_w, skeleton)
              : share_by_stiffness(model, force_on_body_w, skeleton);
@@ -135,16 +133,13 @@ BeamTableAnchor beam_table_anchor(const Model& model, const BeamTableSkeleton& s
                                   std::int32_t index) PALPATE_RT {
   BeamTableAnchor result;
   const Vec3 force = skeleton.force_w[index];
-  const bool paper = static_cast<SkeletonLaw>(model.params.skeleton_law) == SkeletonLaw::kCircularPaper;
-  const Vec3 mover = paper ? force : skeleton.load_w;
   Real inner = 0, outer = 0, side = 0, shear_in = 0, shear_out = 0;
   for (int corner = 0; corner < 3; ++corner) {
     const Vec3 f = skeleton.spot.weight[corner] * force;
     const std::size_t at = first_beam(model, skeleton.spot, corner) + static_cast<std::size_t>(index);
     const BeamResponse& row = model.beam_response[at];
-    const Vec3 m = skeleton.spot.weight[corner] * mover;
     result.displacement_w +=
-        {dot(row.release_m_per_N[0], m), dot(row.release_m_per_N[1], m), dot(row.release_m_per_N[2], m)};
+        {dot(row.release_m_per_N[0], f), dot(row.release_m_per_N[1], f), dot(row.release_m_per_N[2], f)};
     inner += dot(row.inner_Pa_per_N, f);
     outer += dot(row.outer_Pa_per_N, f);
     side += dot(row.side_Pa_per_N, f);

@@ -33,7 +33,6 @@ struct BeamTableSkeleton {
   bool minimum_norm = false;  // paper law only, as in Skeleton
   Real alpha = 0, beta = 0;   // paper law only: scales of F1 and F2
   SurfaceSpot spot;
-  Vec3 load_w;                // the whole force
   Vec3 displacement_w;        // of the contact point, K^-1 F (not with the paper's law)
   Vec3 force_w[kMaxAnchors];  // on each beam's tip
 };
