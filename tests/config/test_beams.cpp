@@ -40,7 +40,7 @@ TEST(HollowBodies, AreClosedAndHaveTheirHoles) {
   EXPECT_EQ(euler_characteristic(shell), 2);
   EXPECT_EQ(euler_characteristic(ring), 0);  // genus 1
   EXPECT_EQ(euler_characteristic(tube), 0);
-  EXPECT_NEAR(static_cast<double>(shell.triangle.size()), 5428, 0.01 * 5428);
+  EXPECT_NEAR(static_cast<double>(shell.triangle.size()), 5428, 0.5 * 12 * 20);  // a rim row of 20 more or less
   EXPECT_EQ(ring.triangle.size(), 2304u);
   EXPECT_EQ(tube.triangle.size(), 3024u);
   // Volumes: facets lie inside convex parts, hence a little less; 2 % at these sizes of cells.
