@@ -373,7 +373,7 @@ TEST(BeamScenes, MistakesAreNamed) {
   using testing::AllOf;
   using testing::HasSubstr;
   EXPECT_THAT(error_of(ring_text("beam_width_mm = 25\n")),
-              AllOf(HasSubstr("s.toml:13"), HasSubstr("skeleton.beam_width_mm"), HasSubstr("thinnest wall"),
+              AllOf(HasSubstr("s.toml:14"), HasSubstr("skeleton.beam_width_mm"), HasSubstr("thinnest wall"),
                     HasSubstr("lower it")));
   EXPECT_THAT(error_of(ring_text("section_radius_mm = 5\n")),
               AllOf(HasSubstr("section_radius_mm"), HasSubstr("no effect")));
