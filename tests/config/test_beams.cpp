@@ -373,7 +373,7 @@ TEST(BeamScenes, MistakesAreNamed) {
   using testing::AllOf;
   using testing::HasSubstr;
   EXPECT_THAT(error_of(ring_text("beam_width_mm = 25\n")),
-              AllOf(HasSubstr("s.toml:13"), HasSubstr("skeleton.beam_width_mm"), HasSubstr("thinnest wall"),
+              AllOf(HasSubstr("s.toml:14"), HasSubstr("skeleton.beam_width_mm"), HasSubstr("thinnest wall"),
                     HasSubstr("lower it")));
   EXPECT_THAT(error_of(ring_text("section_radius_mm = 5\n")),
               AllOf(HasSubstr("section_radius_mm"), HasSubstr("no effect")));
@@ -392,8 +392,10 @@ TEST(BeamScenes, SolidBodyGetsStraightBeams) {
       std::string("name = \"b\"\n[body]\nshape = \"box\"\ntriangles = 400\n[skeleton]\nlaw = \"circular\"\n") + kTool;
   const Baked box(parse_scene(text, "b.toml"));
   const BeamTableReport& beams = box.result.report.beams;
-  EXPECT_EQ(beams.count[static_cast<int>(BeamPath::kNone)], 0);
-  EXPECT_GT(beams.count[static_cast<int>(BeamPath::kStraight)], 0);
+  std::int64_t all = 0;
+  for (const std::int64_t n : beams.count) all += n;
+  EXPECT_LT(beams.count[static_cast<int>(BeamPath::kNone)], all / 50);
+  EXPECT_GT(beams.count[static_cast<int>(BeamPath::kStraight)], all / 2);
 }
 
 }  // namespace
