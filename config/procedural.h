@@ -9,6 +9,9 @@
 
 namespace palpate {
 
+// Axis of revolution of bodies that may lie on their side.
+enum class BodyAxis : std::int32_t { kY = 0, kX = 1, kZ = 2 };
+
 inline constexpr std::int32_t kFewestTriangles = 80;
 inline constexpr std::int32_t kMostTriangles = 4'000'000;
 
@@ -35,7 +38,6 @@ SurfaceMesh make_cylinder(double radius_m, double height_m, std::int32_t triangl
 // Bodies with a hole, each one closed surface, outward normals. Exactly symmetric: mirror images of vertices and of
 // triangles are in the mesh too, about x = 0 always, about the other middle planes where the number of cells around is
 // a multiple of four. So a symmetric press gives symmetric beams.
-enum class BodyAxis : std::int32_t { kY = 0, kZ = 1, kX = 2 };
 // A dome open below: upper half of the ellipsoid less that of the one with half axes smaller by the wall, rim at y = 0.
 SurfaceMesh make_half_shell(Vec3 half_axes_m, double wall_m, std::int32_t triangles);
 // A torus of outer radius `radius_m` and a round section of diameter `wall_m`. Genus 1, as the next.

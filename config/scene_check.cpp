@@ -24,11 +24,6 @@ void check_effect(const SceneDesc& scene, const std::string& table, std::initial
 }
 
 void check_body_keys(const SceneDesc& scene) {
-  const bool cylinder = scene.body.shape == BodyShape::kCylinder;
-  if (scene.body.axis == (cylinder ? BodyAxis::kZ : BodyAxis::kX))
-    fail(scene, "body.axis",
-         cylinder ? "a cylinder stands (\"y\") or lies along \"x\""
-                  : "a ring or hollow cylinder stands (\"y\") or lies along \"z\"");
   const auto only = [&](std::initializer_list<const char*> used, const char* shape) {
     check_effect(scene, "body",
                  {"half_axes_mm", "radius_mm", "height_mm", "size_mm", "width_mm", "wall_mm", "axis", "profile_mm",
@@ -82,6 +77,14 @@ void check_profile(const SceneDesc& scene) {
     fail(scene, key, "runs from top to bottom; list the points from bottom to top");
 }
 
+void check_axis(const SceneDesc& scene) {
+  const BodyAxis other = scene.body.shape == BodyShape::kCylinder ? BodyAxis::kZ : BodyAxis::kX;
+  if (scene.body.axis == other)
+    fail(scene, "body.axis",
+         other == BodyAxis::kZ ? "\"z\" is not for this shape; allowed \"y\" and \"x\""
+                               : "\"x\" is not for this shape; allowed \"y\" and \"z\"");
+}
+
 // A wall must leave a hole.
 void check_wall(const SceneDesc& scene) {
   const BodyDesc& body = scene.body;
@@ -107,6 +110,7 @@ void check_skeleton(const SceneDesc& scene) {
 
 void check_body(const SceneDesc& scene) {
   check_body_keys(scene);
+  check_axis(scene);
   check_wall(scene);
   check_skeleton(scene);
   if (scene.body.shape == BodyShape::kMesh && scene.body.mesh.empty())

@@ -79,8 +79,9 @@ const KeySpec kBody[] = {
     number<&BodyDesc::wall_m>("wall_mm", 0.1, 5000, kMilli,
                               "half_shell, hollow_cylinder: wall; ring: thickness of its round section"),
     choice<&BodyDesc::axis>(
-        "axis", "y|z|x",
-        "cylinder (y or x), ring, hollow_cylinder (y or z): y stands upright, others lie on their side"),
+        "axis", "y|x|z",
+        "cylinder: standing (y) or lying along x; ring, hollow_cylinder: lying flat or standing (y), or "
+        "the axis along z"),
     list<&BodyDesc::profile>(KeyKind::kPairs, "profile_mm", -10000, 10000, kMilli,
                              "revolution: points [radius, height] from bottom to top; turns above 35 degrees stay "
                              "sharp, the rest is smoothed; open ends are closed by discs"),

@@ -392,8 +392,10 @@ TEST(BeamScenes, SolidBodyGetsStraightBeams) {
       std::string("name = \"b\"\n[body]\nshape = \"box\"\ntriangles = 400\n[skeleton]\nlaw = \"circular\"\n") + kTool;
   const Baked box(parse_scene(text, "b.toml"));
   const BeamTableReport& beams = box.result.report.beams;
-  EXPECT_EQ(beams.count[static_cast<int>(BeamPath::kNone)], 0);
-  EXPECT_GT(beams.count[static_cast<int>(BeamPath::kStraight)], 0);
+  std::int64_t all = 0;
+  for (const std::int64_t n : beams.count) all += n;
+  EXPECT_LT(beams.count[static_cast<int>(BeamPath::kNone)], all / 50);
+  EXPECT_GT(beams.count[static_cast<int>(BeamPath::kStraight)], all / 2);
 }
 
 }  // namespace
