@@ -40,6 +40,7 @@ struct BodyDesc {
   Vec3 size_m{0.060, 0.060, 0.060};
   double width_m = 0.080;
   double wall_m = 0.010;
+  BodyAxis axis = BodyAxis::kY;
   std::vector<ProfilePoint> profile;
   std::string mesh;
   double scale = 1e-3;
