@@ -24,7 +24,7 @@ void check_order(const TetMesh& mesh, const FemMaterial& material, const std::st
     if (!mesh.tet[t].is_quadratic())
       throw ConfigError(label + ": tetrahedron " + std::to_string(t) + " is linear, and Poisson's ratio is above " +
                         std::to_string(kMeanDilatationAbove) +
-                        ": linear elements lock (93 % too stiff at 0.4999); make all elements quadratic");
+                        ": linear elements lock (a beam bends by half of what it should); make all elements quadratic");
 }
 
 // Whole stiffness, three equations per node, both triangles.

@@ -11,7 +11,7 @@
 namespace palpate {
 
 // Above this Poisson's ratio quadratic elements use the mean dilatation, and linear ones are refused: they lock (a
-// cantilever of 959 nodes is 40 % too stiff at 0.49 and 93 % at 0.4999).
+// cantilever 6 x 1 x 1 of 1813 nodes bends 46 % too little at 0.49; measured 2026-11-21).
 inline constexpr double kMeanDilatationAbove = 0.49;
 
 struct FemMaterial {

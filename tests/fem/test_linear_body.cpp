@@ -76,6 +76,18 @@ TEST(PatchTest, LinearFieldIsExactForEveryOrder) {
 }
 TEST(PatchTest, HoldsWithMeanDilatation) { patch_test(distorted_box(2), 0.4999); }
 
+// An inner node pushed almost onto a face: elements with a height of 1e-5 of their edges must not spoil the solution.
+TEST(PatchTest, HoldsWithSlivers) {
+  TetMesh mesh = distorted_box(1);
+  mesh.node_m[13] = 1e-5 * mesh.node_m[13];  // the inner node; the middle of the bottom is the origin
+  add_middle_nodes(mesh);
+  check_tet_mesh(mesh, "slivers");
+  double least = 1;
+  for (const Tet& tet : mesh.tet) least = std::min(least, corner_volume_m3(mesh, tet) / std::pow(0.03, 3));
+  EXPECT_LT(least, 1e-5);
+  patch_test(mesh, 0.3);
+}
+
 TEST(Element, WorkedValuesOfTheUnitTetrahedron) {
   const FemMaterial material{1, 0.25};
   const TetMesh linear = unit_tet(false), quadratic = unit_tet(true);

@@ -1,0 +1,44 @@
+// The series law: tool travel = local indentation + c0 F + c1 F^2. The local part is the analytic law of the tool's
+// shape, c0 the far field's compliance, c1 its change at large strain. It derives from the complementary energy
+// integral of travel dF, so a closed loop returns no energy.
+#pragma once
+
+#include <functional>
+
+#include "config/fem/axisymmetric_press.h"
+
+namespace palpate::fem {
+
+using DepthOfForce = std::function<double(double force_N)>;  // rises from 0 at 0
+using ForceOfDepth = std::function<double(double depth_m)>;  // rises from 0 at 0
+
+// Inverts a rising law by bisection; `depth_hint_m` is any positive length of its range.
+DepthOfForce inverse_of(const ForceOfDepth& law, double depth_hint_m);
+
+struct LoadPoint {
+  double depth_m = 0;
+  double force_N = 0;
+};
+struct SeriesCoefficients {
+  double c0_m_per_N = 0;
+  double c1_m_per_N2 = 0;
+  bool clamped = false;  // the fit had no positive stiffness somewhere on [0, force_max] and was cut back
+};
+// From one linear and one large-strain solve of the same press, at about 0.6 of the range. Both coefficients may be
+// negative (a bonded block is stiffer than the half space of its local law) as long as travel rises with force up to
+// `force_max_N`: c1 is cut back first, then c0.
+SeriesCoefficients fit_series(const DepthOfForce& local, const LoadPoint& linear, const LoadPoint& large,
+                              double force_max_N);
+
+double series_depth_m(const DepthOfForce& local, const SeriesCoefficients& c, double force_N);
+double series_force_N(const DepthOfForce& local, const SeriesCoefficients& c, double depth_m);
+
+// The two solves and the fit for a body of revolution. `share` of depth_max_m is where both are made.
+struct SeriesBake {
+  SeriesCoefficients coefficients;
+  LoadPoint linear, large;
+};
+SeriesBake bake_series(const PressBody& body, const RigidTool& tool, const DepthOfForce& local, double depth_max_m,
+                       int fine_count = 12, double share = 0.6);
+
+}  // namespace palpate::fem
