@@ -31,8 +31,8 @@ const GraspRun& played(const std::string& name) {
   return cache.emplace(name, run_grasp(scene.model(), *scene.scene(), {})).first->second;
 }
 
-const char* const kScenes[] = {"grasp_cylinder_2", "grasp_cylinder_3", "grasp_cylinder_5", "grasp_sphere_2",
-                               "grasp_sphere_3",   "grasp_sphere_5"};
+const char* const kScenes[] = {"grasp_cylinder_2", "grasp_cylinder_3", "grasp_cylinder_5",
+                               "grasp_sphere_2",   "grasp_sphere_3",   "grasp_sphere_5"};
 
 TEST(Grasp, FiveFingersHoldTheCylinderByFifteenRegions) {
   const GraspRun& run = played("grasp_cylinder_5");
