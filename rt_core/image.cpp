@@ -143,17 +143,17 @@ const char* describe(ImageError error) noexcept {
     case ImageError::kMagic:
       return "the file does not start with the image signature: not a scene image";
     case ImageError::kVersion:
-      return "the image was written for another format version: bake the scene again";
+      return "the image was written for another format version";
     case ImageError::kRealSize:
-      return "the image stores another floating-point size: bake the scene again";
+      return "the image stores another floating-point size";
     case ImageError::kLayout:
-      return "the image was written by a build with another data layout: bake the scene again";
+      return "the image was written by a build with another data layout";
     case ImageError::kTotalSize:
       return "the file's length differs from the one it declares: truncated or appended to";
     case ImageError::kMisaligned:
       return "the image is not aligned to 64 bytes in memory: map the file instead";
     case ImageError::kChecksum:
-      return "the checksum does not match: the file is damaged; bake the scene again";
+      return "the checksum does not match: the file is damaged";
     case ImageError::kName:
       return "the scene name is not terminated";
     case ImageError::kSizeRange:

@@ -10,6 +10,7 @@
 #include <optional>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "hal/bus_model.h"
@@ -87,7 +88,11 @@ void set_property(const std::string& text, PlantOptions& plant) {
   if (name == #member) return static_cast<void>(plant.member = number(name, value, 0, 1e6));
   PALPATE_PLANT_OPTIONS(PALPATE_SET)
 #undef PALPATE_SET
-  if (name == "delay_ticks") return static_cast<void>(plant.delay_ticks = static_cast<int>(number(name, value, 0, 15)));
+  const auto whole = [&](double lowest, double highest) {
+    return static_cast<int>(number(name, value, lowest, highest));
+  };
+  if (name == "delay_ticks") return static_cast<void>(plant.delay_ticks = whole(0, 15));
+  if (name == "substeps") return static_cast<void>(plant.substeps = whole(1, 1000));
   throw Failure{kUsage, "--set: no property '" + name + "'; see palpate-device --help"};
 }
 
@@ -100,8 +105,11 @@ std::string help() {
   text += line;
   PALPATE_PLANT_OPTIONS(PALPATE_LINE)
 #undef PALPATE_LINE
-  std::snprintf(line, sizeof(line), "      %-28s %d\n", "delay_ticks", plant.delay_ticks);
-  return text + line + "Faults:\n" + fault_script_help() +
+  for (const auto& [name, value] : {std::pair{"delay_ticks", plant.delay_ticks}, {"substeps", plant.substeps}}) {
+    std::snprintf(line, sizeof(line), "      %-28s %d\n", name, value);
+    text += line;
+  }
+  return text + "Faults:\n" + fault_script_help() +
          "Exit codes: 0 done, 2 bad arguments, path or faults, 3 transport unavailable\n"
          "Example: palpate-device --device can:vcan0 --path press.csv --set hand_stiffness_N_per_m=500\n"
          "         echo '2.0 lose 5' > faults.txt; palpate-device --device can:vcan0 --faults faults.txt\n";

@@ -75,6 +75,11 @@ struct LargeStrainSolver<kDim>::Impl {
       whole.evaluate(u, nullptr, &linear_stiffness);
     }
     for (const ContactPoint& point : contacts) {
+      const Point<kDim>& a = mesh.nodes_m[static_cast<std::size_t>(point.nodes[0])];
+      const Point<kDim>& b = mesh.nodes_m[static_cast<std::size_t>(point.nodes[2])];
+      double square = 0;
+      for (std::size_t i = 0; i < a.size(); ++i) square += (a[i] - b[i]) * (a[i] - b[i]);
+      shortest_facet_m = std::min(shortest_facet_m, std::sqrt(square));
       double largest = 0;
       for (const int node : point.nodes)
         for (int i = 0; i < kDim; ++i)
@@ -202,7 +207,7 @@ struct LargeStrainSolver<kDim>::Impl {
   }
 
   // Minimise, move the multipliers to the contact forces found, repeat until no contact is deeper than the tolerance.
-  bool equilibrium(const Situation& s, double travel, double extrapolate) {
+  bool equilibrium(const Situation& s, double extrapolate) {
     Eigen::VectorXd at = u;
     const std::vector<double> multiplier_before = multiplier;
     if (extrapolate > 0) {
@@ -222,7 +227,7 @@ struct LargeStrainSolver<kDim>::Impl {
           worst = std::max(worst, std::abs(p - l) / penalty[c]);
           l = p;
         }
-      if (worst <= options.gap_tolerance * travel || tools.empty()) {
+      if (worst <= options.gap_tolerance * shortest_facet_m || tools.empty()) {
         u = at;
         penetration_m = worst;
         return true;
@@ -238,19 +243,11 @@ struct LargeStrainSolver<kDim>::Impl {
     double step = std::numeric_limits<double>::infinity();
     for (const RigidTool& tool : tools)
       if (tool.shape == RigidShape::kPunch) step = std::min(step, 0.5 * tool.fillet_m);
-    if (body.law == StrainLaw::kLinear) return step;
-    for (const ContactPoint& point : contacts) {
-      const Point<kDim>& a = mesh.nodes_m[static_cast<std::size_t>(point.nodes[0])];
-      const Point<kDim>& b = mesh.nodes_m[static_cast<std::size_t>(point.nodes[2])];
-      double square = 0;
-      for (std::size_t i = 0; i < a.size(); ++i) square += (a[i] - b[i]) * (a[i] - b[i]);
-      step = std::min(step, std::sqrt(square));
-    }
-    return step;
+    return body.law == StrainLaw::kLinear ? step : std::min(step, shortest_facet_m);
   }
 
   // One step, first from the last one continued: a guess without the dents that a tool jumping into the rest makes.
-  bool step_to(const Situation& s, double travel) {
+  bool step_to(const Situation& s) {
     Eigen::VectorXd motion(static_cast<Eigen::Index>(tools.size()) * kDim);
     for (std::size_t t = 0; t < tools.size(); ++t)
       for (std::size_t i = 0; i < static_cast<std::size_t>(kDim); ++i)
@@ -263,7 +260,7 @@ struct LargeStrainSolver<kDim>::Impl {
     }
     const Eigen::VectorXd u_before = u;
     const std::vector<double> multiplier_before = multiplier;
-    if (!(ratio > 0 && equilibrium(s, travel, ratio)) && !equilibrium(s, travel, 0)) return false;
+    if (!(ratio > 0 && equilibrium(s, ratio)) && !equilibrium(s, 0)) return false;
     last_motion = motion;
     last_u = u - u_before;
     last_multiplier = multiplier;
@@ -281,7 +278,7 @@ struct LargeStrainSolver<kDim>::Impl {
     for (std::size_t t = 0; t < tools.size(); ++t)
       for (std::size_t i = 0; i < static_cast<std::size_t>(kDim); ++i)
         travel = std::max(travel, std::abs(target.origin_m[t][i] - start.origin_m[t][i]));
-    if (!(travel > 0)) travel = 1;
+    if (!(travel > 0)) travel = 1e-12;  // loads alone: one step
     double done = 0, length = std::min(1.0, longest_step() / travel);
     const double shortest = std::ldexp(length, -options.max_cuts);
     while (done < 1) {
@@ -292,7 +289,7 @@ struct LargeStrainSolver<kDim>::Impl {
           s.origin_m[t][i] = start.origin_m[t][i] + share * (target.origin_m[t][i] - start.origin_m[t][i]);
       s.load_N = start.load_N + share * (target.load_N - start.load_N);
       s.fixed_u_m = start.fixed_u_m + share * (target.fixed_u_m - start.fixed_u_m);
-      if (step_to(s, travel)) {
+      if (step_to(s)) {
         done = share;
       } else if ((length *= 0.5) < shortest) {
         now = start;
@@ -338,6 +335,7 @@ struct LargeStrainSolver<kDim>::Impl {
   Eigen::VectorXd u, last_u, last_motion;  // the last step's change of u and of the tools
   Situation now;
   std::vector<double> multiplier, last_multiplier, penalty;
+  double shortest_facet_m = std::numeric_limits<double>::infinity();
   double internal_scale = 0, penetration_m = 0;
   int newton_steps = 0;
 };

@@ -34,7 +34,7 @@ struct StrainBody {
 };
 
 struct StrainOptions {
-  double gap_tolerance = 1e-6;       // largest penetration left, share of the tool's travel in this step
+  double gap_tolerance = 2e-5;       // largest penetration left, share of the shortest contact facet
   double residual_tolerance = 1e-9;  // share of the largest nodal force
   int max_newton = 40;
   int max_augmentations = 12;

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "hal/fault_player.h"
 #include "hal/loop.h"
 #include "hal/loopback.h"
+#include "sim_host/host_port.h"
 #include "tests/support/tiny_image.h"
 
 namespace palpate::test {
@@ -73,9 +75,52 @@ struct RecordList {
   std::vector<TickRecord> records;
   void publish(const TickRecord& record) { records.push_back(record); }
 };
-struct ArmedHost {
-  std::uint32_t poll() { return Command::kArm; }
+
+// What surrounds one tick, for tests that meddle with it: `meddle` is called before every tick with its number.
+struct Surroundings {
+  std::uint64_t tick;
+  VirtualClock& clock;
+  ModelParams& params;
+  State& state;
+  MailboxRegion& mailbox;
+  bool& host_lives;
 };
+using Meddle = std::function<void(const Surroundings&)>;
+
+// A host that arms once and shows every tick that it lives, until it dies.
+struct BenchHost {
+  MailboxRegion region{};
+  MailboxWriter writer{region};
+  bool lives = true;
+  void beat() {
+    if (lives) writer.beat();
+  }
+};
+
+class BenchController {
+ public:
+  BenchController(ModelController& inner, VirtualClock& clock, Model& model, State& state, BenchHost& host,
+                  const Meddle& meddle)
+      : inner_(inner), clock_(clock), model_(model), state_(state), host_(host), meddle_(meddle) {}
+  void step(const Input& input, Output& output, const StageProbe& probe) {
+    if (meddle_) meddle_({tick_, clock_, model_.params, state_, host_.region, host_.lives});
+    tick_ += 1;
+    host_.beat();
+    inner_.step(input, output, probe);
+  }
+  void fill(const Input& input, const Output& output, TickRecord& record) { inner_.fill(input, output, record); }
+
+ private:
+  ModelController& inner_;
+  VirtualClock& clock_;
+  Model& model_;
+  State& state_;
+  BenchHost& host_;
+  const Meddle& meddle_;
+  std::uint64_t tick_ = 0;
+};
+
+constexpr std::uint32_t kHostSilenceTicks = 2000;  // 2 s, as palpate-rt has it
 
 // Everything a fault did, tick by tick.
 struct FaultRun {
@@ -88,7 +133,8 @@ struct FaultRun {
 };
 
 inline FaultRun run_with_faults(const std::string& script, std::uint64_t ticks = 1500,
-                                WireProfile profile = WireProfile::kFd, double rate_max_N_per_s = 2e4) {
+                                WireProfile profile = WireProfile::kFd, double rate_max_N_per_s = 2e4,
+                                const Meddle& meddle = {}) {
   ImageBytes image = tiny_image();
   image.params().force_rate_max_N_per_s = rate_max_N_per_s;
   image.seal();
@@ -97,15 +143,20 @@ inline FaultRun run_with_faults(const std::string& script, std::uint64_t ticks =
   const auto state = std::make_unique<State>();
   const auto scratch = std::make_unique<Scratch>();
   reset(*state);
-  ModelController controller(model, *state, *scratch);
+  ModelController core(model, *state, *scratch);
   VirtualClock clock;
   WiredDevice device(script, profile, clock);
   RecordList recorder;
-  ArmedHost host;
+  BenchHost host;
+  host.writer.set(Command::kArm, false);
+  BenchController controller(core, clock, model, *state, host, meddle);
+  const std::atomic<bool> interrupted{false};
+  std::atomic<bool> stop{false};
+  HostPort port(&host.region, kHostSilenceTicks, interrupted, stop);
+  SupervisedDevice supervised(device, port);
   LoopOptions options;
   options.ticks = ticks;
-  const std::atomic<bool> stop{false};
-  Loop loop(device, clock, controller, recorder, host, CartesianKinematics{}, options, stop);
+  Loop loop(supervised, clock, controller, recorder, port, CartesianKinematics{}, options, stop);
   FaultRun run;
   run.limits = model.params;
   run.summary = loop.run();

@@ -2,86 +2,20 @@
 // time with the real tick: no force step above the rate limit, zero force at the end of latched ones, no record lost.
 #include <gtest/gtest.h>
 
-#include "tests/hal/fault_bench.h"
+#include "tests/hal/fault_judge.h"
 
 namespace palpate {
 namespace {
 
+using test::at_fault;
+using test::disturbance;
+using test::expect_latches;
+using test::expect_orderly;
+using test::expect_passes;
 using test::FaultRun;
+using test::force_N;
+using test::kTick;
 using test::run_with_faults;
-
-// Tick of the fault: 800, in the middle of a slide under load.
-constexpr std::size_t kTick = 800;
-std::string at_fault(const std::string& fault) { return "0.8 " + fault; }
-
-// What holds whatever happens.
-void expect_orderly(const FaultRun& run) {
-  const ModelParams& limits = run.limits;
-  const double step_N = limits.force_rate_max_N_per_s * limits.period_s;
-  ASSERT_EQ(run.records.size(), run.summary.ticks);
-  for (std::size_t i = 0; i < run.records.size(); ++i) {
-    const Output& output = run.records[i].output;
-    EXPECT_EQ(run.records[i].sequence, i + 1);
-    EXPECT_LE(norm(output.device_w.force_N), limits.force_max_N * (1 + 1e-12)) << i;
-    if (i > 0) {
-      EXPECT_LE(norm(output.device_w.force_N - run.records[i - 1].output.device_w.force_N), step_N * (1 + 1e-9)) << i;
-    }
-  }
-  EXPECT_EQ(run.summary.missed_slots, 0u);
-  EXPECT_EQ(run.last_sent.force_N, Vec3{});
-  EXPECT_EQ(run.last_sent.flags & CommandFlag::kEnable, 0u);
-}
-
-double force_N(const FaultRun& run, std::size_t tick) { return norm(run.records[tick].output.device_w.force_N); }
-
-// Ticks from the first one that was not in Mode::kForce until the last such one; 0: none.
-struct Disturbance {
-  std::size_t first = 0, ticks = 0;
-  Mode worst = Mode::kForce;
-  double largest_step_N = 0;
-};
-Disturbance disturbance(const FaultRun& run) {
-  Disturbance d;
-  for (std::size_t i = kTick - 100; i < run.records.size() - 100; ++i) {
-    const Mode mode = run.records[i].output.mode;
-    d.largest_step_N = max_of(
-        d.largest_step_N, norm(run.records[i].output.device_w.force_N - run.records[i - 1].output.device_w.force_N));
-    if (mode == Mode::kForce) continue;
-    if (d.ticks == 0) d.first = i;
-    d.ticks = i - d.first + 1;
-    if (static_cast<int>(mode) > static_cast<int>(d.worst)) d.worst = mode;
-  }
-  return d;
-}
-
-// Passes by itself: the worst mode seen, for how many ticks force was not rendered normally, and no fault.
-void expect_passes(const FaultRun& run, Mode worst, std::size_t ticks) {
-  expect_orderly(run);
-  const Disturbance d = disturbance(run);
-  EXPECT_EQ(d.worst, worst);
-  EXPECT_EQ(d.ticks, ticks);
-  EXPECT_EQ(run.summary.faults, 0u);
-  EXPECT_GT(force_N(run, kTick - 1), 0.5);
-  EXPECT_EQ(run.records[run.records.size() - 100].output.mode, Mode::kForce);
-  EXPECT_EQ(run.records[run.records.size() - 100].output.ramp, 1.0);
-}
-
-// Latches `fault` after at most `ticks` ticks and keeps zero force from `zero_ticks` after the cause on.
-void expect_latches(const FaultRun& run, std::uint32_t fault, std::size_t ticks, std::size_t zero_ticks) {
-  expect_orderly(run);
-  ASSERT_GT(run.records.size(), kTick + zero_ticks);
-  EXPECT_GT(force_N(run, kTick - 1), 0.5);
-  std::size_t latched = 0;
-  while (latched < run.records.size() && run.records[latched].output.fault == 0) ++latched;
-  ASSERT_LT(latched, run.records.size());
-  EXPECT_EQ(run.records[latched].output.fault, fault);
-  EXPECT_LE(latched, kTick + ticks);
-  for (std::size_t i = kTick + zero_ticks; i < run.records.size(); ++i) {
-    EXPECT_EQ(run.records[i].output.device_w, Wrench{}) << i;
-    EXPECT_EQ(run.records[i].output.mode, Mode::kFault) << i;
-  }
-  EXPECT_EQ(run.last_motor.force_N, Vec3{});
-}
 
 TEST(FaultReaction, WithoutOneTheHandPressesAndSlides) {
   const FaultRun run = run_with_faults("");
@@ -113,6 +47,11 @@ TEST(FaultReaction, TwentyLostSamplesLatch) {
 TEST(FaultReaction, NineteenDoNot) {
   const FaultRun run = run_with_faults(at_fault("lose 19"));
   expect_passes(run, Mode::kRamp, 19);
+}
+
+TEST(FaultReaction, TwentyDelayedOrCorruptedSamplesLatchToo) {
+  expect_latches(run_with_faults(at_fault("delay 20")), Fault::kDeviceSilent, 20, 27);
+  expect_latches(run_with_faults(at_fault("corrupt 20")), Fault::kDeviceSilent, 20, 27);
 }
 
 TEST(FaultReaction, DuplicatesAreNotNoticed) {
@@ -148,6 +87,13 @@ TEST(FaultReaction, AFrozenEncoderKeepsTheForceAndIsFollowedAgain) {
   EXPECT_EQ(run.records[1400].output.mode, Mode::kForce);
 }
 
+// 1.5 mm in one tick a hand could do: believed at once, and the force follows within its rate limit.
+TEST(FaultReaction, AJumpThatAHandCouldMakeIsBelieved) {
+  const FaultRun run = run_with_faults(at_fault("jump 1.5"));
+  expect_passes(run, Mode::kForce, 0);
+  for (const TickRecord& record : run.records) EXPECT_EQ(record.output.status & Status::kInputRejected, 0u);
+}
+
 // 5 mm in one tick is faster than the 2 m/s of the scene: rejected for two ticks, after which a hand could be there.
 TEST(FaultReaction, ASmallEncoderJumpIsRejectedUntilAHandCouldHaveMovedSoFar) {
   const FaultRun run = run_with_faults(at_fault("jump 5"));
@@ -157,6 +103,13 @@ TEST(FaultReaction, ASmallEncoderJumpIsRejectedUntilAHandCouldHaveMovedSoFar) {
   EXPECT_EQ(run.records[kTick + 1].output.status & Status::kInputRejected, Status::kInputRejected);
   EXPECT_EQ(run.records[kTick + 2].output.status & Status::kInputRejected, 0u);
   EXPECT_EQ(disturbance(run).worst, Mode::kPassive);
+  EXPECT_EQ(disturbance(run).ticks, 2u);
+}
+
+// The believed distance grows by 2 mm a tick, from 2 mm on: J mm take the whole part of J / 2 ticks.
+TEST(FaultReaction, ALargerJumpTakesHalfATickPerMillimetre) {
+  expect_passes(run_with_faults(at_fault("jump 15")), Mode::kRamp, 7);
+  expect_passes(run_with_faults(at_fault("jump 31")), Mode::kRamp, 15);
 }
 
 // The same with a fault limiter far below the change the jump asks for: 0.3 N a tick, and it says so.
@@ -169,9 +122,9 @@ TEST(FaultReaction, TheForceLimiterBoundsWhatAJumpDoes) {
   EXPECT_NE(status & Status::kRateLimited, 0u);
 }
 
-TEST(FaultReaction, ALargeEncoderJumpLatches) {
-  const FaultRun run = run_with_faults(at_fault("jump 100"));
-  expect_latches(run, Fault::kDeviceSilent, 20, 27);
+TEST(FaultReaction, AJumpBeyondFortyMillimetresLatches) {
+  expect_latches(run_with_faults(at_fault("jump 45")), Fault::kDeviceSilent, 20, 27);
+  expect_latches(run_with_faults(at_fault("jump 100")), Fault::kDeviceSilent, 20, 27);
 }
 
 // 800 samples into the run the numbers fall back by less than a quarter of their range.

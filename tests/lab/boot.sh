@@ -1,24 +1,55 @@
 #!/usr/bin/env bash
-# Boots the guest in OUT with one scenario in deterministic virtual time and unpacks its results.
-#   boot.sh OUT SCENARIO SECONDS RESULT_DIR [TIMEOUT_S]
-# The command line is pinned: any change to it shifts latencies by a few microseconds.
+# Boots the guest in deterministic virtual time.
+#   boot.sh save OUT                                          boots once and keeps the machine, ready, in OUT/machine
+#   boot.sh run OUT SCENARIO SECONDS RESULT_DIR [TIMEOUT_S]   runs a scenario on the kept machine, unpacks its results
+# The machine is pinned: any change to it shifts latencies by a few microseconds.
 set -euo pipefail
-out=$1 scenario=$2 seconds=$3 results=$4 timeout_s=${5:-600}
+mode=$1 out=$2 order='wait' scenario='' results=$2
+if [ "$mode" = run ]; then
+  scenario=$3 results=$5
+  order="run $3 $4 "
+fi
 mkdir -p "$results"
 disk=$results/disk.img
 rm -f "$disk"
 truncate -s 256M "$disk"
-status=0
-timeout "$timeout_s" qemu-system-x86_64 -nodefaults -display none -serial stdio -no-reboot -m 1024 -smp 1 \
-  -accel tcg -cpu max -icount shift=0,sleep=off -seed 1 -rtc base=2024-01-01,clock=vm \
-  -kernel "$out/vmlinuz" -initrd "$out/initrd.gz" \
-  -append "console=ttyS0 quiet nokaslr norandmaps random.trust_cpu=off panic=-1 scenario=$scenario seconds=$seconds" \
-  -object can-bus,id=bus0 -device kvaser_pci,canbus=bus0 -device kvaser_pci,canbus=bus0 \
-  -drive "file=$disk,if=virtio,format=raw,cache=unsafe" < /dev/null > "$results/console.txt" 2>&1 || status=$?
-if [ $status -ne 0 ]; then
-  echo "lab: $scenario: the guest did not end by itself within $timeout_s s (status $status); see $results/console.txt" >&2
-  exit 1
-fi
-tar xf "$disk" -C "$results" 2>/dev/null || true
-rm -f "$disk"
-[ "$(cat "$results/exit_code" 2>/dev/null || echo 1)" = 0 ]
+trap 'rm -f "$disk"' EXIT
+
+# The order's length is part of the machine: the guest asks for it once.
+machine=(-nodefaults -display none -no-reboot -m 1024 -smp 1 -accel tcg -cpu max -icount 'shift=0,sleep=off' -seed 1
+  -rtc 'base=2024-01-01,clock=vm' -kernel "$out/vmlinuz" -initrd "$out/initrd.gz"
+  -append "console=ttyS0 quiet nokaslr norandmaps random.trust_cpu=off panic=-1"
+  -object 'can-bus,id=bus0' -device 'kvaser_pci,canbus=bus0' -device 'kvaser_pci,canbus=bus0'
+  -drive "file=$disk,if=virtio,format=raw,cache=unsafe" -serial "file:$results/console.txt"
+  -fw_cfg "name=opt/palpate,string=$(printf '%-64s' "$order")")
+
+save() {
+  local monitor waited=0
+  rm -f "$out/machine" "$out/monitor"
+  : > "$results/console.txt"
+  mkfifo "$out/monitor"
+  timeout 300 qemu-system-x86_64 "${machine[@]}" -monitor stdio < "$out/monitor" > "$out/monitor.txt" 2>&1 &
+  exec {monitor}> "$out/monitor"
+  until grep -q '^lab: ready' "$results/console.txt"; do
+    sleep 0.2
+    waited=$((waited + 1))
+    [ $waited -lt 1200 ] && kill -0 $! 2> /dev/null || { echo "lab: the guest did not boot; see $results/console.txt" >&2; return 1; }
+  done
+  printf 'migrate "exec:cat > %s"\nquit\n' "$out/machine" >&"$monitor"
+  wait $!
+  [ -s "$out/machine" ]
+}
+
+run() {
+  local status=0
+  timeout "$1" qemu-system-x86_64 "${machine[@]}" -monitor none -incoming "exec:cat '$out/machine'" < /dev/null \
+    > "$results/qemu.txt" 2>&1 || status=$?
+  if [ $status -ne 0 ]; then
+    echo "lab: $scenario: the guest did not end by itself within $1 s (status $status); see $results/console.txt" >&2
+    return 1
+  fi
+  tar xf "$disk" -C "$results" 2> /dev/null || true
+  [ "$(cat "$results/exit_code" 2> /dev/null || echo 1)" = 0 ]
+}
+
+if [ "$mode" = save ]; then save; else run "${6:-600}"; fi

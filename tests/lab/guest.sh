@@ -7,7 +7,7 @@ cache=$(mkdir -p "$1" && cd "$1" && pwd) out=$(mkdir -p "$2" && cd "$2" && pwd)
 shift 2
 here=$(cd "$(dirname "$0")" && pwd)
 modules="can can-raw can-dev vcan sja1000 kvaser_pci usb-common usbcore udc-core dummy_hcd configfs libcomposite hid usbhid
-         hid-generic usb_f_hid virtio_pci virtio_blk"
+         hid-generic usb_f_hid virtio_pci virtio_blk qemu_fw_cfg"
 tools="rt-tests can-utils libnuma1"
 
 say() { printf 'lab: %s\n' "$*" >&2; }
@@ -16,9 +16,12 @@ fetch() {  # kernel and tools, once
   [ -e "$cache/complete" ] && return
   say "downloading the PREEMPT_RT kernel and tools (once, about 70 MB)"
   image=$(apt-cache depends linux-image-rt-amd64 | awk '/Depends: linux-image/{print $2; exit}')
-  [ -n "$image" ] || { say "no PREEMPT_RT kernel package known: run 'apt-get update' first"; exit 3; }
+  [ -n "$image" ] || { say "no PREEMPT_RT kernel is cached in $cache and no package linux-image-rt-amd64 is known: run apt-get update"; exit 3; }
   # shellcheck disable=SC2086
-  (cd "$cache" && apt-get download -qq "$image" $tools 2>/dev/null) || { say "cannot download $image: is the package archive reachable?"; exit 3; }
+  (cd "$cache" && apt-get download -qq "$image" $tools 2>/dev/null) || {
+    say "no PREEMPT_RT kernel is cached in $cache, and these packages cannot be downloaded: $image $tools. Is the network up?"
+    exit 3
+  }
   for package in "$cache"/*.deb; do dpkg -x "$package" "$cache/x"; done
   version=$(basename "$cache"/x/lib/modules/*)
   /sbin/depmod -b "$cache/x" "$version"
@@ -28,7 +31,7 @@ fetch() {  # kernel and tools, once
 copy_program() {  # with its shared libraries, at the paths the loader expects
   local program=$1 target=$2
   cp "$program" "$target"
-  LD_LIBRARY_PATH=$cache/x/usr/lib/x86_64-linux-gnu ldd "$program" 2>/dev/null |
+  { LD_LIBRARY_PATH=$cache/x/usr/lib/x86_64-linux-gnu ldd "$program" 2>/dev/null || true; } |  # fails for a static one
     awk '/=> \//{print $3} /^\t\/lib64/{print $1}' | while read -r library; do
       at=$out/root${library#"$cache/x"}
       mkdir -p "$(dirname "$at")"

@@ -26,10 +26,11 @@ repeat_hand() {
             split(row[i], f, ","); print f[1] + t substr(row[i], index(row[i], ",")) } }' /lab/hand.csv > /tmp/hand.csv
 }
 
+# Four steps of the hand's integration a tick instead of 20: the simulated mechanics is most of what the guest computes.
 start_device() { # ADDRESS [OPTION...]
   at=$1
   shift
-  palpate-device --device "$at" --path /tmp/hand.csv --priority 70 "$@" & device=$!
+  palpate-device --device "$at" --path /tmp/hand.csv --priority 70 --set substeps=4 "$@" & device=$!
 }
 
 # latched NAME TICKS: this fault ended the run, after at least so many ticks (an earlier one would be another fault's).
@@ -39,26 +40,55 @@ latched() {
   awk -v least="$2" '/^controller:/ { if ($2 >= least) good = 1 } END { exit !good }' /results/log.txt
 }
 
+# Processes started and killed, files written, and the host itself stopped for 1.2 s out of every 4 s; FILE: its process.
+disturb() {
+  while sleep 2.5; do
+    host=$(pidof lab_host palpate) || break
+    (while :; do :; done) & burner=$!
+    dd if=/dev/zero of=/tmp/blob bs=1M count=4 2> /dev/null
+    sleep 0.03
+    kill -KILL $burner
+    kill -STOP $host 2> /dev/null || break
+    sleep 1.2
+    kill -CONT $host 2> /dev/null || break
+  done
+}
+
+# The controller has lost its host: it says so, and ends by itself.
+ends_alone() {
+  for i in 1 2 3 4 5 6 7 8 9 10; do pidof palpate-rt > /dev/null || return 0; sleep 0.5; done
+  return 1
+}
+
 # render CONTROLLER_ADDRESS DEVICE_ADDRESS [DEVICE OPTION...]: runs ellipsoid_mallet with the simulated device on the
-# other end and prints the summary. Up to a minute is also recorded, verified by replay and drawn as histograms.
+# other end and prints the summary. Up to 20 s with an ordinary host, which records; the recording is verified by replay.
+# Longer runs have a hostile host, amid processes that come and go; it is stopped, floods the controller, and is killed.
 render() {
   controller_at=$1
   shift
   measure_kernel
   repeat_hand
   start_device "$@"
-  record=--no-record
-  [ "$seconds" -gt 60 ] || record="--record /tmp/run.plr"
+  if [ "$seconds" -gt 20 ]; then render_hostile; else render_recorded; fi
+}
+
+render_recorded() {
   status=0
-  # shellcheck disable=SC2086  # two words
-  palpate run /lab/ellipsoid_mallet.pal --device "$controller_at" --duration "$seconds" $record --priority 80 --quiet ||
-    status=$?
+  palpate run /lab/ellipsoid_mallet.pal --device "$controller_at" --duration "$seconds" --record /tmp/run.plr \
+    --priority 80 --quiet || status=$?
   kill $device 2> /dev/null || true
-  if [ "$record" != --no-record ]; then
-    [ "$seconds" -gt 20 ] || palpate replay /tmp/run.plr
-    palpate latency --recording /tmp/run.plr --histfile /results/latency.txt --json /results/latency.json \
-      --overlay /results/cyclictest.txt --plot /results/latency.svg || true
-    sha256sum < /tmp/run.plr | cut -c1-64 > /results/recording.sha256
-  fi
+  palpate replay /tmp/run.plr
+  palpate latency --recording /tmp/run.plr --histfile /results/latency.txt --json /results/latency.json \
+    --overlay /results/cyclictest.txt --plot /results/latency.svg || true
+  sha256sum < /tmp/run.plr | cut -c1-64 > /results/recording.sha256
   return $status
+}
+
+render_hostile() {
+  disturb & chaos=$!
+  lab_host /lab/ellipsoid_mallet.pal "$controller_at" "$seconds" 30 /results || [ $? -eq 137 ]
+  kill $chaos 2> /dev/null || true
+  ends_alone
+  kill $device
+  grep -q '^controller: .* faults 0x100$' /results/log.txt  # HostSilent and nothing else
 }
