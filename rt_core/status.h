@@ -36,7 +36,9 @@ namespace palpate {
   X(kJointStopped, 14, "a joint stopped because it would press a loaded part harder than the stop force",              \
     "none: this is how a grasp ends; raise the stop force to squeeze harder")                                          \
   X(kGraspUnstable, 15, "the palm would have to pull to hold the body",                                                \
-    "close the fingers so that their forces push the body into the palm")
+    "close the fingers so that their forces push the body into the palm")                                              \
+  X(kFootHeld, 16, "a tip is deeper than the surface's curvature allows; its last place of contact is kept",           \
+    "press less deeply, or use a larger body")
 
 // X(name, bit, cause, remedy)
 #define PALPATE_FAULT_BITS(X)                                                                                       \
