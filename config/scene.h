@@ -100,9 +100,7 @@ struct PairDesc {
   double c_m_per_N = 0;
   double h_ab_m_per_N2 = 0, h_ba_m_per_N2 = 0;
 };
-enum class TableSource : std::int32_t { kFile, kPress };
 struct TableDesc {
-  TableSource source = TableSource::kFile;
   std::string file;
   bool smooth = false;
 };

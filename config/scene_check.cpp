@@ -96,10 +96,7 @@ void check_contact(const SceneDesc& scene) {
   for (const char* table : {"tip", "layer", "series", "pair", "pair[0]"})
     unused_table(table, ContactLaw::kTool, "tool");
   unused_table("table", ContactLaw::kTable, "table");
-  const bool from_file = scene.table.source == TableSource::kFile;
-  if (!from_file && scene.source.has("contact.table.file"))
-    fail(scene, "contact.table.file", "has no effect with source = \"press\"; remove it");
-  if (scene.contact.law == ContactLaw::kTable && from_file && scene.table.file.empty())
+  if (scene.contact.law == ContactLaw::kTable && scene.table.file.empty())
     fail(scene, "contact.table.file", "missing; law = \"table\" needs the path of a CSV file");
   if (scene.contact.law == ContactLaw::kCubic && !(scene.cubic.k1_N_per_m > 0 || scene.cubic.k3_N_per_m3 > 0))
     fail(scene, "contact.cubic", "k1_N_per_m and k3_N_per_m3 are both 0: no force; set at least one");

@@ -173,13 +173,11 @@ const KeySpec kPair[] = {
     number<&PairDesc::h_ba_m_per_N2>("h_ba_mm_per_N2", -1e3, 1e3, kMilli, "second order, the other way round"),
 };
 const KeySpec kTable[] = {
-    choice<&TableDesc::source>("source", "file|press",
-                               "measured presses from a file, or one computed by large-strain finite elements (bodies "
-                               "of revolution pressed at their top), used all over the surface"),
     text<&TableDesc::file>(
         "file", 4096,
         "CSV of presses, relative to the scene file: depth_mm,force_N, or with x_mm,y_mm,z_mm before "
-        "them for presses at several places; each starts at 0,0"),
+        "them for presses at several places; each starts at 0,0",
+        true),
     boolean<&TableDesc::smooth>("smooth", "pool rows whose force falls instead of refusing them"),
 };
 const KeySpec kFriction[] = {

@@ -1,7 +1,6 @@
-// Responses from finite-element presses at bake time: the far field of the series law, and whole force curves.
+// The far field of the series law from finite-element presses at bake time.
 #pragma once
 
-#include "config/response/table_bake.h"
 #include "config/response/tip_bake.h"
 #include "config/scene.h"
 
@@ -15,10 +14,5 @@ struct FarFieldFit {
   double linear_N = 0, large_N = 0, depth_m = 0;
 };
 FarFieldFit fit_far_field(const SceneDesc& scene, std::size_t piece, const TipDesc& tip);
-
-// Force of the first piece with a point at kPressDepths depths up to contact.max_depth_mm, large strains, at the top of
-// the body: one curve for the whole surface.
-inline constexpr int kPressDepths = 12;
-ForceCurve press_curve(const SceneDesc& scene);
 
 }  // namespace palpate

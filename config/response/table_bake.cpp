@@ -5,7 +5,6 @@
 #include <filesystem>
 
 #include "config/config_error.h"
-#include "config/response/press_bake.h"
 #include "config/schema.h"
 
 namespace palpate {
@@ -130,19 +129,16 @@ CurveTable tabulate(const std::vector<ForceCurve>& presses, bool root) {
 
 void bake_table(const SceneDesc& scene, ImageContents& image, ResponseReport& report,
                 std::vector<std::string>& warnings) {
-  const bool computed = scene.table.source == TableSource::kPress;
   const std::filesystem::path file(scene.table.file);
   const std::string path = file.is_absolute() ? scene.table.file : scene.source.directory + scene.table.file;
   std::vector<ForceCurve> curves;
   CurveTable table;
-  if (computed) curves = {press_curve(scene)};
   try {
-    if (!computed) curves = read_curves(path, scene.table.smooth);
-    table = tabulate(curves, computed);
+    curves = read_curves(path, scene.table.smooth);
+    table = tabulate(curves);
   } catch (const ConfigError& error) {
     throw ConfigError(scene.source.where("contact.table.file") + ": " + error.what());
   }
-  image.params.response_root = computed ? 1 : 0;
   image.params.response_law = static_cast<std::int32_t>(ResponseLaw::kTable);
   image.knot = table.knot;
   image.vertex_response.assign(image.vertex_m.size(), 0);

@@ -8,6 +8,7 @@
 #include "config/contact_fit.h"
 #include "config/response/corner_normals.h"
 #include "config/response/press_bake.h"
+#include "config/response/table_bake.h"
 #include "config/schema.h"
 #include "rt_core/math.h"
 #include "rt_core/response/travel.h"
