@@ -39,6 +39,8 @@ struct CompileReport {
   bool baked_beams = false;   // beams holds something
   BeamTableReport beams;
   std::vector<ArrayBytes> array;  // of the image, in its order
+  std::int32_t joints = 0, parts_touching = 0;  // of a hand: parts in contact when closed
+  double clearance_m = 0;                       // of the open hand on its way in
   std::vector<std::string> warnings;
 };
 // The report as lines for a terminal.
