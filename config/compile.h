@@ -32,7 +32,9 @@ struct CompileReport {
   std::vector<double> gap_m;  // per piece: largest distance from its touching surface to the nearest tool sphere
   bool baked_beams = false;   // beams holds something
   BeamTableReport beams;
-  std::vector<ArrayBytes> array;  // of the image, in its order
+  std::vector<ArrayBytes> array;                // of the image, in its order
+  std::int32_t joints = 0, parts_touching = 0;  // of a hand: parts in contact when closed
+  double clearance_m = 0;                       // of the open hand on its way in
   std::vector<std::string> warnings;
 };
 // The report as lines for a terminal.
