@@ -158,7 +158,8 @@ std::int32_t dome(SurfaceMesh& mesh, std::int32_t rows, bool inside, Place place
 }
 
 Vec3 around_axis(BodyAxis axis, double radial_c, double radial_s, double along) {
-  return axis == BodyAxis::kZ ? Vec3{radial_c, radial_s, along} : Vec3{radial_s, along, radial_c};
+  // Right-handed both ways; the mirror image that every number of cells has, of the sine, is that of x.
+  return axis == BodyAxis::kZ ? Vec3{radial_s, radial_c, -along} : Vec3{radial_s, along, radial_c};
 }
 
 void stand(SurfaceMesh& mesh) {

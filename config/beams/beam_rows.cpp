@@ -157,8 +157,8 @@ BeamRatio ratio_of(const BeamCurve& curve, const BeamBuild& build, const Matrix3
   const ArcPaperCompliance c =
       arc_paper_compliance(arc_section(curve, build), build.material, curve.angle, curve.outer_radius_m);
   const double determinant = c.u1_m_per_N * c.v2_m_per_N - c.u2_m_per_N * c.v1_m_per_N;
-  // A singular relation (v2 = u2 v1 / u1 happens, as it is indefinite) shares nothing.
-  if (!(std::abs(determinant) > 1e-9 * std::abs(c.u1_m_per_N * c.v2_m_per_N))) return ratio;
+  // The relation is indefinite: where it is nearly singular its inverse is all rounding, and nothing is shared.
+  if (!(std::abs(determinant) > 1e-3 * std::abs(c.u1_m_per_N * c.v2_m_per_N))) return ratio;
   const double per = 1 / determinant;
   ratio.f1_gain_N_per_m = (per * c.v2_m_per_N) * curve.radial - (per * c.u2_m_per_N) * curve.tangential;
   ratio.f2_gain_N_per_m = (per * c.u1_m_per_N) * curve.tangential - (per * c.v1_m_per_N) * curve.radial;
