@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include "config/anchors.h"
+#include "config/body.h"
 #include "config/bvh_build.h"
 #include "config/config_error.h"
 #include "config/fem_body.h"
 #include "config/hand/hand_model.h"
 #include "config/hand/preshape.h"
-#include "config/mesh_io.h"
 #include "config/patches.h"
 #include "config/schema.h"
 #include "config/tool_points.h"
@@ -463,66 +462,6 @@ class Compiler {
 };
 
 }  // namespace
-
-SurfaceMesh make_body(const SceneDesc& scene, std::vector<std::string>& warnings) {
-  const BodyDesc& body = scene.body;
-  SurfaceMesh mesh;
-  std::string label = scene.source.where("body.shape");
-  switch (body.shape) {
-    case BodyShape::kEllipsoid:
-      mesh = make_ellipsoid(body.half_axes_m, body.triangles);
-      break;
-    case BodyShape::kSphere:
-      mesh = make_ellipsoid({body.radius_m, body.radius_m, body.radius_m}, body.triangles);
-      break;
-    case BodyShape::kCylinder:
-      mesh = make_cylinder(body.radius_m, body.height_m, body.triangles);
-      if (body.axis == BodyAxis::kX)  // a turn about z, then onto the plane y = 0 over the origin
-        for (Vec3& p : mesh.vertex_m) p = {p.y - 0.5 * body.height_m, body.radius_m - p.x, p.z};
-      break;
-    case BodyShape::kBox:
-      mesh = make_box(body.size_m, body.triangles);
-      break;
-    case BodyShape::kRevolution:
-      mesh = make_revolution(body.profile, body.triangles);
-      break;
-    case BodyShape::kHeart:
-      mesh = make_heart(body.width_m, body.triangles);
-      break;
-    case BodyShape::kHalfShell:
-      mesh = make_half_shell(body.half_axes_m, body.wall_m, body.triangles);
-      break;
-    case BodyShape::kRing:
-      mesh = make_ring(body.radius_m, body.wall_m, body.axis, body.triangles);
-      break;
-    case BodyShape::kHollowCylinder:
-      mesh = make_hollow_cylinder(body.radius_m, body.wall_m, body.height_m, body.axis, body.triangles);
-      break;
-    case BodyShape::kClip:
-    case BodyShape::kTets:
-      mesh = surface_of(make_tet_mesh(scene, warnings)).mesh;
-      break;
-    case BodyShape::kMesh: {
-      const std::filesystem::path file(body.mesh);
-      const std::string path = file.is_absolute() ? body.mesh : scene.source.directory + body.mesh;
-      label = scene.source.where("body.mesh") + ": " + path;
-      MeshFile read;
-      try {
-        read = read_mesh(path, body.scale);
-      } catch (const ConfigError& error) {
-        throw ConfigError(scene.source.where("body.mesh") + ": " + error.what());
-      }
-      mesh = std::move(read.mesh);
-      if (read.collapsed_triangles > 0)
-        warnings.push_back(path + ": dropped " + std::to_string(read.collapsed_triangles) +
-                           " triangles whose corners coincide");
-      if (body.fix_orientation) orient_mesh(mesh);
-      break;
-    }
-  }
-  check_mesh(mesh, label);
-  return mesh;
-}
 
 CompileResult compile_scene(const SceneDesc& scene, const Progress& progress) {
   return Compiler(scene, progress).run();

@@ -53,7 +53,4 @@ struct CompileResult {
 // Same scene, same bytes: nothing of paths, time or addresses goes into them. Throws ConfigError.
 CompileResult compile_scene(const SceneDesc& scene, const Progress& progress = {});
 
-// The body's surface, checked: made or read, as the scene says. Throws ConfigError. Adds warnings.
-SurfaceMesh make_body(const SceneDesc& scene, std::vector<std::string>& warnings);
-
 }  // namespace palpate
