@@ -78,7 +78,7 @@ class Compiler {
     image_.strain_gauge = body.strain_gauge;
     ModelParams& p = image_.params;
     const double edge = mean_edge_m(mesh_);
-    p.contact_margin_m = is_auto(scene_.nodal.margin_m) ? 0.5 * edge : scene_.nodal.margin_m;
+    p.contact_margin_m = is_auto(scene_.nodal.margin_m) ? 0.25 * edge : scene_.nodal.margin_m;
     // Singular where nodes are redundant; the table's own rounding sets how much regularisation it takes.
     p.regularisation = body.precision == CompliancePrecision::kDouble ? 1e-6 : 1e-5;
     cluster_distance_m_ = 3 * edge;

@@ -149,7 +149,7 @@ const KeySpec kNodal[] = {
     choice<&NodalDesc::carry>("carry", "far_field|rest",
                               "where gaps and normals are taken: on the surface carried by its far field, or at rest"),
     number_or_auto<&NodalDesc::margin_m>("margin_mm", 0.001, 100, kMilli,
-                                         "nodes nearer to the tool take part; auto: half a mean edge"),
+                                         "nodes nearer to the tool take part; auto: a quarter of a mean edge"),
     number<&NodalDesc::wall_N_per_m>("wall_N_per_m", 1, 1e9, 1, "stiffness of held nodes"),
     number<&NodalDesc::strain_limit>("strain_limit", 1e-6, 10, 1, "strain above which a tick says so"),
     number<&NodalDesc::proxy_speed_max_m_per_s>("proxy_speed_max_m_per_s", 0.001, 100, 1,

@@ -31,7 +31,7 @@ void visit_region(const Region& r, Visitor&& visit) PALPATE_RT {
 template <class Visitor>
 void visit_nodal(const State& state, Visitor&& visit) PALPATE_RT {
   const NodalState& nodal = state.nodal;
-  visit("nodal.count", nodal.count, nodal.pushing);
+  visit("nodal.count", nodal.count);
   visit("nodal.far_share", nodal.far_share);
   for (std::int32_t i = 0; i < nodal.count; ++i) {  // bound: kMaxContacts
     const NodalContact& c = nodal.contact[i];

@@ -62,21 +62,21 @@ struct AnchorState {
   double shear_stress_Pa = 0;
 };
 
-// What a surface node near the tool remembers (nodal back-end). Written by force.
+// What a surface node that pushes remembers (nodal back-end). Written by force.
 struct NodalContact {
   std::int32_t vertex = -1;
   std::int32_t piece = -1;
-  std::int32_t region = -1;                     // slot in State::region, or -1
-  FrictionMode friction = FrictionMode::kFree;  // kFree: it did not push
-  Vec3 force_w;                                 // on the body
-  Vec3 anchor_tool_m;                           // where on the tool (joints at zero) it sticks, or was
+  std::int32_t region = -1;  // slot in State::region, or -1
+  FrictionMode friction = FrictionMode::kStick;
+  Vec3 force_w;        // on the body
+  Vec3 anchor_tool_m;  // where on the tool (joints at zero) it sticks, or was
 };
 
-// Memory of the nodal back-end: the candidates of the last tick.
+// Memory of the nodal back-end: the nodes that pushed last tick.
 struct NodalState {
   std::int32_t count = 0;
-  std::int32_t pushing = 0;  // how many of them pushed
-  double far_share = 0;      // part of the nodes' motion that is far field
+  std::int32_t reserved = 0;
+  double far_share = 0;  // part of the nodes' motion that is far field
   NodalContact contact[kMaxContacts];
   RegionMotion motion[kMaxRegions];  // far field of each region
 };

@@ -7,8 +7,8 @@ namespace palpate {
 
 namespace {
 
-// Above this a problem counts as not solved: a sixth of an encoder's step. The sweeps with friction leave 3e-6 m after a
-// tool is put 5 mm deep in one tick, below 1e-7 m in steady motion (2026-11-21); without friction it is rounding.
+// Above this a problem counts as not solved: a sixth of an encoder's step. The sweeps with friction leave 3e-6 m after
+// a tool is put 5 mm deep in one tick, below 1e-7 m in steady motion (2026-11-21); without friction it is rounding.
 constexpr Real kTolerance_m = 5e-6;
 
 Real friction_coefficient(const Model& model) PALPATE_RT {
@@ -23,12 +23,12 @@ Pose carried_before(const Model& model, const State& state, const Pose& tool_w, 
 
 class Balance {
  public:
-  Balance(const Model& model, State& state, Scratch& scratch, const Twist& free, const Pose& before) PALPATE_RT
+  Balance(const Model& model, State& state, Scratch& scratch, const Twist& drift, const Pose& before) PALPATE_RT
       : model_(model),
         state_(state),
         scratch_(scratch),
         p_(scratch.nodal),
-        free_(free),
+        drift_(drift),
         before_(before),
         mu_(friction_coefficient(model)) {}
 
@@ -55,6 +55,7 @@ class Balance {
     node.tangent_w[0] = unit_or(cross(n, axis), {});
     node.tangent_w[1] = cross(n, node.tangent_w[0]);
     node.push = {};
+    node.block.normal = 0;  // not made yet
   }
 
   void clear_motion() PALPATE_RT {
@@ -75,23 +76,30 @@ class Balance {
     return node.rest_w - transform(carrier_w(model_, state_, node.piece), anchor_tool) - tool_motion(node);
   }
   Vec3 tool_motion(const ContactNode& node) const PALPATE_RT {
-    return free_.translation_m + cross(free_.rotation_rad, node.arm_w);
+    return drift_.translation_m + cross(drift_.rotation_rad, node.arm_w);
   }
 
-  // Turns the tangents, and starts from last tick's friction, cut to what its normal push carries.
+  // Turns the tangents to those of the node's own compliance, once the node is known to push.
+  void prepare_friction(std::int32_t i) PALPATE_RT {
+    ContactNode& node = p_.node[i];
+    if (node.block.normal > 0) return;
+    Real w[3][3];
+    own_compliance(model_, p_, i, w);
+    node.block = make_friction_block(w, mu_);
+    const Vec3 t0 = node.tangent_w[0], t1 = node.tangent_w[1];
+    node.tangent_w[0] = node.block.cosine * t0 + node.block.sine * t1;
+    node.tangent_w[1] = node.block.cosine * t1 - node.block.sine * t0;
+    const Vec3 offset = free_offset(node);
+    node.offset_m[1] = dot(offset, node.tangent_w[0]);
+    node.offset_m[2] = dot(offset, node.tangent_w[1]);
+  }
+
+  // Starts from last tick's friction.
   void add_remembered_friction() PALPATE_RT {
     for (std::int32_t i = 0; i < p_.count; ++i) {  // bound: kMaxContacts
       ContactNode& node = p_.node[i];
-      Real w[3][3];
-      own_compliance(model_, p_, i, w);
-      node.block = make_friction_block(w, mu_);
-      const Vec3 t0 = node.tangent_w[0], t1 = node.tangent_w[1];
-      node.tangent_w[0] = node.block.cosine * t0 + node.block.sine * t1;
-      node.tangent_w[1] = node.block.cosine * t1 - node.block.sine * t0;
-      const Vec3 offset = free_offset(node);
-      node.offset_m[1] = dot(offset, node.tangent_w[0]);
-      node.offset_m[2] = dot(offset, node.tangent_w[1]);
       if (node.memory < 0) continue;
+      prepare_friction(i);
       const Vec3 force = tangential_part(state_.nodal.contact[node.memory].force_w, node.normal_w);
       node.push.tangent_N[0] = dot(force, node.tangent_w[0]);
       node.push.tangent_N[1] = dot(force, node.tangent_w[1]);
@@ -136,10 +144,12 @@ class Balance {
   void solve_node(std::int32_t i) PALPATE_RT {
     const ContactNode& node = p_.node[i];
     const Vec3 u = relative_motion(p_, i);
+    const Real normal_m = node.offset_m[0] + dot(u, node.normal_w);
+    if (node.memory < 0 && node.push.normal_N == 0 && normal_m >= 0) return;  // open, and stays so
+    prepare_friction(i);
     Real own[3];
     own_displacement(node.block, node.push, own);
-    const Real free_m[3] = {node.offset_m[0] + dot(u, node.normal_w) - own[0],
-                            node.offset_m[1] + dot(u, node.tangent_w[0]) - own[1],
+    const Real free_m[3] = {normal_m - own[0], node.offset_m[1] + dot(u, node.tangent_w[0]) - own[1],
                             node.offset_m[2] + dot(u, node.tangent_w[1]) - own[2]};
     set_push(i, solve_friction(node.block, mu_, free_m));
   }
@@ -214,16 +224,16 @@ class Balance {
   State& state_;
   Scratch& scratch_;
   ContactProblem& p_;
-  const Twist free_;
+  const Twist drift_;
   const Pose before_;
   const Real mu_;
 };
 
 }  // namespace
 
-void solve_contacts(const Model& model, State& state, Scratch& scratch, const Twist& free,
+void solve_contacts(const Model& model, State& state, Scratch& scratch, const Twist& drift,
                     const Pose& tool_before_w) PALPATE_RT {
-  Balance(model, state, scratch, free, tool_before_w).run();
+  Balance(model, state, scratch, drift, tool_before_w).run();
 }
 
 }  // namespace palpate

@@ -6,10 +6,10 @@
 
 namespace palpate {
 
-// Fills frames, compliances and free gaps of scratch.nodal's nodes and solves for their pushes. `free` is how far the
+// Fills frames, compliances and gaps of scratch.nodal's nodes and solves for their pushes. `drift` is how far the
 // tool would move from state.tool_w if nothing touched it: zero when it is held. Afterwards node.push, motion_m,
 // force_N and torque_Nm hold the solution, scratch.residual_m its residual.
-void solve_contacts(const Model& model, State& state, Scratch& scratch, const Twist& free,
+void solve_contacts(const Model& model, State& state, Scratch& scratch, const Twist& drift,
                     const Pose& tool_before_w) PALPATE_RT;
 
 }  // namespace palpate

@@ -9,7 +9,7 @@ namespace {
 // A node whose outward normal points the same way as the tool's is on the far side of a thin body.
 constexpr Real kFacing = 0.3;
 // A region moves as one body, to within this share of its motion.
-constexpr Real kCarryShare = 0.1;
+constexpr Real kCarryShare = 0.05;
 
 // Where a node and the tool meet.
 struct Touch {
@@ -39,7 +39,6 @@ class NodeSearch {
     piece_ = piece;
     const ToolPiece& shape = model_.piece[static_cast<std::size_t>(piece)];
     const PieceFrame frame(carrier_w(model_, state_, piece) * shape.pose_tool);
-    const Real reach = margin_m_ + (1 + kCarryShare) * carry_max_m_;
     std::int32_t stack[kMaxTraversalStack];
     std::int32_t top = 0;
     stack[top++] = 0;
@@ -47,7 +46,7 @@ class NodeSearch {
       const BvhNode& node = model_.bvh[static_cast<std::size_t>(stack[--top])];
       for (int k = 3; k >= 0; --k) {  // bound: 4
         if (node.count[k] == 0 && node.child[k] < 0) continue;
-        if (!may_touch(shape, frame, node, k, reach)) continue;
+        if (!may_touch(shape, frame, node, k)) continue;
         if (node.count[k] > 0) {
           visit_leaf(shape, frame, ~node.child[k], node.count[k]);
         } else if (top < kMaxTraversalStack) {
@@ -71,8 +70,8 @@ class NodeSearch {
     }
   }
 
-  static bool may_touch(const ToolPiece& shape, const PieceFrame& frame, const BvhNode& node, int k,
-                        Real reach) PALPATE_RT {
+  // Whether a node in the box can come within reach of the piece, at rest or carried by a region that reaches the box.
+  bool may_touch(const ToolPiece& shape, const PieceFrame& frame, const BvhNode& node, int k) const PALPATE_RT {
     const auto middle = [&](int axis) PALPATE_RT {
       return 0.5 * (static_cast<Real>(node.lower_m[axis][k]) + static_cast<Real>(node.upper_m[axis][k]));
     };
@@ -81,7 +80,16 @@ class NodeSearch {
     };
     const Vec3 centre{middle(0), middle(1), middle(2)};
     const Real radius = norm({half(0), half(1), half(2)});
-    return !(piece_gap(shape, frame.into(centre)).gap_m - radius > reach);
+    const Real gap = piece_gap(shape, frame.into(centre)).gap_m - radius - margin_m_;
+    if (!(gap > 0)) return true;
+    if (gap > (1 + kCarryShare) * carry_max_m_) return false;
+    for (std::int32_t r = 0; r < regions_; ++r) {  // bound: kMaxRegions
+      if (!(norm(centre - region_[r].centre_w) <= region_[r].reach_m + radius)) continue;
+      const Vec3 carry = carry_at(region_[r], centre);
+      const Real spread = norm(region_[r].rotation_rad) * radius + kCarryShare * carry_max_m_;
+      if (!(piece_gap(shape, frame.into(centre + carry)).gap_m - radius - spread > margin_m_)) return true;
+    }
+    return false;
   }
 
   void visit_leaf(const ToolPiece& shape, const PieceFrame& frame, std::int32_t first, std::int32_t count) PALPATE_RT {
@@ -139,10 +147,7 @@ class NodeSearch {
     touch.position_w += weight * (centre - node.round_m * normal - touch.position_w);
   }
 
-  bool pushed(std::int32_t vertex) const PALPATE_RT {
-    const std::int32_t memory = problem_.memory_of[vertex];
-    return memory >= 0 && state_.nodal.contact[memory].friction != FrictionMode::kFree;
-  }
+  bool pushed(std::int32_t vertex) const PALPATE_RT { return problem_.memory_of[vertex] >= 0; }
 
   // Rank when the pool is full: nodes that pushed last tick stay, then the deepest; ties: first come.
   Real rank(std::int32_t vertex, Real gap_m) const PALPATE_RT { return pushed(vertex) ? gap_m - 1.0 : gap_m; }

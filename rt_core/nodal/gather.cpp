@@ -1,19 +1,23 @@
 #include "rt_core/nodal/gather.h"
 
-#if defined(__AVX2__)
-#include <immintrin.h>
-#endif
-
 namespace palpate {
 
 namespace {
 
-// to[i] = row[index[i]] for n entries, whole lanes at a time (the rest of the index is 0).
+// to[i] = row[index[i]] for n entries, whole lanes at a time (the rest of the index is 0). One instruction fetches
+// eight numbers where there is one; left to itself gcc 12 loads them one by one, at four times the instructions.
 void pick(const float* row, const std::int32_t* index, std::int32_t n, float* to) PALPATE_RT {
 #if defined(__AVX2__)
+  using Int8 [[gnu::vector_size(32)]] = std::int32_t;
+  const Float8 all = __builtin_bit_cast(Float8, Int8{-1, -1, -1, -1, -1, -1, -1, -1});
   for (std::int32_t i = 0; i < n; i += 8) {  // bound: kMaxContacts / 8
-    const __m256i at = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(index + i));
-    _mm256_storeu_ps(to + i, _mm256_i32gather_ps(row, at, 4));
+    Int8 at;
+    __builtin_memcpy(&at, index + i, sizeof at);
+#if defined(__clang__)
+    store(to + i, __builtin_ia32_gatherd_ps256(Float8{}, row, at, all, 4));
+#else
+    store(to + i, __builtin_ia32_gathersiv8sf(Float8{}, row, at, all, 4));
+#endif
   }
 #else
   for (std::int32_t i = 0; i < n; ++i) to[i] = row[index[i]];  // bound: kMaxContacts

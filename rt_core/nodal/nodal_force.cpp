@@ -22,15 +22,15 @@ void clear_outputs(State& state, Scratch& scratch) PALPATE_RT {
 }
 
 // Where the tool goes: the handle's pull against the pushes, no faster than the handle itself and the limit.
-void place_tool(const Model& model, const State& state, Scratch& scratch, const Twist& free) PALPATE_RT {
+void place_tool(const Model& model, const State& state, Scratch& scratch, const Twist& drift) PALPATE_RT {
   const ContactProblem& p = scratch.nodal;
   Pose& tool = scratch.tool_corrected_w;
   if (scratch.driven) {
     tool = state.tool_w;
     return;
   }
-  tool = moved(state.tool_w, {free.translation_m - p.per_N * p.force_N, free.rotation_rad - p.per_Nm * p.torque_Nm});
-  const bool touching = squared_norm(p.force_N) > 0 || state.nodal.pushing > 0;
+  tool = moved(state.tool_w, {drift.translation_m - p.per_N * p.force_N, drift.rotation_rad - p.per_Nm * p.torque_Nm});
+  const bool touching = squared_norm(p.force_N) > 0 || state.nodal.count > 0;
   if (!touching) return;
   const Twist step = twist_between(state.safety.tool_corrected_w, tool);
   const Real most = model.params.proxy_speed_max_m_per_s * model.params.period_s +
@@ -41,31 +41,30 @@ void place_tool(const Model& model, const State& state, Scratch& scratch, const 
   tool = moved(state.safety.tool_corrected_w, {share * step.translation_m, share * step.rotation_rad});
 }
 
-// Keeps every candidate: what it pushed, where it went and where on the tool it is.
+// Keeps the nodes that push: with what force, and where on the tool.
 void remember(const Model& model, State& state, const Scratch& scratch) PALPATE_RT {
   const ContactProblem& p = scratch.nodal;
   NodalContact before[kMaxContacts];
   for (std::int32_t m = 0; m < state.nodal.count; ++m) before[m] = state.nodal.contact[m];  // bound: kMaxContacts
-  state.nodal.count = p.count;
-  state.nodal.pushing = 0;
+  state.nodal.count = 0;
   for (std::int32_t i = 0; i < p.count; ++i) {  // bound: kMaxContacts
     const ContactNode& node = p.node[i];
-    const Pose carrier = is_articulated(model) ? scratch.tool_corrected_w * state.articulation.motion_tool[node.piece]
-                                               : scratch.tool_corrected_w;
-    NodalContact& contact = state.nodal.contact[i];
+    if (!(node.push.normal_N > 0)) continue;
+    NodalContact& contact = state.nodal.contact[state.nodal.count++];
     contact = NodalContact{};
     contact.vertex = node.vertex;
     contact.piece = node.piece;
     contact.region = node.region;
     contact.force_w = push_w(node);
-    contact.anchor_tool_m = inverse_transform(carrier, node.rest_w + motion_of(p, i));
-    if (!(node.push.normal_N > 0)) continue;
-    state.nodal.pushing += 1;
     contact.friction = node.push.slips ? FrictionMode::kSlip : FrictionMode::kStick;
-    const bool stuck_before = node.memory >= 0 && before[node.memory].piece == node.piece &&
-                              before[node.memory].friction != FrictionMode::kFree;
-    if (contact.friction == FrictionMode::kStick && stuck_before)
+    const bool stays = node.memory >= 0 && before[node.memory].piece == node.piece;
+    if (contact.friction == FrictionMode::kStick && stays) {
       contact.anchor_tool_m = before[node.memory].anchor_tool_m;
+      continue;
+    }
+    const Pose carrier = is_articulated(model) ? scratch.tool_corrected_w * state.articulation.motion_tool[node.piece]
+                                               : scratch.tool_corrected_w;
+    contact.anchor_tool_m = inverse_transform(carrier, node.rest_w + motion_of(p, i));
   }
 }
 
@@ -153,10 +152,10 @@ void compute_nodal_force(const Model& model, State& state, Scratch& scratch) PAL
   p.per_N = scratch.driven ? 0.0 : 1.0 / model.params.coupling_N_per_m;
   p.per_Nm = scratch.driven ? 0.0 : 1.0 / model.params.coupling_Nm_per_rad;
   p.force_N = p.torque_Nm = {};
-  const Twist free = scratch.driven ? Twist{} : twist_between(state.tool_w, state.device_w);
+  const Twist drift = scratch.driven ? Twist{} : twist_between(state.tool_w, state.device_w);
   const Pose before = scratch.driven ? state.tool_previous_w : state.safety.tool_corrected_w;
-  if (p.count > 0) solve_contacts(model, state, scratch, free, before);
-  place_tool(model, state, scratch, free);
+  if (p.count > 0) solve_contacts(model, state, scratch, drift, before);
+  place_tool(model, state, scratch, drift);
   if (p.count > 0) set_stiffness(state, scratch);
   remember(model, state, scratch);
   list_contacts(state, scratch);

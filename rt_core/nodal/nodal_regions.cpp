@@ -29,10 +29,9 @@ struct Sums {
   std::int32_t slipping = 0, count = 0;
 };
 
-void add(const Model& model, const State& state, const Scratch& scratch, const Contact& contact, Sums& s) PALPATE_RT {
+void add(const Model& model, const Scratch& scratch, const Contact& contact, Sums& s) PALPATE_RT {
   const ContactNode& node = scratch.nodal.node[contact.point];
-  const NodalContact& memory = state.nodal.contact[contact.point];
-  const Vec3 on_tool = -memory.force_w;
+  const Vec3 on_tool = -push_w(node);
   s.centre += contact.force_N * contact.position_w;
   s.normal += contact.force_N * contact.normal_w;
   s.friction += on_tool - contact.force_N * contact.normal_w;
@@ -40,7 +39,7 @@ void add(const Model& model, const State& state, const Scratch& scratch, const C
   s.torque += cross(node.arm_w, on_tool);
   s.carry += contact.force_N * motion_of(scratch.nodal, contact.point);
   s.load += contact.force_N;
-  s.energy += 0.5 * dot(memory.force_w, motion_of(scratch.nodal, contact.point));
+  s.energy += 0.5 * dot(push_w(node), motion_of(scratch.nodal, contact.point));
   s.area += model.nodal_vertex[static_cast<std::size_t>(node.vertex)].area_m2;
   s.slipping += node.push.slips ? 1 : 0;
   s.count += 1;
@@ -92,7 +91,7 @@ void label(State& state, Scratch& scratch, const Clusters& clusters) PALPATE_RT 
   }
   for (std::int32_t i = 0; i < scratch.contact_count; ++i) {  // bound: kMaxContacts
     const Contact& contact = scratch.contact[i];
-    state.nodal.contact[contact.point].region = contact.region;
+    state.nodal.contact[i].region = contact.region;  // both list the pushing nodes in order
     scratch.nodal.node[contact.point].region = contact.region;
   }
 }
@@ -150,7 +149,7 @@ void find_nodal_regions(const Model& model, State& state, Scratch& scratch) PALP
   Sums sums[kMaxRegions];
   for (std::int32_t i = 0; i < scratch.contact_count; ++i) {  // bound: kMaxContacts
     const Contact& contact = scratch.contact[i];
-    if (contact.region >= 0) add(model, state, scratch, contact, sums[contact.region]);
+    if (contact.region >= 0) add(model, scratch, contact, sums[contact.region]);
   }
   for (std::int32_t c = 0; c < clusters.count; ++c) {  // bound: kMaxContacts
     const Cluster& cluster = clusters.cluster[c];
