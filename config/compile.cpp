@@ -20,6 +20,11 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
+// Whether pieces press with whole tips instead of many tool points.
+bool has_tips(const SceneDesc& scene) {
+  return scene.contact.law == ContactLaw::kTool || scene.contact.law == ContactLaw::kTable;
+}
+
 // One bake: fills `image` and `report` step by step; later steps use what earlier ones wrote.
 class Compiler {
  public:
@@ -37,6 +42,7 @@ class Compiler {
     add_tool();
     add_articulation();
     add_distances();
+    bake_response(scene_, image_, report_.response, report_.warnings);
     add_device();
     add_skeleton();
     CompileResult result{write_image(image_), std::move(report_)};
@@ -129,7 +135,8 @@ class Compiler {
 
     report_.friction = friction_coefficients(scene_.friction);
     p.friction_k_N = report_.friction.k_N;
-    p.friction_beta = scene_.friction.beta;
+    p.friction_beta = report_.friction.beta;
+    p.friction_slip_m = scene_.friction.slip_m;
     p.friction_mu_dynamic = report_.friction.mu_dynamic;
     if (is_nodal()) add_nodal_laws();
   }
@@ -179,7 +186,8 @@ class Compiler {
     for (std::size_t i = 0; i < tool.piece.size(); ++i) {
       const std::string label = "tool.piece[" + std::to_string(i) + "]";
       const ToolPiece& piece = tool.piece[i];
-      if (piece.point_count == 0 || is_nodal()) continue;  // nodal: the exact pieces touch
+      if (piece.point_count == 0) continue;
+      if (has_tips(scene_) || is_nodal()) continue;  // exact shapes touch
       if (piece.margin_m < scene_.contact.max_depth_m)
         warn(label + ": its margin of " + number_text(1e3 * piece.margin_m) +
              " mm is below contact.max_depth_mm; deeper than the margin the direction of contact can jump");
@@ -244,11 +252,21 @@ class Compiler {
     return spacing;
   }
 
+  // Tips are regions of their own: regions split at 1.5 times the distance within which they join.
+  double tip_distance_m() const {
+    double nearest = 0.020;
+    for (std::size_t a = 0; a < image_.tool_point.size(); ++a)
+      for (std::size_t b = 0; b < a; ++b)
+        nearest = std::min(nearest, norm(image_.tool_point[a].position_tool_m - image_.tool_point[b].position_tool_m));
+    return clamp_to(0.5 * nearest, 1e-6, 1.0);
+  }
+
   void add_distances() {
     ModelParams& p = image_.params;
     const double spacing = point_spacing_m();
     p.cluster_distance_m = !is_auto(scene_.contact.cluster_distance_m) ? scene_.contact.cluster_distance_m
                            : is_nodal()                                ? clamp_to(cluster_distance_m_, 1e-6, 1.0)
+                           : has_tips(scene_)                          ? tip_distance_m()
                            : spacing > 0                               ? clamp_to(2 * spacing, 1e-6, 1.0)
                                                                        : 0.010;
     report_.cluster_distance_m = p.cluster_distance_m;
@@ -295,7 +313,8 @@ class Compiler {
 
   void add_skeleton() {
     if (is_nodal() || scene_.skeleton.law == SkeletonLaw::kNone) return;
-    report_.exact_anchors = scene_.skeleton.anchors == AnchorSource::kShape && has_exact_anchors(scene_.body.shape);
+    report_.exact_anchors = scene_.skeleton.anchors == AnchorSource::kShape && has_exact_anchors(scene_.body.shape) &&
+                            scene_.body.axis == BodyAxis::kY;
     std::vector<AnchorPoint> anchors = report_.exact_anchors ? exact_anchors(scene_.body) : mesh_anchors(mesh_);
     limit_anchors(mesh_, scene_.skeleton.anchors_min, scene_.skeleton.anchors_max, anchors);
     add_anchors(anchors);
@@ -373,6 +392,8 @@ SurfaceMesh make_body(const SceneDesc& scene, std::vector<std::string>& warnings
       break;
     case BodyShape::kCylinder:
       mesh = make_cylinder(body.radius_m, body.height_m, body.triangles);
+      if (body.axis == BodyAxis::kX)  // a turn about z, then onto the plane y = 0 over the origin
+        for (Vec3& p : mesh.vertex_m) p = {p.y - 0.5 * body.height_m, body.radius_m - p.x, p.z};
       break;
     case BodyShape::kBox:
       mesh = make_box(body.size_m, body.triangles);

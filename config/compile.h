@@ -8,6 +8,7 @@
 #include "config/contact_fit.h"
 #include "config/image_writer.h"
 #include "config/progress.h"
+#include "config/response/tip_bake.h"
 #include "config/scene.h"
 
 namespace palpate {
@@ -29,6 +30,7 @@ struct CompileReport {
   ContactCoefficients contact;
   double reference_area_m2 = 0, cluster_distance_m = 0;
   FrictionCoefficients friction;
+  ResponseReport response;
   StiffnessBound bound, rotational_bound;  // N/m, N m/rad
   double coupling_N_per_m = 0, coupling_Nm_per_rad = 0;
   std::int32_t tool_points = 0;

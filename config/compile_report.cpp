@@ -38,6 +38,12 @@ std::string report_text(const CompileReport& r) {
        r.contact.derivation.c_str());
   line(text, "           reference area %.4g mm2, cluster distance %.4g mm", 1e6 * r.reference_area_m2,
        1e3 * r.cluster_distance_m);
+  for (const std::string& tip : r.response.tip) line(text, "response   %s", tip.c_str());
+  if (r.response.curves > 0)
+    line(text, "response   %lld curves of %lld knots, %.4g bytes per vertex", static_cast<long long>(r.response.curves),
+         static_cast<long long>(r.response.knots), r.response.bytes_per_vertex);
+  if (r.response.slack_m > 0)
+    line(text, "           smooth surface up to %.4g um from its facets", 1e6 * r.response.slack_m);
   line(text, "friction   K = %.6g N^(1-beta), sliding coefficient %.4g", r.friction.k_N, r.friction.mu_dynamic);
   line(text, "coupling   %.5g N/m of %.5g admitted (%s); %.4g N m/rad of %.4g (%s)", r.coupling_N_per_m, r.bound.value,
        reason(r.bound), r.coupling_Nm_per_rad, r.rotational_bound.value, reason(r.rotational_bound));

@@ -39,6 +39,10 @@ ContactCoefficients contact_coefficients(const SceneDesc& scene) {
       c.k3_N_per_m3 = scene.cubic.k3_N_per_m3;
       c.derivation = "given in the scene";
       break;
+    case ContactLaw::kTool:
+    case ContactLaw::kTable:
+      c.derivation = "not used: the tips carry their own laws";
+      break;
     case ContactLaw::kHertz: {
       const double nu = effective_poisson_ratio(scene.material);
       const double depth = scene.hertz.fit_depth_m, radius = scene.hertz.tool_radius_m;
@@ -55,6 +59,11 @@ ContactCoefficients contact_coefficients(const SceneDesc& scene) {
 
 FrictionCoefficients friction_coefficients(const FrictionDesc& friction) {
   FrictionCoefficients c;
+  if (friction.law == FrictionLaw::kPresliding || friction.law == FrictionLaw::kPreslidingPaper) {
+    const double mu = is_auto(friction.mu_ref) ? 0.5 : friction.mu_ref;
+    return {mu, 1, mu, std::min(mu, 10.0)};
+  }
+  c.beta = friction.beta;
   const double reference = math::pow(friction.reference_force_N, 1 - friction.beta);
   if (is_auto(friction.k)) {
     c.mu_static_ref = is_auto(friction.mu_ref) ? 0.5 : friction.mu_ref;

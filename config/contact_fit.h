@@ -23,6 +23,7 @@ double effective_poisson_ratio(const MaterialDesc& material);
 
 struct FrictionCoefficients {
   double k_N = 0;  // N^(1 - beta)
+  double beta = 1;
   double mu_static_ref = 0;
   double mu_dynamic = 0;
 };

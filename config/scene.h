@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "config/procedural.h"
+#include "config/response/layer_contact.h"
 #include "rt_core/model.h"
 
 namespace palpate {
@@ -18,11 +19,13 @@ inline constexpr double kAuto = std::numeric_limits<double>::quiet_NaN();
 inline bool is_auto(double x) { return std::isnan(x); }
 
 enum class BodyShape : std::int32_t { kEllipsoid, kSphere, kCylinder, kBox, kRevolution, kHeart, kMesh, kClip, kTets };
+enum class BodyAxis : std::int32_t { kY, kX };
 struct BodyDesc {
   BodyShape shape = BodyShape::kEllipsoid;
   Vec3 half_axes_m{0.040, 0.030, 0.025};
   double radius_m = 0.030;
   double height_m = 0.060;
+  BodyAxis axis = BodyAxis::kY;
   Vec3 size_m{0.060, 0.060, 0.060};
   double width_m = 0.080;
   std::vector<ProfilePoint> profile;
@@ -60,7 +63,7 @@ struct SkeletonDesc {
   double section_radius_m = kAuto;
 };
 
-enum class ContactLaw : std::int32_t { kDuffing, kCubic, kHertz };
+enum class ContactLaw : std::int32_t { kDuffing, kCubic, kHertz, kTool, kTable };
 enum class DuffingCoefficient : std::int32_t { kStatic, kPaper };
 struct ContactDesc {
   ContactLaw law = ContactLaw::kDuffing;
@@ -96,6 +99,33 @@ struct HertzDesc {
   double fit_depth_m = 0.002;
 };
 
+// contact.law = "tool": the response of each piece's own tip.
+enum class SphereLaw : std::int32_t { kExact, kParabola };
+struct TipLawDesc {
+  double radius_m = kAuto;
+  double half_angle_rad = kAuto;
+  SphereLaw sphere = SphereLaw::kExact;
+  double body_radius_1_m = kAuto;
+  double body_radius_2_m = kAuto;
+};
+struct LayerDesc {
+  double thickness_m = 0;
+  LayerBase base = LayerBase::kBonded;
+};
+struct SeriesDesc {
+  double c0_m_per_N = 0;
+  double c1_m_per_N2 = 0;
+};
+struct PairDesc {
+  std::int32_t piece_a = 0, piece_b = 1;
+  double c_m_per_N = 0;
+  double h_ab_m_per_N2 = 0, h_ba_m_per_N2 = 0;
+};
+struct TableDesc {
+  std::string file;
+  bool smooth = false;
+};
+
 struct FrictionDesc {
   FrictionLaw law = FrictionLaw::kReturnMap;
   TangentialLaw tangential = TangentialLaw::kSeparable;
@@ -104,6 +134,7 @@ struct FrictionDesc {
   double k = kAuto;
   double beta = 0.75;
   double mu_dynamic = kAuto;
+  double slip_m = 1e-4;
 };
 
 struct ShapeDesc {
@@ -182,8 +213,9 @@ struct PathDesc {
 // Where the scene came from, so that later checks can still name file and line.
 struct SceneSource {
   std::string file = "scene";
-  std::string directory;            // of the file, with a trailing slash; mesh paths are relative to it
-  std::map<std::string, int> line;  // "contact.max_depth_mm" -> line; only keys present in the file
+  std::string directory;                       // of the file, with a trailing slash; mesh paths are relative to it
+  std::map<std::string, std::string> overlay;  // file of the keys that an overlay gave
+  std::map<std::string, int> line;             // "contact.max_depth_mm" -> line; only keys present in the file
   bool has(const std::string& key) const { return line.count(key) != 0; }
   // "file:line: key" for an error text; without a line when the key is absent.
   std::string where(const std::string& key) const;
@@ -201,6 +233,11 @@ struct SceneDesc {
   DuffingDesc duffing;
   CubicDesc cubic;
   HertzDesc hertz;
+  TipLawDesc tip;
+  LayerDesc layer;
+  SeriesDesc series;
+  std::vector<PairDesc> pair;
+  TableDesc table;
   FrictionDesc friction;
   ShapeDesc shape;
   CouplingDesc coupling;
@@ -212,8 +249,15 @@ struct SceneDesc {
   SceneSource source;
 };
 
+// What is laid over a scene, in order: files that hold some of its tables (another tool, another material), then single
+// keys, "body.material.youngs_modulus_Pa=1e6". Tables are merged; values and lists, [[tool.piece]] among them, replace.
+struct SceneOverlays {
+  std::vector<std::string> file;
+  std::vector<std::string> setting;
+};
+
 // Reads and checks a scene file. Throws ConfigError: "FILE:LINE: KEY: what is wrong; what is allowed; what to do".
-SceneDesc load_scene(const std::string& path);
+SceneDesc load_scene(const std::string& path, const SceneOverlays& overlays = {});
 // The same from text; `file` names it in errors.
 SceneDesc parse_scene(const std::string& text, const std::string& file);
 

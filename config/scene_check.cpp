@@ -26,8 +26,8 @@ void check_effect(const SceneDesc& scene, const std::string& table, std::initial
 void check_body_keys(const SceneDesc& scene) {
   const auto only = [&](std::initializer_list<const char*> used, const char* shape) {
     check_effect(scene, "body",
-                 {"half_axes_mm", "radius_mm", "height_mm", "size_mm", "width_mm", "profile_mm", "mesh", "scale",
-                  "fix_orientation", "triangles"},
+                 {"half_axes_mm", "radius_mm", "height_mm", "size_mm", "width_mm", "axis", "profile_mm", "mesh",
+                  "scale", "fix_orientation", "triangles"},
                  used, std::string("with shape = \"") + shape + "\"");
   };
   switch (scene.body.shape) {
@@ -36,7 +36,7 @@ void check_body_keys(const SceneDesc& scene) {
     case BodyShape::kSphere:
       return only({"radius_mm", "triangles"}, "sphere");
     case BodyShape::kCylinder:
-      return only({"radius_mm", "height_mm", "triangles"}, "cylinder");
+      return only({"radius_mm", "height_mm", "axis", "triangles"}, "cylinder");
     case BodyShape::kBox:
       return only({"size_mm", "triangles"}, "box");
     case BodyShape::kRevolution:
@@ -99,6 +99,11 @@ void check_contact(const SceneDesc& scene) {
   unused_table("duffing", ContactLaw::kDuffing, "duffing");
   unused_table("cubic", ContactLaw::kCubic, "cubic");
   unused_table("hertz", ContactLaw::kHertz, "hertz");
+  for (const char* table : {"tip", "layer", "series", "pair", "pair[0]"})
+    unused_table(table, ContactLaw::kTool, "tool");
+  unused_table("table", ContactLaw::kTable, "table");
+  if (scene.contact.law == ContactLaw::kTable && scene.table.file.empty())
+    fail(scene, "contact.table.file", "missing; law = \"table\" needs the path of a CSV file");
   if (scene.contact.law == ContactLaw::kCubic && !(scene.cubic.k1_N_per_m > 0 || scene.cubic.k3_N_per_m3 > 0))
     fail(scene, "contact.cubic", "k1_N_per_m and k3_N_per_m3 are both 0: no force; set at least one");
   if (scene.contact.law == ContactLaw::kDuffing && !(scene.duffing.omega0 > 0 || scene.duffing.beta0sq_eps > 0))
@@ -143,6 +148,59 @@ void check_backend(const SceneDesc& scene) {
       fail(scene, "tool.piece[" + std::to_string(i) + "].shape",
            "\"hull\" is not available with contact.backend = \"nodal\"; use spheres, capsules, cylinders, cones or "
            "boxes");
+}
+
+// Laws of whole tips: what friction, coupling and the pieces must be.
+void check_tips(const SceneDesc& scene) {
+  if (scene.contact.law != ContactLaw::kTool && scene.contact.law != ContactLaw::kTable) return;
+  const FrictionLaw friction = scene.friction.law;
+  if (friction == FrictionLaw::kReturnMap || friction == FrictionLaw::kPaper)
+    fail(scene, "friction.law",
+         "this law stretches the springs of tool points, which contact.law = \"tool\" and \"table\" do not have; "
+         "allowed none, mindlin, presliding, presliding_paper");
+  if (scene.coupling.law == CouplingLaw::kTemporal)
+    fail(scene, "coupling.law", "\"temporal\" needs tool points with cubic springs; allowed none, coupled");
+  for (std::size_t i = 0; i < scene.piece.size(); ++i) {
+    const PieceDesc& piece = scene.piece[i];
+    const std::string label = "tool.piece[" + std::to_string(i) + "]";
+    if (piece.points == 0) continue;
+    if (piece.shape == PieceShape::kBox || piece.shape == PieceShape::kHull)
+      fail(scene, label + ".shape",
+           "a box or hull has no tip law; allowed sphere, capsule, cylinder (flat punch), cone, or points = 0");
+    if (piece.shape == PieceShape::kCone && piece.touches != TouchingEnd::kPlusZ)
+      fail(scene, label + ".touches", "a cone presses with its apex; set touches = \"plus_z\"");
+    if ((piece.shape == PieceShape::kCylinder || piece.shape == PieceShape::kCapsule) &&
+        piece.touches == TouchingEnd::kAll)
+      fail(scene, label + ".touches", "this shape presses with one end; set touches = \"minus_z\" or \"plus_z\"");
+    if (piece.points > 1)
+      fail(scene, label + ".points", std::to_string(piece.points) + "; a tip has one point: allowed 0 or 1");
+  }
+  const auto pieces = static_cast<std::int32_t>(scene.piece.size());
+  for (std::size_t i = 0; i < scene.pair.size(); ++i) {
+    const PairDesc& pair = scene.pair[i];
+    if (!(pair.piece_a < pieces && pair.piece_b < pieces && pair.piece_a != pair.piece_b))
+      fail(scene, "contact.pair[" + std::to_string(i) + "].piece_a",
+           "a pair needs two different pieces; allowed 0 to " + std::to_string(pieces - 1));
+  }
+  if (scene.pair.size() > static_cast<std::size_t>(kMaxTipPairs))
+    fail(scene, "contact.pair",
+         std::to_string(scene.pair.size()) + " pairs; allowed up to " + std::to_string(kMaxTipPairs));
+}
+
+void check_friction(const SceneDesc& scene) {
+  if (scene.friction.law == FrictionLaw::kCoulomb && scene.contact.backend != Backend::kNodal)
+    fail(scene, "friction.law",
+         "\"coulomb\" is friction in contact space of a finite-element body; allowed here none, return_map, paper, "
+         "mindlin, presliding, presliding_paper");
+  const bool presliding =
+      scene.friction.law == FrictionLaw::kPresliding || scene.friction.law == FrictionLaw::kPreslidingPaper;
+  if (presliding)
+    for (const char* key : {"beta", "mu_dynamic", "k", "tangential", "reference_force_N"})
+      if (scene.source.has(std::string("friction.") + key))
+        fail(scene, std::string("friction.") + key,
+             "has no effect with the presliding laws, whose limit is mu_ref times the normal force; remove it");
+  if (scene.friction.law != FrictionLaw::kPreslidingPaper && scene.source.has("friction.slip_distance_mm"))
+    fail(scene, "friction.slip_distance_mm", "has no effect unless friction.law = \"presliding_paper\"; remove it");
 }
 
 // Which dimensions each piece shape needs.
@@ -262,7 +320,9 @@ void check_scene(const SceneDesc& scene) {
   check_body(scene);
   check_contact(scene);
   check_backend(scene);
+  check_friction(scene);
   check_tool(scene);
+  check_tips(scene);
   check_articulation(scene);
   check_device_and_path(scene);
 }

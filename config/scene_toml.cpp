@@ -53,7 +53,14 @@ class Reader {
 
  private:
   [[noreturn]] void fail(const toml::node& node, const std::string& key, const std::string& what) const {
-    throw ConfigError(scene_.source.file + ":" + std::to_string(node.source().begin.line) + ": " + key + ": " + what);
+    const std::string file = node.source().path ? *node.source().path : scene_.source.file;
+    throw ConfigError(file + ":" + std::to_string(node.source().begin.line) + ": " + key + ": " + what);
+  }
+
+  void remember(const std::string& path, const toml::node& node) {
+    scene_.source.line.emplace(path, static_cast<int>(node.source().begin.line));
+    if (node.source().path && *node.source().path != scene_.source.file)
+      scene_.source.overlay.emplace(path, *node.source().path);
   }
 
   static std::string joined(const std::string& table, const std::string& key) {
@@ -98,7 +105,7 @@ class Reader {
       if (spec != nullptr)
         for (const KeySpec& k : spec->keys)
           if (key == k.key) known = &k;
-      scene_.source.line.emplace(path, static_cast<int>(value.source().begin.line));
+      remember(path, value);
       if (known != nullptr)
         read_value(value, path, *known, fields);
       else if (is_table(joined(name, key)))
@@ -125,7 +132,7 @@ class Reader {
       for (const toml::node& element : *list) {
         const std::string label = path + "[" + std::to_string(index++) + "]";
         if (!element.is_table()) fail(element, label, "must be a table");
-        scene_.source.line.emplace(label, static_cast<int>(element.source().begin.line));
+        remember(label, element);
         read_table(*element.as_table(), path, label);
       }
     } else if (const toml::table* table = value.as_table()) {
@@ -259,22 +266,63 @@ class Reader {
 
 std::string SceneSource::where(const std::string& key) const {
   const auto found = line.find(key);
-  return file + (found == line.end() ? "" : ":" + std::to_string(found->second)) + ": " + key;
+  const auto other = overlay.find(key);
+  return (other == overlay.end() ? file : other->second) +
+         (found == line.end() ? "" : ":" + std::to_string(found->second)) + ": " + key;
 }
 
-SceneDesc parse_scene(const std::string& text, const std::string& file) {
-  SceneDesc scene;
-  scene.source.file = file;
-  const std::filesystem::path parent = std::filesystem::path(file).parent_path();
-  scene.source.directory = parent.empty() ? "" : parent.string() + "/";
-  toml::table root;
+namespace {
+
+toml::table parse_text(const std::string& text, const std::string& file) {
   try {
-    root = toml::parse(text, file);
+    return toml::parse(text, file);
   } catch (const toml::parse_error& error) {
     const auto where = error.source().begin;
     throw ConfigError(file + ":" + std::to_string(where.line) + ": not valid TOML, column " +
                       std::to_string(where.column) + ": " + std::string(error.description()));
   }
+}
+
+std::string read_text_file(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error))
+    throw ConfigError(path + ": no such scene file; give the path of a .toml file");
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw ConfigError(path + ": cannot read the scene file; check its permissions");
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+// Tables are merged key by key; values and lists replace what was there. Nodes are moved: only so do they keep their
+// place in the file.
+void lay_over(toml::table& base, toml::table&& over) {
+  for (auto&& [key, value] : over) {
+    toml::node* old = base.get(key.str());
+    if (old != nullptr && old->is_table() && value.is_table())
+      lay_over(*old->as_table(), std::move(*value.as_table()));
+    else
+      value.visit([&](auto& node) { base.insert_or_assign(key, std::move(node)); });
+  }
+}
+
+// "key=value" with a dotted key; a value that is not TOML is taken as text, so that words need no quotes.
+toml::table parse_setting(const std::string& setting) {
+  const auto equals = setting.find('=');
+  if (equals == std::string::npos || equals == 0)
+    throw ConfigError("--set " + setting + ": write KEY=VALUE, as in --set body.material.youngs_modulus_Pa=1e6");
+  try {
+    return toml::parse(std::string_view(setting), std::string_view("--set"));
+  } catch (const toml::parse_error&) {
+    return parse_text(setting.substr(0, equals) + " = \"" + setting.substr(equals + 1) + "\"", "--set");
+  }
+}
+
+SceneDesc scene_from(toml::table&& root, const std::string& file, const SceneOverlays& overlays) {
+  SceneDesc scene;
+  scene.source.file = file;
+  const std::filesystem::path parent = std::filesystem::path(file).parent_path();
+  scene.source.directory = parent.empty() ? "" : parent.string() + "/";
+  for (const std::string& path : overlays.file) lay_over(root, parse_text(read_text_file(path), path));
+  for (const std::string& setting : overlays.setting) lay_over(root, parse_setting(setting));
   Reader(scene).read(root);
   if (!scene.source.has("body.shape"))
     throw ConfigError(file + ": body.shape: missing; add a [body] table with a shape");
@@ -282,14 +330,14 @@ SceneDesc parse_scene(const std::string& text, const std::string& file) {
   return scene;
 }
 
-SceneDesc load_scene(const std::string& path) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error))
-    throw ConfigError(path + ": no such scene file; give the path of a .toml file");
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw ConfigError(path + ": cannot read the scene file; check its permissions");
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  return parse_scene(text, path);
+}  // namespace
+
+SceneDesc parse_scene(const std::string& text, const std::string& file) {
+  return scene_from(parse_text(text, file), file, {});
+}
+
+SceneDesc load_scene(const std::string& path, const SceneOverlays& overlays) {
+  return scene_from(parse_text(read_text_file(path), path), path, overlays);
 }
 
 }  // namespace palpate

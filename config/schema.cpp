@@ -70,7 +70,8 @@ const KeySpec kBody[] = {
                              true),
     list<&BodyDesc::half_axes_m>(kVec3, "half_axes_mm", 1, 5000, kMilli, "ellipsoid: half axes along x, y, z"),
     number<&BodyDesc::radius_m>("radius_mm", 1, 5000, kMilli, "sphere, cylinder: radius"),
-    number<&BodyDesc::height_m>("height_mm", 1, 10000, kMilli, "cylinder: height along y"),
+    number<&BodyDesc::height_m>("height_mm", 1, 10000, kMilli, "cylinder: height along its axis"),
+    choice<&BodyDesc::axis>("axis", "y|x", "cylinder: standing (y) or lying along x"),
     list<&BodyDesc::size_m>(kVec3, "size_mm", 1, 10000, kMilli, "box: sides along x, y, z"),
     number<&BodyDesc::width_m>("width_mm", 1, 10000, kMilli, "heart: width along x; it is about as high"),
     list<&BodyDesc::profile>(KeyKind::kPairs, "profile_mm", -10000, 10000, kMilli,
@@ -120,9 +121,10 @@ const KeySpec kSkeleton[] = {
         "radius of the beams' circular section; auto: the beams share the body's volume, S = V / sum of lengths"),
 };
 const KeySpec kContact[] = {
-    choice<&ContactDesc::law>("law", "duffing|cubic|hertz",
-                              "force per unit weight f = k1 D + k3 D^3: from Duffing parameters, given directly, or "
-                              "fitted to Hertz' contact"),
+    choice<&ContactDesc::law>("law", "duffing|cubic|hertz|tool|table",
+                              "force per unit weight of each tool point, f = k1 D + k3 D^3: from Duffing parameters, "
+                              "given directly, or fitted to Hertz' contact; or the response of the whole tip: of the "
+                              "piece's own shape (tool), or measured curves (table)"),
     choice<&ContactDesc::weight>("weight", "winkler|area|paper",
                                  "weight of a tool point: area / reference area (force continuous as points enter and "
                                  "leave), share of the area in contact, or 1/n"),
@@ -174,8 +176,48 @@ const KeySpec kHertz[] = {
     number<&HertzDesc::fit_depth_m>("fit_depth_mm", 0.001, 1000, kMilli,
                                     "depth at which value and slope match; within 6.8 % of Hertz up to 1.25 times it"),
 };
+const KeySpec kTip[] = {
+    number_or_auto<&TipLawDesc::radius_m>("radius_mm", 0.001, 1e4, kMilli,
+                                          "radius of sphere or flat punch; auto: the piece's"),
+    number_or_auto<&TipLawDesc::half_angle_rad>("half_angle_deg", 1, 89, kDegree,
+                                                "cone: angle between axis and side; auto: the piece's"),
+    choice<&TipLawDesc::sphere>("sphere", "exact|parabola",
+                                "shape of the sphere: true, or the parabola of Hertz (1882) and of the paper"),
+    number_or_auto<&TipLawDesc::body_radius_1_m>("body_radius_1_mm", -1e5, 1e5, kMilli,
+                                                 "sphere: principal radius of the body where it is touched; 0 flat, "
+                                                 "negative hollow; auto: of a cylinder, sphere or box"),
+    number_or_auto<&TipLawDesc::body_radius_2_m>("body_radius_2_mm", -1e5, 1e5, kMilli, "the other principal radius"),
+};
+const KeySpec kLayer[] = {
+    number<&LayerDesc::thickness_m>("thickness_mm", 0, 1e4, kMilli,
+                                    "the body is a layer this thick on a rigid base; 0: as thick as it needs to be"),
+    choice<&LayerDesc::base>("base", "bonded|slip", "how the layer is held by its base"),
+};
+const KeySpec kSeries[] = {
+    number_or_auto<&SeriesDesc::c0_m_per_N>(
+        "c0_mm_per_N", -1e3, 1e3, kMilli,
+        "far-field compliance c0; auto: from one linear press by finite elements (bodies of revolution)"),
+    number_or_auto<&SeriesDesc::c1_m_per_N2>("c1_mm_per_N2", -1e3, 1e3, kMilli,
+                                             "its change with the force, c1; auto: from one large-strain press"),
+};
+const KeySpec kPair[] = {
+    integer<&PairDesc::piece_a>("piece_a", 0, kMaxPieces - 1, "a tool piece, counted from 0"),
+    integer<&PairDesc::piece_b>("piece_b", 0, kMaxPieces - 1, "another"),
+    number<&PairDesc::c_m_per_N>("c_mm_per_N", -1e3, 1e3, kMilli, "travel of one per newton on the other"),
+    number<&PairDesc::h_ab_m_per_N2>("h_ab_mm_per_N2", -1e3, 1e3, kMilli,
+                                     "second order: energy h_ab F_a^2 F_b / 2 + h_ba F_b^2 F_a / 2"),
+    number<&PairDesc::h_ba_m_per_N2>("h_ba_mm_per_N2", -1e3, 1e3, kMilli, "second order, the other way round"),
+};
+const KeySpec kTable[] = {
+    text<&TableDesc::file>(
+        "file", 4096,
+        "CSV of presses, relative to the scene file: depth_mm,force_N, or with x_mm,y_mm,z_mm before "
+        "them for presses at several places; each starts at 0,0",
+        true),
+    boolean<&TableDesc::smooth>("smooth", "pool rows whose force falls instead of refusing them"),
+};
 const KeySpec kFriction[] = {
-    choice<&FrictionDesc::law>("law", "none|return_map|paper|mindlin|coulomb",
+    choice<&FrictionDesc::law>("law", "none|return_map|paper|mindlin|coulomb|presliding|presliding_paper",
                                "friction law; coulomb: nodal only, with the coefficient mu_ref"),
     choice<&FrictionDesc::tangential>("tangential", "separable|radial",
                                       "sticking force from each depth component by itself, or from the whole depth"),
@@ -188,6 +230,8 @@ const KeySpec kFriction[] = {
     number<&FrictionDesc::beta>("beta", 0.5, 1, 1, "exponent of the static limit; 2/3 for truly elastic contact"),
     number_or_auto<&FrictionDesc::mu_dynamic>("mu_dynamic", 0, 10, 1,
                                               "sliding coefficient; auto: 0.8 of the static one at F_ref"),
+    number<&FrictionDesc::slip_m>("slip_distance_mm", 1e-6, 100, kMilli,
+                                  "presliding_paper: displacement at which the contact slides"),
 };
 const KeySpec kShape[] = {
     choice<&ShapeDesc::interpolation>("interpolation", "rbf|displacement_angle",
@@ -287,6 +331,7 @@ void* open(SceneDesc& scene) {
 }
 void* open_top(SceneDesc& scene) { return &scene; }
 void* open_piece(SceneDesc& scene) { return &scene.piece.emplace_back(); }
+void* open_pair(SceneDesc& scene) { return &scene.pair.emplace_back(); }
 void* open_point(SceneDesc& scene) { return &scene.path.point.emplace_back(); }
 void* open_gripper(SceneDesc& scene) {
   scene.articulation = Articulation::kGripper;
@@ -305,6 +350,13 @@ const TableSpec kTables[] = {
     {"contact.cubic", false, "With law = \"cubic\".", kCubic, open<&SceneDesc::cubic>},
     {"contact.hertz", false, "With law = \"hertz\".", kHertz, open<&SceneDesc::hertz>},
     {"contact.nodal", false, "With backend = \"nodal\".", kNodal, open<&SceneDesc::nodal>},
+    {"contact.tip", false, "With law = \"tool\".", kTip, open<&SceneDesc::tip>},
+    {"contact.layer", false, "With law = \"tool\": exact response of a thin body.", kLayer, open<&SceneDesc::layer>},
+    {"contact.series", false, "With law = \"tool\": the body's own give, travel = tip's + c0 F + c1 F^2.", kSeries,
+     open<&SceneDesc::series>},
+    {"contact.pair", true, "With law = \"tool\": how two tips lean on one another; other pairs use the far field.",
+     kPair, open_pair},
+    {"contact.table", false, "With law = \"table\": measured presses.", kTable, open<&SceneDesc::table>},
     {"friction", false, "Friction per contact region.", kFriction, open<&SceneDesc::friction>},
     {"shape", false, "How the deformed surface is drawn. No effect on forces.", kShape, open<&SceneDesc::shape>},
     {"coupling", false, "Several contact regions at once.", kCoupling, open<&SceneDesc::coupling>},

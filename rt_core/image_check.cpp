@@ -1,5 +1,7 @@
 #include "rt_core/image_check.h"
 
+#include "rt_core/response/response_check.h"
+
 namespace palpate {
 
 namespace {
@@ -241,7 +243,8 @@ ImageResult check_arrays(const Model& model) noexcept {
   if (const ImageResult result = check_skeleton(model); result.error != ImageError::kNone) return result;
   if (const ImageResult result = check_tool(model); result.error != ImageError::kNone) return result;
   if (const ImageResult result = check_articulation(model); result.error != ImageError::kNone) return result;
-  return check_nodal(model);
+  if (const ImageResult result = check_nodal(model); result.error != ImageError::kNone) return result;
+  return check_response(model);
 }
 
 }  // namespace palpate

@@ -39,6 +39,23 @@ inline constexpr std::int32_t kClosestPointIterations = 32;
 inline constexpr std::int32_t kCoupledNewtonIterations = 5;
 // Newton iterations of the inverse cubic law: relative error below 7e-16 after 5.
 inline constexpr std::int32_t kInverseLawIterations = 5;
+// Knots of one factor table of a tip law: 128 equal intervals of the root of the depth; a C1 cubic through exact values
+// and slopes is then within 1e-9 of the exact layer and sphere factors (tests/response). Fixed at bake.
+inline constexpr std::int32_t kFactorKnots = 129;
+// Knots shared by all tabulated responses of a scene; a query is a binary search of 6 steps. Refused at bake.
+inline constexpr std::int32_t kMaxResponseKnots = 64;
+// Pairs of tips with a stated coupling: all pairs of 8 tips. Refused at bake.
+inline constexpr std::int32_t kMaxTipPairs = 28;
+// Newton steps of a contact's foot on the smooth surface (3 per triangle suffice) and triangles it may walk over.
+// Overflow: the last foot is kept, Status::kFootHeld.
+inline constexpr std::int32_t kFootNewtonSteps = 24;
+inline constexpr std::int32_t kFootWalk = 8;
+// Newton steps, with bisection as guard, of one tip's series law: 4 suffice for every law tested; 64 bisections alone
+// reach double precision. Overflow: Status::kNotConverged.
+inline constexpr std::int32_t kSeriesIterations = 64;
+// Damped Newton steps of several coupled tips, and halvings of one step. Overflow: Status::kNotConverged.
+inline constexpr std::int32_t kTipNewtonIterations = 10;
+inline constexpr std::int32_t kTipStepHalvings = 4;
 // A lost region keeps its identity this long and this close, so a bounce does not lose its friction history.
 inline constexpr std::int32_t kRegionMemoryTicks = 50;
 inline constexpr double kRegionMemoryDistance_m = 2e-3;

@@ -12,7 +12,18 @@
 namespace palpate {
 
 enum class ContactWeight : std::int32_t { kWinkler = 0, kArea = 1, kPaper = 2 };  // A_i/A_ref · A_i/ΣA · 1/n
-enum class FrictionLaw : std::int32_t { kNone = 0, kReturnMap = 1, kPaper = 2, kMindlin = 3, kCoulomb = 4 };
+enum class FrictionLaw : std::int32_t {
+  kNone = 0,
+  kReturnMap = 1,
+  kPaper = 2,
+  kMindlin = 3,
+  kCoulomb = 4,
+  kPresliding = 5,
+  kPreslidingPaper = 6
+};
+// What carries the normal force: cubic springs at the tool points, one scalar law per tool tip, or curves tabulated
+// over the surface.
+enum class ResponseLaw : std::int32_t { kPoints = 0, kTip = 1, kTable = 2 };
 enum class TangentialLaw : std::int32_t { kSeparable = 0, kRadial = 1 };
 enum class SkeletonLaw : std::int32_t { kNone = 0, kStiffness = 1, kPaper = 2 };
 enum class ShapeLaw : std::int32_t { kRbf = 0, kDisplacementAngle = 1 };
@@ -29,7 +40,7 @@ enum class NodalCarry : std::int32_t { kFarField = 0, kRest = 1 };
 // X(type, name, unit, lowest, highest, meaning). All are finite; the loader checks every range.
 #define PALPATE_MODEL_PARAMS(X)                                                                              \
   X(std::int32_t, contact_weight, "-", 0, 2, "how sample forces are weighted (ContactWeight)")               \
-  X(std::int32_t, friction_law, "-", 0, 4, "FrictionLaw")                                                    \
+  X(std::int32_t, friction_law, "-", 0, 6, "FrictionLaw")                                                    \
   X(std::int32_t, tangential_law, "-", 0, 1, "TangentialLaw")                                                \
   X(std::int32_t, skeleton_law, "-", 0, 2, "SkeletonLaw")                                                    \
   X(std::int32_t, shape_law, "-", 0, 1, "ShapeLaw: how anchor displacements spread over the surface")        \
@@ -46,6 +57,8 @@ enum class NodalCarry : std::int32_t { kFarField = 0, kRest = 1 };
   X(std::int32_t, articulation, "-", 0, 2, "Articulation: whether pieces of the tool move by joints")        \
   X(std::int32_t, reserved, "-", 0, 0, "keeps the doubles aligned")                                          \
   X(std::int32_t, nodal_carry, "-", 0, 1, "NodalCarry: where gaps and normals are taken")                    \
+  X(std::int32_t, response_law, "-", 0, 2, "ResponseLaw: what carries the normal force")                     \
+  X(std::int32_t, response_root, "-", 0, 1, "1: the knots of the tables are roots of depths")                \
   X(double, period_s, "s", 1e-5, 1e-1, "tick period")                                                        \
   X(double, k1_N_per_m, "N/m", 0, 1e9, "linear coefficient of the contact law, per unit weight")             \
   X(double, k3_N_per_m3, "N/m3", 0, 1e15, "cubic coefficient of the contact law, per unit weight")           \
@@ -75,7 +88,9 @@ enum class NodalCarry : std::int32_t { kFarField = 0, kRest = 1 };
   X(double, strain_limit, "-", 0, 10, "largest strain for which the linear body is trusted")                 \
   X(double, closing_rate_per_s, "1/s", 0, 1e3, "fastest change of a closing fraction")                       \
   X(double, stop_force_N, "N", 0, 1e6, "a joint stops where it would press a part harder than this")         \
-  X(double, body_mass_kg, "kg", 0, 1e9, "mass of the body: what a palm has to hold")
+  X(double, body_mass_kg, "kg", 0, 1e9, "mass of the body: what a palm has to hold")                         \
+  X(double, friction_slip_m, "m", 0, 1, "presliding_paper: stretch at which the contact slides")             \
+  X(double, smooth_slack_m, "m", 0, 4e-4, "how far the smooth surface stands off its facets, at most")
 
 struct ModelParams {
 #define PALPATE_FIELD(type, name, unit, lowest, highest, meaning) type name;
@@ -180,6 +195,40 @@ struct NodalVertex {
   double round_cosine = 1;
 };
 
+// Law of one tool tip, travel = local + c0 F + c1 F^2 (rt_core/response/tip_law.h): F(e) = coefficient e^(half_power/2)
+// S(sqrt(e / depth_max_m)), e the local indentation; S, the exact factor of a layer or of a sphere, is a table.
+struct TipLaw {
+  double coefficient;         // N/m^(half_power/2)
+  double depth_max_m;         // of e; beyond it everything continues by its tangent
+  double force_max_N;         // at depth_max_m
+  double c0_m_per_N;          // far field of the body
+  double c1_m_per_N2;         // its geometric nonlinearity
+  std::int32_t half_power;    // 2 flat punch, 3 sphere, 4 cone
+  std::int32_t first_factor;  // kFactorKnots entries of factor from here; -1: S = 1
+};
+// S and dS/dx at x = k / (kFactorKnots - 1), and the energy of the law there.
+struct FactorKnot {
+  double value;
+  double slope;
+  double energy_J;
+};
+// How two tips influence one another through the body: W = c F_a F_b + (h_ab F_a + h_ba F_b) F_a F_b / 2.
+struct TipPair {
+  std::int32_t piece_a, piece_b;
+  double c_m_per_N;
+  double h_ab_m_per_N2, h_ba_m_per_N2;
+};
+// Unit normals of the smooth surface at a triangle's corners: those of the vertex, but split where the edge is sharp.
+struct CornerNormals {
+  Vec3 normal[3];
+};
+// Tabulated force at one knot of one curve; slope is that of the force over the table's variable.
+struct ResponseKnot {
+  double force_N;
+  double slope;
+  double energy_J;
+};
+
 // X(element type, name, number of elements, frame, meaning). Sizes are fields of ModelSizes.
 #define PALPATE_MODEL_ARRAYS(X)                                                                                 \
   X(Vec3, vertex_m, n_vertex, "world", "rest surface vertices")                                                 \
@@ -199,7 +248,14 @@ struct NodalVertex {
   X(float, strain_gauge, n_strain_gauge, "world",                                                               \
     "strain per newton: 3 n_vertex rows of 6 components (xx yy zz xy yz zx) per gauge")                         \
   X(Joint, joint, n_joint, "tool", "joints of an articulated tool, parents first")                              \
-  X(Pose, grasp_w, n_grasp, "world", "tool pose for which the closed joint positions were made: 0 or 1")
+  X(Pose, grasp_w, n_grasp, "world", "tool pose for which the closed joint positions were made: 0 or 1")        \
+  X(CornerNormals, corner_normal, n_corner, "world", "smooth normals; empty for ResponseLaw::kPoints")          \
+  X(TipLaw, tip_law, n_tip_law, "-", "law of each piece's tip (kTip only)")                                     \
+  X(FactorKnot, factor, n_factor, "-", "factor tables of the tip laws, kFactorKnots each")                      \
+  X(TipPair, tip_pair, n_tip_pair, "-", "coupling of pairs of pieces; others use the far field")                \
+  X(double, knot, n_knot, "m or sqrt(m)", "depths (or their roots) of all curves, ascending from 0")            \
+  X(ResponseKnot, response, n_response, "-", "curves, n_knot entries each (tables only)")                       \
+  X(std::int32_t, vertex_response, n_vertex_response, "-", "curve of each vertex")
 
 // X(name, lowest, highest)
 #define PALPATE_MODEL_SIZES(X)       \
@@ -218,7 +274,14 @@ struct NodalVertex {
   X(n_compliance_f64, 0, 1 << 28)    \
   X(n_strain_gauge, 0, 1 << 26)      \
   X(n_joint, 0, kMaxJoints)          \
-  X(n_grasp, 0, 1)
+  X(n_grasp, 0, 1)                   \
+  X(n_corner, 0, 1 << 26)            \
+  X(n_tip_law, 0, kMaxPieces)        \
+  X(n_factor, 0, 1 << 16)            \
+  X(n_tip_pair, 0, kMaxTipPairs)     \
+  X(n_knot, 0, kMaxResponseKnots)    \
+  X(n_response, 0, 1 << 26)          \
+  X(n_vertex_response, 0, 1 << 26)
 
 struct ModelSizes {
 #define PALPATE_FIELD(name, lowest, highest) std::int64_t name;

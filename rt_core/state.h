@@ -146,10 +146,20 @@ struct Contact {
   double force_N = 0;  // normal force on the tool
 };
 
+// Where a tool point's centre stands over the smooth surface (rt_core/response/smooth_foot.h). Written by collide when
+// the model has corner normals; indexed by piece: such tools have one point per piece at most.
+struct SurfaceFoot {
+  Vec3 centre_w;  // of the tool point
+  std::int32_t triangle = -1;
+  Real weight[3] = {};     // area coordinates of the foot
+  Vec3 gradient_per_m[3];  // of the area coordinates when the centre moves; zero where the foot is held
+};
+
 struct Scratch {
   std::uint32_t status = 0;
   std::int32_t contact_count = 0;
   Contact contact[kMaxContacts];
+  SurfaceFoot foot[kMaxPieces];
   Wrench contact_wrench_w;  // sum over regions, on the tool, about the tool's origin
   double energy_J = 0;
   double residual_m = 0;

@@ -18,6 +18,7 @@ namespace {
 
 struct BakeOptions {
   std::string scene, output, dump;
+  SceneOverlays overlays;
   bool report = false, schema = false;
 };
 
@@ -31,8 +32,8 @@ int dump_image(const std::string& path) {
 int bake(const BakeOptions& options) {
   const std::string output =
       options.output.empty() ? std::filesystem::path(options.scene).stem().string() + ".pal" : options.output;
-  const CompileResult result =
-      compile_scene(load_scene(options.scene), isatty(STDERR_FILENO) != 0 ? progress_bar(stderr) : Progress{});
+  const CompileResult result = compile_scene(load_scene(options.scene, options.overlays),
+                                             isatty(STDERR_FILENO) != 0 ? progress_bar(stderr) : Progress{});
   std::string error;
   if (!save_image(output, result.bytes, error)) throw std::runtime_error(output + ": " + error);
   if (options.report) fmt::print("{}", report_text(result.report));
@@ -64,6 +65,11 @@ void add_bake_command(CLI::App& app, int& exit_code) {
       ->needs(scene);
   command->add_flag("--report", options->report, "print what the scene became: mesh, anchors, law, stiffness bounds")
       ->needs(scene);
+  command
+      ->add_option("--with", options->overlays.file,
+                   "lay a file with some of the scene's tables over it, such as another tool or material; repeatable")
+      ->needs(scene);
+  command->add_option("--set", options->overlays.setting, "KEY=VALUE: set one key; repeatable")->needs(scene);
   auto* dump = command->add_option("--dump", options->dump, "print the contents of an image instead")->excludes(scene);
   command->add_flag("--schema", options->schema, "print all keys of a scene file, as Markdown, instead")
       ->excludes(scene)
@@ -71,6 +77,8 @@ void add_bake_command(CLI::App& app, int& exit_code) {
   command->footer(
       "Examples:\n"
       "  palpate bake config/scenes/ellipsoid_mallet.toml -o mallet.pal --report\n"
+      "  palpate bake config/scenes/tools_on_cylinder.toml --with config/scenes/tools/cone_45.toml -o cone.pal\n"
+      "  palpate bake config/scenes/tools_on_cylinder.toml --set body.material.youngs_modulus_Pa=1e6\n"
       "  palpate bake --dump mallet.pal\n"
       "  palpate bake --schema > scene_keys.md");
   command->callback([options, &exit_code] { exit_code = run_bake(*options); });

@@ -47,6 +47,14 @@ void extend(Range& range, const Pose& p) { range.add(p.position_m); }
 void extend(Range& range, const ToolPoint& p) { range.add(p.position_tool_m); }
 void extend(Range& range, const NodalVertex& v) { range.add(v.area_m2); }
 void extend(Range& range, float x) { range.add(static_cast<double>(x)); }
+void extend(Range& range, std::int32_t i) { range.add(i); }
+void extend(Range& range, const CornerNormals& n) {
+  for (const Vec3& v : n.normal) range.add(v);
+}
+void extend(Range& range, const TipLaw& t) { range.add(t.force_max_N); }
+void extend(Range& range, const FactorKnot& k) { range.add(k.value); }
+void extend(Range& range, const TipPair& p) { range.add(p.c_m_per_N); }
+void extend(Range& range, const ResponseKnot& k) { range.add(k.force_N); }
 
 template <typename T>
 std::string array_row(const char* name, std::span<const T> values, const char* frame, const char* meaning) {

@@ -83,7 +83,7 @@ class VtuReader {
       if (offsets[c] < start || offsets[c] > static_cast<std::int64_t>(connectivity.size()))
         fail(piece.offset_debug(), "offset " + std::to_string(offsets[c]) + " of cell " + std::to_string(c) +
                                        " lies outside the connectivity");
-      add_cell(piece, c, types[c], first, &connectivity[0] + start, offsets[c] - start);
+      add_cell(piece, c, types[c], first, connectivity.data() + start, offsets[c] - start);
       start = offsets[c];
     }
   }

@@ -5,6 +5,7 @@
 #include "rt_core/collide/closest_point.h"
 #include "rt_core/deform/surface.h"
 #include "rt_core/nodal/nodal.h"
+#include "rt_core/response/smooth_foot.h"
 #include "rt_core/stages.h"
 
 namespace palpate {
@@ -85,6 +86,7 @@ class Collider {
                                                                             before_(state.tool_previous_w),
                                                                             root_(root_box(model)) {
     const bool temporal = static_cast<CouplingLaw>(model.params.coupling_law) == CouplingLaw::kTemporal;
+    smooth_ = !model.corner_normal.empty();
     reach_m_ = kSearchMargin_m + (temporal ? max_of(displacement_bound(model, state), 0.0) : 0.0);
   }
 
@@ -135,6 +137,7 @@ class Collider {
       state_.high_water.traversal_stack = surface.stack_high_water;
     }
     if (!surface.found) return forget(point);
+    if (smooth_) return touch_smooth(index, p, surface, tool_point);
     Real signed_distance = surface.signed_distance_m;
     point.normal_w = surface.normal_w;
     if (surface.truncated) {
@@ -146,6 +149,44 @@ class Collider {
     point.triangle = surface.triangle;
     point.gap_m = signed_distance - tool_point.margin_m;
     point.gap_bound_m = signed_distance < 0 ? point.gap_m : surface.lower_bound_m - tool_point.margin_m;
+    if (point.gap_m < 0) keep(index, point, tool_point);
+  }
+
+  // Contact with the smooth surface instead of its facets. Beyond a sharp edge the facet decides; below the focal
+  // surface a point in contact keeps its last place (a god-object).
+  void touch_smooth(std::int32_t index, Vec3 p, const SurfacePoint& surface, const ToolPoint& tool_point) PALPATE_RT {
+    PointState& point = state_.point[index];
+    SurfaceFoot& foot = scratch_.foot[tool_point.piece];
+    if (surface.truncated) scratch_.status |= Status::kTraversalTruncated;
+    const SmoothFoot smooth = smooth_foot(model_, p, surface.triangle);
+    foot = {};
+    foot.centre_w = p;
+    Real height = surface.signed_distance_m;
+    if (smooth.state == FootState::kFound) {
+      height = smooth.height_m;
+      point.closest_w = smooth.foot_w;
+      point.normal_w = smooth.normal_w;
+      point.triangle = smooth.triangle;
+      for (int k = 0; k < 3; ++k) {  // bound: 3
+        foot.weight[k] = smooth.weight[k];
+        foot.gradient_per_m[k] = smooth.gradient_per_m[k];
+      }
+    } else {
+      if (smooth.state == FootState::kFocal && point.gap_m < 0 && point.triangle >= 0) {
+        scratch_.status |= Status::kFootHeld;
+        height = dot(p - point.closest_w, point.normal_w);
+      } else {
+        point.closest_w = surface.closest_w;
+        point.normal_w = surface.normal_w;
+        point.triangle = surface.triangle;
+      }
+      facet_weights(model_, point.triangle, point.closest_w, foot.weight);
+    }
+    foot.triangle = point.triangle;
+    point.gap_m = height - tool_point.margin_m;
+    // The smooth surface may stand off the facets, towards the point, by the slack.
+    const Real reach = surface.lower_bound_m - tool_point.margin_m - model_.params.smooth_slack_m;
+    point.gap_bound_m = height < 0 ? point.gap_m : min_of(reach, point.gap_m);
     if (point.gap_m < 0) keep(index, point, tool_point);
   }
 
@@ -180,6 +221,7 @@ class Collider {
   RigidMap now_, before_;  // of the piece being visited
   const Box root_;
   Real reach_m_ = 0;
+  bool smooth_ = false;
 };
 
 }  // namespace

@@ -8,49 +8,16 @@
 #include "rt_core/force/contact_stiffness.h"
 #include "rt_core/force/coupled_regions.h"
 #include "rt_core/force/far_field.h"
-#include "rt_core/force/friction.h"
+#include "rt_core/force/region_friction.h"
+#include "rt_core/force/region_output.h"
 #include "rt_core/force/sort_contacts.h"
 #include "rt_core/nodal/nodal.h"
+#include "rt_core/response/compute_response.h"
 #include "rt_core/stages.h"
 
 namespace palpate {
 
 namespace {
-
-// A region out of contact exerts nothing but remembers its stretch until its slot is freed (a bounce keeps its friction
-// history); an empty slot remembers nothing.
-void clear_force(Region& region) PALPATE_RT {
-  region.normal_force_N = 0;
-  region.friction_force_w = {};
-  region.wrench_w = {};
-  region.depth_equivalent_m = 0;
-  region.far_field_m = 0;
-  region.energy_J = 0;
-  region.tangent_N_per_m = 0;
-  if (region.id != 0) return;
-  region.stretch_w = {};
-  region.tangential_k_N_per_m = 0;
-  region.friction = FrictionMode::kFree;
-  region.lean_normal_tool = {};
-}
-
-void clear_outputs(State& state, Scratch& scratch) PALPATE_RT {
-  scratch.contact_wrench_w = {};
-  scratch.energy_J = 0;
-  scratch.residual_m = 0;
-  for (Real& entry : state.contact_stiffness) entry = 0;  // bound: 36
-  const std::int32_t contacts = scratch.contact_count < kMaxContacts ? scratch.contact_count : kMaxContacts;
-  for (std::int32_t i = 0; i < contacts; ++i) scratch.contact[i].force_N = 0;  // bound: kMaxContacts
-}
-
-// Regions without a usable contact exert nothing.
-void clear_idle_regions(State& state, const SortedContacts& sorted) PALPATE_RT {
-  bool busy[kMaxRegions] = {};
-  for (std::int32_t r = 0; r < sorted.region_count; ++r) busy[sorted.slot[r]] = true;  // bound: kMaxRegions
-  for (std::int32_t s = 0; s < kMaxRegions; ++s) {                                     // bound: kMaxRegions
-    if (!busy[s]) clear_force(state.region[s]);
-  }
-}
 
 Vec3 usual_normal(const Region& region, const RegionContacts& contacts) PALPATE_RT {
   return squared_norm(region.normal_w) > 0.5 ? region.normal_w : contacts[0].normal_w;
@@ -125,13 +92,6 @@ void couple(const Model& model, State& state, Scratch& scratch, const SortedCont
   if (!(result.residual_m <= kCoupledTolerance_m)) scratch.status |= Status::kNotConverged;
 }
 
-// Stretch carried to the new tangent plane by the smallest rotation of the normal, its length kept.
-Vec3 carried(Vec3 stretch, Vec3 from_normal, Vec3 to_normal) PALPATE_RT {
-  const Vec3 turned = tangential_part(rotate(rotation_between(from_normal, to_normal), stretch), to_normal);
-  const Real length = norm(turned);
-  return length > 1e-15 ? (norm(stretch) / length) * turned : Vec3{};
-}
-
 // Normal load of one region, and where it acts. The stretch follows the turn of the normal; a centre that wanders over
 // the surface (rolling) does not change it.
 void press(const Model& model, const State& state, Scratch& scratch, Region& region, const RegionContacts& contacts,
@@ -171,74 +131,17 @@ void add_transferred(const Model& model, State& state, const SortedContacts& sor
   }
 }
 
-// Motion since the last tick of the material at `point` that moves rigidly from `before` to `now`.
-Vec3 carried_motion(const Pose& before, const Pose& now, Vec3 point) PALPATE_RT {
-  return point - transform(before, inverse_transform(now, point));
-}
-
-// Motion since the last tick of the tool material that is at `point` now, rotation included: exact where one piece
-// touches; the mean by force where pieces that move against one another share the region.
-Vec3 material_motion(const Model& model, const State& state, const RegionContacts& contacts, Vec3 point) PALPATE_RT {
-  if (!is_articulated(model)) return carried_motion(state.tool_previous_w, state.tool_w, point);
-  Vec3 sum;
-  Real total = 0;
-  std::int32_t last = -1;
-  Vec3 motion;
-  for (std::int32_t k = 0; k < contacts.count; ++k) {  // bound: points
-    const std::int32_t piece = model.tool_point[static_cast<std::size_t>(contacts[k].point)].piece;
-    if (piece != last) {
-      motion = carried_motion(carrier_previous_w(model, state, piece), carrier_w(model, state, piece), point);
-      last = piece;
-    }
-    sum += contacts[k].force_N * motion;
-    total += contacts[k].force_N;
-  }
-  return total > 0 ? (1.0 / total) * sum : motion;
-}
-
-FrictionForce drag(const Model& model, const State& state, Region& region, const RegionContacts& contacts,
-                   Real self_compliance) PALPATE_RT {
-  const FrictionParameters parameters = friction_parameters(model.params);
+// Friction of one region: its tangential spring is the points' own law.
+void slide_on_points(const Model& model, const State& state, Region& region, const RegionContacts& contacts,
+                     Real self_compliance, ContactStiffness& stiffness) PALPATE_RT {
+  region.depth_equivalent_m = law_depth_m(contact_law(model.params), region.normal_force_N);
   FrictionLoad load;
-  load.step_w = material_motion(model, state, contacts, region.centre_w);
-  load.normal_w = region.normal_w;
-  load.force_N = region.normal_force_N;
-  load.depth_m = region.depth_equivalent_m;
   // With the surface yielding under the region, its stiffness is that of the two springs in series.
   load.tangent_N_per_m = region.tangent_N_per_m / (1.0 + self_compliance * region.tangent_N_per_m);
-  const Real tangent = law_tangent_N_per_m(parameters.contact, load.depth_m);
+  const FrictionParameters parameters = friction_parameters(model.params);
+  const Real tangent = law_tangent_N_per_m(parameters.contact, region.depth_equivalent_m);
   load.depth_rate = tangent > 0 ? load.tangent_N_per_m / tangent : 1.0;
-  FrictionMemory memory{region.stretch_w, region.tangential_k_N_per_m, region.friction};
-  const FrictionForce result = friction_step(parameters, load, memory);
-  region.stretch_w = memory.stretch_w;
-  region.tangential_k_N_per_m = memory.stiffness_N_per_m;
-  region.friction = memory.mode;
-  return result;
-}
-
-void add_tangential_stiffness(ContactStiffness& stiffness, const FrictionForce& friction, Vec3 normal,
-                              Vec3 arm) PALPATE_RT {
-  const Vec3 axis = abs_of(normal.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-  const Vec3 any = unit_or(tangential_part(axis, normal), {});
-  const Vec3 along = unit_or(friction.direction_w, any), across = cross(normal, along);
-  add_spring(stiffness, friction.along_N_per_m, along, cross(arm, along));
-  add_spring(stiffness, friction.across_N_per_m, across, cross(arm, across));
-}
-
-// Friction of one region at its centre of pressure, added to its wrench and energy.
-void slide(const Model& model, const State& state, Region& region, const RegionContacts& contacts, Real self_compliance,
-           ContactStiffness& stiffness) PALPATE_RT {
-  region.depth_equivalent_m = law_depth_m(contact_law(model.params), region.normal_force_N);
-  const FrictionForce friction = drag(model, state, region, contacts, self_compliance);
-  const Vec3 arm = region.centre_w - state.tool_w.position_m;
-  const Vec3 force = friction.force_w + friction.normal_gain_N * region.normal_w;
-  region.normal_force_N += friction.normal_gain_N;
-  region.friction_force_w = friction.force_w;
-  region.wrench_w.force_N += force;
-  region.wrench_w.torque_Nm += cross(arm, force);
-  region.energy_J += friction.energy_J;
-  region.origin_w = region.centre_w - region.stretch_w;
-  add_tangential_stiffness(stiffness, friction, region.normal_w, arm);
+  slide(model, state, parameters, contacts, load, region, stiffness);
 }
 
 }  // namespace
@@ -252,6 +155,9 @@ void compute_force(const Model& model, State& state, Scratch& scratch) PALPATE_R
   if (sorted.region_count == 0) {
     if (is_articulated(model)) load_pieces(model, state, scratch);
     return;
+  }
+  if (static_cast<ResponseLaw>(model.params.response_law) != ResponseLaw::kPoints) {
+    return compute_response(model, state, scratch, sorted);
   }
 
   const ContactWeight weight = static_cast<ContactWeight>(model.params.contact_weight);
@@ -268,7 +174,7 @@ void compute_force(const Model& model, State& state, Scratch& scratch) PALPATE_R
   if (coupling == CouplingLaw::kTemporal) add_transferred(model, state, sorted);
   for (std::int32_t r = 0; r < sorted.region_count; ++r) {  // bound: kMaxRegions
     Region& region = state.region[sorted.slot[r]];
-    slide(model, state, region, sorted.contacts[r], scratch.vector[kSelfCompliance][r], stiffness);
+    slide_on_points(model, state, region, sorted.contacts[r], scratch.vector[kSelfCompliance][r], stiffness);
     scratch.contact_wrench_w.force_N += region.wrench_w.force_N;
     scratch.contact_wrench_w.torque_Nm += region.wrench_w.torque_Nm;
     scratch.energy_J += region.energy_J;

@@ -1,5 +1,6 @@
 #include "rt_core/force/friction.h"
 
+#include "rt_core/force/presliding.h"
 #include "rt_core/limits.h"
 #include "rt_core/math.h"
 
@@ -57,17 +58,24 @@ Real spring_stretch_m(const TangentialSpring& spring, Real force) PALPATE_RT {
   return max_of(stretch, 0.0);
 }
 
-TangentialSpring tangential_spring(const FrictionParameters& parameters, const FrictionLoad& load,
-                                   FrictionMemory& memory) PALPATE_RT {
-  if (parameters.law != FrictionLaw::kMindlin) {
-    return {parameters.contact, parameters.tangential == TangentialLaw::kRadial ? max_of(load.depth_m, 0.0) : 0.0};
-  }
+// Mindlin's stiffness of this tick. When it grows the stretch shrinks so that the force is kept; when it falls the
+// stretch stays.
+Real follow_stiffness(const FrictionParameters& parameters, const FrictionLoad& load,
+                      FrictionMemory& memory) PALPATE_RT {
   const Real stiffness = parameters.mindlin_ratio * max_of(load.tangent_N_per_m, 0.0);
   if (stiffness > memory.stiffness_N_per_m) {
     memory.stretch_w = (memory.stiffness_N_per_m / stiffness) * memory.stretch_w;
   }
   memory.stiffness_N_per_m = stiffness;
-  return {{stiffness, 0.0, kHuge}, 0.0};
+  return stiffness;
+}
+
+TangentialSpring tangential_spring(const FrictionParameters& parameters, const FrictionLoad& load,
+                                   FrictionMemory& memory) PALPATE_RT {
+  if (parameters.law != FrictionLaw::kMindlin) {
+    return {parameters.contact, parameters.tangential == TangentialLaw::kRadial ? max_of(load.depth_m, 0.0) : 0.0};
+  }
+  return {{follow_stiffness(parameters, load, memory), 0.0, kHuge}, 0.0};
 }
 
 // K F^beta; roots instead of a general power for the exponents in common use.
@@ -92,6 +100,26 @@ FrictionForce spring_response(const TangentialSpring& spring, Real depth_rate, V
   return result;
 }
 
+FrictionForce presliding_step(const FrictionParameters& parameters, const FrictionLoad& load, Vec3 step,
+                              FrictionMemory& memory) PALPATE_RT {
+  const Real limit = static_limit_N(parameters, load.force_N);
+  const bool paper = parameters.law == FrictionLaw::kPreslidingPaper;
+  const Real stiffness =
+      paper ? (parameters.slip_m > 0 ? limit / parameters.slip_m : 0.0) : follow_stiffness(parameters, load, memory);
+  const Real slip = paper ? parameters.slip_m : stiffness > 0 ? limit / stiffness : 0.0;
+  const Presliding moved = preslide(tangential_part(memory.stretch_w, load.normal_w), step, slip);
+  memory.stretch_w = moved.stretch_w;
+  memory.mode = moved.sliding ? FrictionMode::kSlip : FrictionMode::kStick;
+  const Real length = norm(moved.stretch_w);
+  FrictionForce result;
+  result.force_w = -stiffness * moved.stretch_w;
+  result.energy_J = 0.5 * stiffness * length * length;
+  result.direction_w = length > kNoStretch_m ? (1.0 / length) * moved.stretch_w : Vec3{};
+  result.along_N_per_m = moved.sliding ? 0.0 : stiffness;
+  result.across_N_per_m = stiffness;
+  return result;
+}
+
 }  // namespace
 
 FrictionParameters friction_parameters(const ModelParams& params) PALPATE_RT {
@@ -101,6 +129,7 @@ FrictionParameters friction_parameters(const ModelParams& params) PALPATE_RT {
   p.k_N = params.friction_k_N;
   p.beta = params.friction_beta;
   p.mu_dynamic = params.friction_mu_dynamic;
+  p.slip_m = params.friction_slip_m;
   p.mindlin_ratio = 2.0 * (1.0 - params.poisson_ratio) / (2.0 - params.poisson_ratio);
   p.contact = contact_law(params);
   return p;
@@ -124,9 +153,10 @@ FrictionForce friction_step(const FrictionParameters& parameters, const Friction
   }
   const bool first_touch = memory.mode == FrictionMode::kFree || !is_finite(memory.stretch_w);
   if (first_touch) memory = {{}, 0.0, FrictionMode::kStick};
+  const Vec3 step = first_touch || !is_finite(load.step_w) ? Vec3{} : tangential_part(load.step_w, load.normal_w);
+  if (parameters.law >= FrictionLaw::kPresliding) return presliding_step(parameters, load, step, memory);
   const TangentialSpring spring = tangential_spring(parameters, load, memory);
   const Vec3 start = tangential_part(memory.stretch_w, load.normal_w);
-  const Vec3 step = first_touch || !is_finite(load.step_w) ? Vec3{} : tangential_part(load.step_w, load.normal_w);
   const Vec3 trial = start + step;
   const Real length = norm(trial);
   const Vec3 direction = length > kNoStretch_m ? (1.0 / length) * trial : Vec3{};

@@ -13,6 +13,7 @@ struct FrictionParameters {
   Real k_N = 0;            // K of the static limit K F^beta, N^(1 - beta)
   Real beta = 1;           // 2/3 (Hertz area times constant shear strength) to 1 (Coulomb)
   Real mu_dynamic = 0;     // of sliding
+  Real slip_m = 1e-4;      // stretch at which kPreslidingPaper slides
   Real mindlin_ratio = 1;  // tangential over normal stiffness, 2 (1 - nu)/(2 - nu): Mindlin 1949
   CubicLaw contact;        // law of the tangential spring, the same as the normal one (Luo & Xiao 2006)
 };
@@ -60,6 +61,11 @@ Real sliding_limit_N(const FrictionParameters& parameters, Real normal_N) PALPAT
 // shrinks
 //   so that the force is kept; when it falls the stretch stays. The plain product k_t(D) s would be active: shifting
 //   under low load and back under high load gives energy away.
+// kPresliding: kMindlin's spring, but the stretch saturates at the limit over its stiffness by the exact rule of
+//   presliding.h: independent of the step, free of drift, passive when the normal force changes. It slides at the
+//   static limit.
+// kPreslidingPaper (Hayward & Armstrong 2000, as Mahvash & Hayward 2002 use it): a constant slip distance, with the
+//   force proportional to limit and stretch. Active when the load changes: kappa (F_2 - F_1) s^2 / 2 of each loop.
 FrictionForce friction_step(const FrictionParameters& parameters, const FrictionLoad& load,
                             FrictionMemory& memory) PALPATE_RT;
 

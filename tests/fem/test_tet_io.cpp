@@ -158,6 +158,8 @@ TEST(TetIo, BrokenVtkFilesAreExplained) {
   EXPECT_SAYS(read_error("a.vtu", changed(good, "Name=\"types\"", "Name=\"kinds\"")), "there is no array \"types\"");
   EXPECT_SAYS(read_error("a.vtu", changed(good, "\"UnstructuredGrid\"", "\"PolyData\"")), "found \"PolyData\"");
   EXPECT_SAYS(read_error("a.vtu", good.substr(0, 300)), "not well-formed XML");
+  const std::string empty = changed(changed(good, "0 1 2  0 1 2 3 4 5 6 7 8 9<", "<"), "3 13", "0 0");
+  EXPECT_SAYS(read_error("a.vtu", empty), "cell 1 has 0 nodes; its type 24 needs 10");
 }
 
 TEST(TetIo, MissingFileAndUnknownExtension) {

@@ -33,7 +33,12 @@ save() {
   until grep -q '^lab: ready' "$results/console.txt"; do
     sleep 0.2
     waited=$((waited + 1))
-    [ $waited -lt 1200 ] && kill -0 $! 2> /dev/null || { echo "lab: the guest did not boot; see $results/console.txt" >&2; return 1; }
+    if [ $waited -ge 1200 ] || ! kill -0 $! 2> /dev/null; then
+      kill $! 2> /dev/null || true
+      echo "lab: the guest did not boot within 240 s:" >&2
+      tail -n 5 "$results/console.txt" "$out/monitor.txt" >&2
+      return 1
+    fi
   done
   printf 'migrate "exec:cat > %s"\nquit\n' "$out/machine" >&"$monitor"
   wait $!

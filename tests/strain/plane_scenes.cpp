@@ -54,19 +54,37 @@ LargeStrainSolver<2> clip_on_tube(double element_m) {
   return solver;
 }
 
-// Edges over one turn, fine at both fingers.
-std::vector<double> turn_with_fingers(double step) {
-  std::vector<double> edges;
-  const double stops[3] = {kFingerAngle_rad[1], kFingerAngle_rad[0], kFingerAngle_rad[1] + 2 * std::numbers::pi};
+// Edges from `from` to `to`, fine at the ends that are fingers, none longer
+// than 5 degrees.
+std::vector<double> arc_steps(double from, bool finger_from, double to, bool finger_to, double step) {
+  std::vector<double> ends[2];
+  const bool finger[2] = {finger_from, finger_to};
+  const double half = 0.5 * (to - from);
   for (int k = 0; k < 2; ++k) {
-    const double half = 0.5 * (stops[k + 1] - stops[k]);
     const int fine = std::max(2, static_cast<int>(std::lround(6 * kDegree / step)));
-    std::vector<double> arc = graded_steps(0, std::min(half, fine * step), half, fine, 1.3);
-    for (double& x : arc) x = std::min(x, half);
-    for (const double x : arc) edges.push_back(stops[k] + x);
-    arc.pop_back();
-    for (auto x = arc.rbegin(); x != arc.rend(); ++x) edges.push_back(stops[k + 1] - *x);
-    if (k == 0) edges.pop_back();
+    const std::vector<double> graded =
+        finger[k] ? graded_steps(0, std::min(half, fine * step), half, fine, 1.3) : uniform_steps(0, half, 1);
+    ends[k] = {0};
+    for (std::size_t i = 1; i < graded.size(); ++i) {
+      const int pieces = static_cast<int>(std::ceil((graded[i] - graded[i - 1]) / (5 * kDegree)));
+      for (int p = 1; p <= pieces; ++p) ends[k].push_back(graded[i - 1] + (graded[i] - graded[i - 1]) * p / pieces);
+    }
+  }
+  std::vector<double> edges;
+  for (const double x : ends[0]) edges.push_back(from + x);
+  for (auto x = ends[1].rbegin() + 1; x != ends[1].rend(); ++x) edges.push_back(to - *x);
+  return edges;
+}
+
+// Over one turn, with edges at both ends of the clamp: its length decides how
+// much the ring sways.
+std::vector<double> turn_with_fingers(double step) {
+  const double stops[] = {kFingerAngle_rad[1], kFingerAngle_rad[0], 245 * kDegree, 295 * kDegree, 380 * kDegree};
+  const bool finger[] = {true, true, false, false, true};
+  std::vector<double> edges = {stops[0]};
+  for (int k = 0; k < 4; ++k) {
+    const std::vector<double> arc = arc_steps(stops[k], finger[k], stops[k + 1], finger[k + 1], step);
+    edges.insert(edges.end(), arc.begin() + 1, arc.end());
   }
   return edges;
 }
@@ -80,7 +98,7 @@ StrainMesh<2> ring_under_fingers_mesh(double step_m) {
 LargeStrainSolver<2> ring_under_fingers(const StrainMesh<2>& mesh, StrainLaw law) {
   std::vector<bool> fixed;
   for (const Point<2>& p : mesh.nodes_m) {
-    const bool held = radius_of(p) > kOuter_m - 1e-9 && std::abs(angle_of(p) + 90 * kDegree) < 25 * kDegree;
+    const bool held = radius_of(p) > kOuter_m - 1e-9 && std::abs(angle_of(p) + 90 * kDegree) < (25 + 1e-6) * kDegree;
     fixed.push_back(held);
     fixed.push_back(held);
   }
@@ -101,7 +119,36 @@ LargeStrainSolver<2> ring_under_fingers(const StrainMesh<2>& mesh, StrainLaw law
   return solver;
 }
 
+LargeStrainSolver<3> hollow_cylinder(double step_m, int fine, StrainLaw law) {
+  const double up = 90 * kDegree;
+  std::vector<double> turns = graded_steps(up, up - fine * step_m / kOuter_m, 0, fine, 1.6);
+  std::vector<double> shells = graded_steps(kOuter_m, kOuter_m - step_m, kInner_m, 1, 1.5);
+  std::reverse(turns.begin(), turns.end());
+  std::reverse(shells.begin(), shells.end());
+  const StrainMesh<3> mesh =
+      sweep(make_plane_mesh({{shells, turns, polar}}, 1e-8), graded_steps(0, fine * step_m, 0.03, fine, 1.6));
+  std::vector<bool> fixed;
+  for (const Point<3>& p : mesh.nodes_m)
+    for (const double x : p) fixed.push_back(x < 1e-9);
+  const auto near_finger = nodes_where<3>(mesh, [](const Point<3>& p) {
+    return std::hypot(p[0], p[1]) > kOuter_m - 1e-9 && p[0] < 0.009 && p[1] > 0 && p[2] < 0.009;
+  });
+  const StrainBody body = ring_material(Kinematics::kSolid, law);
+  LargeStrainSolver<3> solver(mesh, body, fixed, near_finger, {ball(kFingerRadius_m)});
+  solver.place_tools({{0, kOuter_m + kFingerRadius_m, 0}});
+  return solver;
+}
+
 }  // namespace
+
+HollowCylinder::HollowCylinder(double contact_element_m, int fine_count, StrainLaw law)
+    : solver(hollow_cylinder(contact_element_m, fine_count, law)) {}
+
+double HollowCylinder::force_N(double depth_m) {
+  const PressState<3> state = solver.move_tools({{0, kOuter_m + kFingerRadius_m - depth_m, 0}});
+  EXPECT_TRUE(state.converged) << depth_m;
+  return 4 * state.force_on_tool_N[0][1];
+}
 
 RingBetweenPlates::RingBetweenPlates(int quarter_elements, Kinematics kinematics, StrainLaw law)
     : solver(ring_between_plates(quarter_elements, kinematics, law)) {}
@@ -211,7 +258,8 @@ ArmSeries bake_clip_arm(double element_m) {
     EXPECT_TRUE(state.converged);
     return ArmState{force, {state.u_m[tip], state.u_m[tip + 1]}};
   };
-  // Half the peak load downwards, all of it nearly level: the directions the tube's normal sweeps.
+  // Half the peak load downwards, all of it nearly level: the directions the
+  // tube's normal sweeps.
   return fit_arm(
       push(StrainLaw::kLinear, {1, 0}), push(StrainLaw::kLinear, {0, 1}),
       {push(StrainLaw::kNeoHookean, polar(5, -40 * kDegree)), push(StrainLaw::kNeoHookean, polar(10, 10 * kDegree))});

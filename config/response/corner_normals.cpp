@@ -1,0 +1,109 @@
+#include "config/response/corner_normals.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "rt_core/math.h"
+
+namespace palpate {
+
+namespace {
+
+std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
+
+Vec3 face_normal(const std::vector<Vec3>& vertex, const Triangle& t) {
+  const Vec3 a = vertex[at(t.vertex[0])];
+  return unit_or(cross(vertex[at(t.vertex[1])] - a, vertex[at(t.vertex[2])] - a), {0, 1, 0});
+}
+
+double corner_angle(const std::vector<Vec3>& vertex, const Triangle& t, int k) {
+  const Vec3 p = vertex[at(t.vertex[k])];
+  const Vec3 u = vertex[at(t.vertex[(k + 1) % 3])] - p, v = vertex[at(t.vertex[(k + 2) % 3])] - p;
+  return math::atan2(norm(cross(u, v)), dot(u, v));
+}
+
+int corner_of(const Triangle& t, std::int32_t vertex) {
+  for (int k = 0; k < 3; ++k)
+    if (t.vertex[k] == vertex) return k;
+  return -1;
+}
+
+// Exact normal of a body's shape at one of its points, or a zero vector where the shape has none.
+Vec3 shape_normal(const BodyDesc& body, Vec3 p, Vec3 face, double height_m) {
+  switch (body.shape) {
+    case BodyShape::kSphere:
+      return unit_or(p - Vec3{0, body.radius_m, 0}, face);
+    case BodyShape::kEllipsoid: {
+      const Vec3 h = body.half_axes_m;
+      return unit_or({p.x / (h.x * h.x), (p.y - h.y) / (h.y * h.y), p.z / (h.z * h.z)}, face);
+    }
+    case BodyShape::kCylinder: {
+      const bool lying = body.axis == BodyAxis::kX;
+      const Vec3 axis = lying ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+      if (std::abs(dot(face, axis)) > 0.5) return dot(face, axis) > 0 ? axis : -axis;
+      return unit_or(tangential_part(p - Vec3{0, lying ? 0.5 * height_m : 0.0, 0}, axis), face);
+    }
+    default:
+      return {};
+  }
+}
+
+}  // namespace
+
+std::vector<CornerNormals> corner_normals(const BodyDesc& body, const std::vector<Vec3>& vertex_m,
+                                          const std::vector<Triangle>& triangle) {
+  std::vector<Vec3> face(triangle.size());
+  for (std::size_t t = 0; t < triangle.size(); ++t) face[t] = face_normal(vertex_m, triangle[t]);
+  double top = 0;
+  for (const Vec3& p : vertex_m) top = std::max(top, p.y);
+  const double smooth = math::cos(kCrease_rad);
+  std::vector<CornerNormals> result(triangle.size());
+  std::vector<std::int32_t> fan;
+  for (std::size_t t = 0; t < triangle.size(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      const std::int32_t vertex = triangle[t].vertex[k];
+      const Vec3 exact = shape_normal(body, vertex_m[at(vertex)], face[t], top);
+      if (squared_norm(exact) > 0.5) {
+        result[t].normal[k] = exact;
+        continue;
+      }
+      // Faces reached around the vertex over edges that are not sharp, in order of index: the same sum, and so the same
+      // bits, for every corner of the fan.
+      fan.assign(1, static_cast<std::int32_t>(t));
+      for (std::size_t next = 0; next < fan.size(); ++next) {
+        const Triangle& here = triangle[at(fan[next])];
+        for (int e = 0; e < 3; ++e) {
+          const std::int32_t other = here.adjacent[e];
+          if (other < 0 || (here.vertex[e] != vertex && here.vertex[(e + 1) % 3] != vertex)) continue;
+          if (std::find(fan.begin(), fan.end(), other) != fan.end()) continue;
+          if (dot(face[at(fan[next])], face[at(other)]) >= smooth) fan.push_back(other);
+        }
+      }
+      std::sort(fan.begin(), fan.end());
+      Vec3 sum;
+      for (const std::int32_t f : fan)
+        sum += corner_angle(vertex_m, triangle[at(f)], corner_of(triangle[at(f)], vertex)) * face[at(f)];
+      result[t].normal[k] = unit_or(sum, face[t]);
+    }
+  }
+  return result;
+}
+
+double largest_sag_m(const std::vector<CornerNormals>& normals, const std::vector<Vec3>& vertex_m,
+                     const std::vector<Triangle>& triangle) {
+  constexpr double kPlace[4][3] = {{1.0 / 3, 1.0 / 3, 1.0 / 3}, {0.5, 0.5, 0}, {0, 0.5, 0.5}, {0.5, 0, 0.5}};
+  double largest = 0;
+  for (std::size_t t = 0; t < triangle.size(); ++t) {
+    for (const auto& n : kPlace) {
+      Vec3 x;
+      for (int k = 0; k < 3; ++k) x += n[k] * vertex_m[at(triangle[t].vertex[k])];
+      double sag = 0;
+      for (int k = 0; k < 3; ++k)
+        sag += 0.5 * n[k] * dot(vertex_m[at(triangle[t].vertex[k])] - x, normals[t].normal[k]);
+      largest = std::max(largest, std::abs(sag));
+    }
+  }
+  return largest;
+}
+
+}  // namespace palpate

@@ -1,0 +1,173 @@
+#include "config/response/table_bake.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "config/config_error.h"
+#include "config/schema.h"
+
+namespace palpate {
+
+namespace {
+
+// Value and slope of the Hermite cubic through (x, y, m) at `at`; beyond the ends by the end's tangent.
+struct CubicPoint {
+  double value, slope;
+};
+CubicPoint hermite(const std::vector<double>& x, const std::vector<double>& y, const std::vector<double>& m,
+                   double at) {
+  const std::size_t n = x.size();
+  if (at >= x[n - 1]) return {y[n - 1] + m[n - 1] * (at - x[n - 1]), m[n - 1]};
+  std::size_t i = 0;
+  while (i + 2 < n && at >= x[i + 1]) ++i;
+  if (at == x[i]) return {y[i], m[i]};
+  const double h = x[i + 1] - x[i], u = (at - x[i]) / h, rise = y[i + 1] - y[i];
+  const double p = h * m[i], q = h * m[i + 1], c2 = 3 * rise - 2 * p - q, c3 = p + q - 2 * rise;
+  return {y[i] + u * (p + u * (c2 + u * c3)), (p + u * (2 * c2 + 3 * u * c3)) / h};
+}
+
+// Energies at the knots: exact integrals of the cubics over the depth, which is x, or x^2 in a root table.
+void integrate(const std::vector<double>& knot, bool root, std::vector<ResponseKnot>& row) {
+  row[0].energy_J = 0;
+  for (std::size_t i = 0; i + 1 < row.size(); ++i) {
+    const double h = knot[i + 1] - knot[i], a = row[i].force_N, b = row[i + 1].force_N;
+    const double p = h * row[i].slope, q = h * row[i + 1].slope;
+    const double plain = h * (0.5 * (a + b) + (p - q) / 12);
+    // int f u du over the interval, u from 0 to 1.
+    const double moment = (3 * a + 7 * b) / 20 + p / 30 - q / 20;
+    row[i + 1].energy_J = row[i].energy_J + (root ? 2 * (knot[i] * plain + h * h * moment) : plain);
+  }
+}
+
+// Mean of the curves by inverse squared distance (Shepard 1968): forces stay monotone.
+std::vector<ResponseKnot> blend(const std::vector<ForceCurve>& curves, const CurveTable& table, Vec3 at) {
+  std::vector<ResponseKnot> row(table.knot.size(), ResponseKnot{});
+  double sum = 0;
+  for (std::size_t c = 0; c < curves.size(); ++c) sum += 1 / squared_norm(at - curves[c].position_m);
+  for (std::size_t c = 0; c < curves.size(); ++c) {
+    const double weight = 1 / squared_norm(at - curves[c].position_m) / sum;
+    for (std::size_t k = 0; k < row.size(); ++k) {
+      row[k].force_N += weight * table.row[c][k].force_N;
+      row[k].slope += weight * table.row[c][k].slope;
+      row[k].energy_J += weight * table.row[c][k].energy_J;
+    }
+  }
+  return row;
+}
+
+// Vertex nearest to each placed curve: it takes the curve itself.
+std::vector<std::size_t> nearest_vertices(const SceneDesc& scene, const std::vector<ForceCurve>& curves,
+                                          const std::vector<Vec3>& vertex, std::vector<std::string>& warnings) {
+  std::vector<std::size_t> nearest;
+  for (const ForceCurve& curve : curves) {
+    std::size_t best = 0;
+    for (std::size_t v = 1; v < vertex.size(); ++v)
+      if (squared_norm(vertex[v] - curve.position_m) < squared_norm(vertex[best] - curve.position_m)) best = v;
+    const double away = norm(vertex[best] - curve.position_m);
+    if (away > 0.005)
+      warnings.push_back(scene.table.file + ": a press is " + number_text(std::round(1e4 * away) / 10) +
+                         " mm from the nearest vertex of the surface; check its position and unit (mm)");
+    if (std::find(nearest.begin(), nearest.end(), best) != nearest.end())
+      throw ConfigError(scene.source.where("contact.table.file") + ": two presses of " + scene.table.file +
+                        " are nearest to the same vertex; use more triangles or average them");
+    nearest.push_back(best);
+  }
+  return nearest;
+}
+
+}  // namespace
+
+std::vector<double> pchip_slopes(const std::vector<double>& x, const std::vector<double>& y) {
+  const std::size_t n = x.size();
+  std::vector<double> h(n - 1), rise(n - 1), m(n);
+  for (std::size_t i = 0; i + 1 < n; ++i) {
+    h[i] = x[i + 1] - x[i];
+    rise[i] = (y[i + 1] - y[i]) / h[i];
+  }
+  if (n == 2) return {rise[0], rise[0]};
+  for (std::size_t i = 1; i + 1 < n; ++i) {
+    const double w1 = 2 * h[i] + h[i - 1], w2 = h[i] + 2 * h[i - 1];
+    m[i] = rise[i - 1] * rise[i] > 0 ? (w1 + w2) / (w1 / rise[i - 1] + w2 / rise[i]) : 0.0;
+  }
+  const auto end = [](double h0, double h1, double d0, double d1) {
+    const double slope = ((2 * h0 + h1) * d0 - h0 * d1) / (h0 + h1);
+    if (!(slope * d0 > 0)) return 0.0;
+    return d0 * d1 < 0 && std::abs(slope) > 3 * std::abs(d0) ? 3 * d0 : slope;
+  };
+  m[0] = end(h[0], h[1], rise[0], rise[1]);
+  m[n - 1] = end(h[n - 2], h[n - 3], rise[n - 2], rise[n - 3]);
+  return m;
+}
+
+CurveTable tabulate(const std::vector<ForceCurve>& presses, bool root) {
+  std::vector<ForceCurve> curves = presses;
+  if (root)
+    for (ForceCurve& curve : curves)
+      for (double& depth : curve.depth_m) depth = square_root(depth);
+  CurveTable table;
+  for (const ForceCurve& curve : curves)
+    table.knot.insert(table.knot.end(), curve.depth_m.begin(), curve.depth_m.end());
+  std::sort(table.knot.begin(), table.knot.end());
+  table.knot.erase(std::unique(table.knot.begin(), table.knot.end()), table.knot.end());
+  if (table.knot.size() > static_cast<std::size_t>(kMaxResponseKnots))
+    throw ConfigError("the presses have " + std::to_string(table.knot.size()) + " different depths; allowed up to " +
+                      std::to_string(kMaxResponseKnots) + ": sample them at the same depths, or at fewer");
+  for (const ForceCurve& curve : curves) {
+    std::vector<double> slope = pchip_slopes(curve.depth_m, curve.force_N);
+    if (root) slope[0] = 0;
+    std::vector<ResponseKnot> row;
+    for (const double x : table.knot) {
+      const CubicPoint point = hermite(curve.depth_m, curve.force_N, slope, x);
+      row.push_back({point.value, point.slope, 0});
+    }
+    integrate(table.knot, root, row);
+    table.row.push_back(std::move(row));
+  }
+  return table;
+}
+
+void bake_table(const SceneDesc& scene, ImageContents& image, ResponseReport& report,
+                std::vector<std::string>& warnings) {
+  const std::filesystem::path file(scene.table.file);
+  const std::string path = file.is_absolute() ? scene.table.file : scene.source.directory + scene.table.file;
+  std::vector<ForceCurve> curves;
+  CurveTable table;
+  try {
+    curves = read_curves(path, scene.table.smooth);
+    table = tabulate(curves);
+  } catch (const ConfigError& error) {
+    throw ConfigError(scene.source.where("contact.table.file") + ": " + error.what());
+  }
+  image.params.response_law = static_cast<std::int32_t>(ResponseLaw::kTable);
+  image.knot = table.knot;
+  image.vertex_response.assign(image.vertex_m.size(), 0);
+  for (const std::vector<ResponseKnot>& row : table.row)
+    image.response.insert(image.response.end(), row.begin(), row.end());
+  if (curves.size() > 1) {
+    const std::vector<std::size_t> nearest = nearest_vertices(scene, curves, image.vertex_m, warnings);
+    auto next = static_cast<std::int32_t>(curves.size());
+    for (std::size_t v = 0; v < image.vertex_m.size(); ++v) {
+      const auto own = std::find(nearest.begin(), nearest.end(), v);
+      if (own != nearest.end()) {
+        image.vertex_response[v] = static_cast<std::int32_t>(own - nearest.begin());
+        continue;
+      }
+      const std::vector<ResponseKnot> row = blend(curves, table, image.vertex_m[v]);
+      image.response.insert(image.response.end(), row.begin(), row.end());
+      image.vertex_response[v] = next++;
+    }
+  }
+  report.knots = static_cast<std::int64_t>(image.knot.size());
+  report.curves = static_cast<std::int64_t>(image.response.size() / image.knot.size());
+  const double bytes =
+      static_cast<double>(sizeof(ResponseKnot) * image.response.size() + sizeof(double) * image.knot.size() +
+                          sizeof(std::int32_t) * image.vertex_response.size());
+  report.bytes_per_vertex = bytes / static_cast<double>(image.vertex_m.size());
+  for (const ForceCurve& curve : curves)
+    if (curve.depth_m.back() < scene.contact.max_depth_m * (1 - 1e-12))
+      warnings.push_back(scene.table.file + ": a press ends at " + number_text(1e3 * curve.depth_m.back()) +
+                         " mm, before contact.max_depth_mm; deeper the force continues by its tangent");
+}
+
+}  // namespace palpate

@@ -1,0 +1,247 @@
+#include "config/response/tip_bake.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "config/config_error.h"
+#include "config/contact_fit.h"
+#include "config/response/corner_normals.h"
+#include "config/response/press_bake.h"
+#include "config/response/table_bake.h"
+#include "config/schema.h"
+#include "rt_core/math.h"
+#include "rt_core/response/travel.h"
+
+namespace palpate {
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+// Least stiffness of the whole law as a share of the local one: below it the far field is nearly unstable.
+constexpr double kLeastStiffness = 0.05;
+
+double half_power_of(TipProfile profile) {
+  return profile == TipProfile::kFlat ? 2 : profile == TipProfile::kCone ? 4 : 3;
+}
+
+// S and dS/dx at every knot, x = sqrt(e / depth_max).
+std::vector<FactorKnot> factor_table(const TipDesc& tip, double coefficient) {
+  // A contact on a layer is smaller than on a half space at the same depth never by more than it is at most: twice the
+  // half-space radius is ample.
+  double reach = tip.indenter.profile == TipProfile::kCone ? tip.depth_max_m * tip.indenter.tan_half_angle
+                                                           : 2 * square_root(tip.indenter.radius_m * tip.depth_max_m);
+  if (tip.indenter.profile == TipProfile::kSphere) reach = std::min(reach, tip.indenter.radius_m);
+  const LayerContact contact(tip.layer, reach);
+  const double power = 0.5 * half_power_of(tip.indenter.profile);
+  std::vector<FactorKnot> table(kFactorKnots);
+  // At zero: to first order the layer acts like a depth larger by k(0) F/(pi E*).
+  const double first = power * contact.kernel_at_zero_per_m() / kPi * coefficient / tip.modulus_Pa;
+  table[0] = {1.0, half_power_of(tip.indenter.profile) == 3 ? first * square_root(tip.depth_max_m) : 0.0, 0.0};
+  for (int k = 1; k < kFactorKnots; ++k) {
+    const double x = static_cast<double>(k) / (kFactorKnots - 1), depth = tip.depth_max_m * x * x;
+    const LayerState state = contact.at_depth(tip.indenter, depth);
+    const double half_space = coefficient / tip.modulus_Pa * math::pow(depth, power);
+    const double value = state.force_m2 / half_space;
+    table[static_cast<std::size_t>(k)] = {value, 2 / x * (state.stiffness_m * depth / half_space - power * value), 0};
+  }
+  return table;
+}
+
+void check_stiffness(const TipLaw& law, const LocalLaw& local) {
+  for (int k = 0; k <= 512; ++k) {
+    const LawPoint point = local_at(local, law.depth_max_m * k / 512.0);
+    if (!(point.tangent_N_per_m >= 0))
+      throw ConfigError("the tip's force falls with depth; lower contact.max_depth_mm");
+    const double whole = 1 + (law.c0_m_per_N + 2 * law.c1_m_per_N2 * point.force_N) * point.tangent_N_per_m;
+    if (!(whole >= kLeastStiffness))
+      throw ConfigError("c0 and c1 make the contact unstable at " + number_text(point.force_N) +
+                        " N: 1 + (c0 + 2 c1 F) dF/de = " + number_text(whole) + ", allowed " +
+                        number_text(kLeastStiffness) + " or more; raise them or lower contact.max_depth_mm");
+  }
+}
+
+}  // namespace
+
+Indenter tip_indenter(const PieceDesc& piece) {
+  switch (piece.shape) {
+    case PieceShape::kCylinder:
+      return {TipProfile::kFlat, piece.radius_m, 0};
+    case PieceShape::kCone:
+      return {TipProfile::kCone, 0, piece.radius_m / piece.length_m};
+    default:
+      return {TipProfile::kSphere, piece.radius_m, 0};
+  }
+}
+
+double tip_coefficient(const Indenter& indenter, double modulus_Pa) {
+  switch (indenter.profile) {
+    case TipProfile::kFlat:
+      return 2 * indenter.radius_m * modulus_Pa;
+    case TipProfile::kParabola:
+    case TipProfile::kSphere:
+      return 4.0 / 3 * square_root(indenter.radius_m) * modulus_Pa;
+    case TipProfile::kCone:
+      return 2 / kPi * indenter.tan_half_angle * modulus_Pa;
+  }
+  return 0;
+}
+
+TipLaw make_tip_law(const TipDesc& tip, std::vector<FactorKnot>& factor) {
+  TipLaw law{};
+  law.half_power = static_cast<std::int32_t>(half_power_of(tip.indenter.profile));
+  law.coefficient = tip_coefficient(tip.indenter, tip.modulus_Pa);
+  law.depth_max_m = tip.depth_max_m;
+  law.c0_m_per_N = tip.c0_m_per_N;
+  law.c1_m_per_N2 = tip.c1_m_per_N2;
+  law.first_factor = -1;
+  LocalLaw local{&law, nullptr};
+  if (tip.indenter.profile == TipProfile::kFlat) {
+    // Geometrically similar at every depth: the factor is a number.
+    const LayerContact contact(tip.layer, tip.indenter.radius_m);
+    law.coefficient *= contact.at_radius(tip.indenter, tip.indenter.radius_m).stiffness_m / (2 * tip.indenter.radius_m);
+  } else if (tip.layer.thickness_m > 0 || tip.indenter.profile == TipProfile::kSphere) {
+    std::vector<FactorKnot> table = factor_table(tip, law.coefficient);
+    local.factor = table.data();
+    for (std::int32_t k = 0; k + 1 < kFactorKnots; ++k)
+      table[static_cast<std::size_t>(k) + 1].energy_J =
+          table[static_cast<std::size_t>(k)].energy_J + interval_energy_J(local, k);
+    law.first_factor = static_cast<std::int32_t>(factor.size());
+    factor.insert(factor.end(), table.begin(), table.end());
+    local.factor = &factor[static_cast<std::size_t>(law.first_factor)];
+  }
+  law.force_max_N = local_at(local, law.depth_max_m).force_N;
+  check_stiffness(law, local);
+  return law;
+}
+
+namespace {
+
+// What the scene says about one piece's tip, as it touches the body.
+class TipReader {
+ public:
+  TipReader(const SceneDesc& scene, std::size_t piece) : scene_(scene), piece_(scene.piece[piece]), index_(piece) {}
+
+  TipDesc read(std::string& line) const {
+    TipDesc tip;
+    const double nu = effective_poisson_ratio(scene_.material);
+    tip.modulus_Pa = scene_.material.youngs_modulus_Pa / (1 - nu * nu);
+    tip.layer = {scene_.layer.thickness_m, nu, scene_.layer.base};
+    tip.depth_max_m = scene_.contact.max_depth_m;
+    tip.indenter = tip_indenter(piece_);
+    const double angle = scene_.tip.half_angle_rad;
+    if (tip.indenter.profile == TipProfile::kSphere) tip.indenter = sphere();
+    if (tip.indenter.profile == TipProfile::kFlat)
+      tip.indenter.radius_m = auto_or(scene_.tip.radius_m, piece_.radius_m);
+    if (tip.indenter.profile == TipProfile::kCone && !is_auto(angle))
+      tip.indenter.tan_half_angle = math::sin(angle) / math::cos(angle);
+    if (tip.indenter.profile == TipProfile::kSphere && !(tip.depth_max_m <= tip.indenter.radius_m))
+      fail("contact.max_depth_mm", number_text(1e3 * tip.depth_max_m) + " mm is more than the sphere's radius of " +
+                                       number_text(1e3 * tip.indenter.radius_m) +
+                                       " mm; lower it, or set contact.tip.sphere = \"parabola\"");
+    add_far_field(tip);
+    line = describe(tip);
+    return tip;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& key, const std::string& what) const {
+    throw ConfigError(scene_.source.where(key) + ": " + what);
+  }
+  static double auto_or(double stated, double otherwise) { return is_auto(stated) ? otherwise : stated; }
+
+  // Curvatures 1/m of the body where it is touched: stated, or those of its shape.
+  void body_curvature(double& first, double& second) const {
+    const BodyDesc& b = scene_.body;
+    first = second = 0;
+    if (!is_auto(scene_.tip.body_radius_1_m) || !is_auto(scene_.tip.body_radius_2_m)) {
+      const auto inverse = [](double r) { return is_auto(r) || r == 0 ? 0.0 : 1 / r; };
+      first = inverse(scene_.tip.body_radius_1_m);
+      second = inverse(scene_.tip.body_radius_2_m);
+    } else if (b.shape == BodyShape::kSphere) {
+      first = second = 1 / b.radius_m;
+    } else if (b.shape == BodyShape::kCylinder && (b.axis == BodyAxis::kX || scene_.layer.thickness_m == 0)) {
+      first = 1 / b.radius_m;
+    } else if (b.shape != BodyShape::kBox && b.shape != BodyShape::kCylinder) {
+      fail("contact.tip.body_radius_1_mm",
+           "missing; this body has no single curvature: state both principal radii where it is touched (0 is flat, "
+           "negative is hollow)");
+    }
+  }
+
+  void add_far_field(TipDesc& tip) const {
+    const SeriesDesc& series = scene_.series;
+    FarFieldFit fit{series.c0_m_per_N, series.c1_m_per_N2, 0, 0, 0};
+    if (is_auto(series.c0_m_per_N) || is_auto(series.c1_m_per_N2)) fit = fit_far_field(scene_, index_, tip);
+    tip.c0_m_per_N = auto_or(series.c0_m_per_N, fit.c0_m_per_N);
+    tip.c1_m_per_N2 = auto_or(series.c1_m_per_N2, fit.c1_m_per_N2);
+  }
+
+  Indenter sphere() const {
+    double first = 0, second = 0;
+    body_curvature(first, second);
+    const double radius = auto_or(scene_.tip.radius_m, piece_.radius_m);
+    const double a = 1 / radius + first, b = 1 / radius + second;
+    if (!(a > 0 && b > 0))
+      fail(
+          "contact.tip.body_radius_1_mm",
+          "the hollow of the body is tighter than the sphere: they conform, and no contact law of one point holds; use "
+          "a smaller sphere or a tabulated response");
+    return {scene_.tip.sphere == SphereLaw::kExact ? TipProfile::kSphere : TipProfile::kParabola,
+            elliptic_radius_m(a, b), 0};
+  }
+
+  std::string describe(const TipDesc& tip) const {
+    static const char* const names[] = {"flat punch", "sphere (parabola)", "sphere", "cone"};
+    char text[256];
+    const bool cone = tip.indenter.profile == TipProfile::kCone;
+    std::snprintf(text, sizeof text, "piece %d: %s, %s %.5g, E* = %.5g Pa%s, c0 = %.5g m/N, c1 = %.5g m/N2",
+                  static_cast<int>(index_), names[static_cast<int>(tip.indenter.profile)],
+                  cone ? "tan of half angle" : "effective radius in mm",
+                  cone ? tip.indenter.tan_half_angle : 1e3 * tip.indenter.radius_m, tip.modulus_Pa,
+                  tip.layer.thickness_m > 0 ? ", on a layer" : "", tip.c0_m_per_N, tip.c1_m_per_N2);
+    return text;
+  }
+
+  const SceneDesc& scene_;
+  const PieceDesc& piece_;
+  std::size_t index_;
+};
+
+}  // namespace
+
+void bake_response(const SceneDesc& scene, ImageContents& image, ResponseReport& report,
+                   std::vector<std::string>& warnings) {
+  if (scene.contact.law != ContactLaw::kTool && scene.contact.law != ContactLaw::kTable) return;
+  image.corner_normal = corner_normals(scene.body, image.vertex_m, image.triangle);
+  report.slack_m = largest_sag_m(image.corner_normal, image.vertex_m, image.triangle);
+  // Half the margin within which the tick measures every point.
+  if (!(report.slack_m <= 2.5e-4))
+    throw ConfigError(scene.source.where("body.triangles") + ": facets stand off the smooth surface by " +
+                      number_text(1e3 * report.slack_m) + " mm; allowed 0.25 mm: use more triangles");
+  image.params.smooth_slack_m = 1.5 * report.slack_m;
+  for (const PieceDesc& piece : scene.piece)
+    if (piece.points > 1)
+      throw ConfigError(scene.source.where("tool.piece") +
+                        ": a piece has several points, but contact.law = \"tool\" and \"table\" are laws of one whole "
+                        "tip; set points = 1 (cylinder, capsule: touches an end; cone: plus_z)");
+  if (scene.contact.law == ContactLaw::kTable) {
+    bake_table(scene, image, report, warnings);
+    return;
+  }
+  image.params.response_law = static_cast<std::int32_t>(ResponseLaw::kTip);
+  for (std::size_t i = 0; i < scene.piece.size(); ++i) {
+    std::string line;
+    const TipDesc tip = TipReader(scene, i).read(line);
+    try {
+      image.tip_law.push_back(make_tip_law(tip, image.factor));
+    } catch (const ConfigError& error) {
+      throw ConfigError(scene.source.where("contact") + ": " + error.what());
+    }
+    report.tip.push_back(line);
+  }
+  for (const PairDesc& pair : scene.pair)
+    image.tip_pair.push_back({pair.piece_a, pair.piece_b, pair.c_m_per_N, pair.h_ab_m_per_N2, pair.h_ba_m_per_N2});
+}
+
+}  // namespace palpate

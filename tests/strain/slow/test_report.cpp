@@ -1,0 +1,191 @@
+// What takes minutes: the reference scenes on two meshes, the hollow cylinder
+// in space, the coupling of two fingers. It prints the tables of
+// docs/models_large_strain.md.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+
+#include "config/fem/series_fit.h"
+#include "tests/strain/plane_scenes.h"
+
+namespace palpate::fem {
+namespace {
+
+void add(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
+void add(const char* pattern, ...) {
+  char line[400];
+  va_list values;
+  va_start(values, pattern);
+  std::vsnprintf(line, sizeof line, pattern, values);
+  va_end(values);
+  std::fputs(line, stdout);
+}
+
+struct Row {
+  double depth_mm, force_N;  // published large-strain reference
+};
+
+// Both meshes, both laws; the finer large-strain force within `share` of the
+// published one.
+void compare(const char* title, const PressBody& body, const RigidTool& tool, const std::vector<Row>& rows,
+             const PressMeshing& coarse, const PressMeshing& fine, double share) {
+  std::vector<double> depths;
+  for (const Row& row : rows) depths.push_back(1e-3 * row.depth_mm);
+  const PressCurve a = press_axisymmetric(body, tool, StrainLaw::kNeoHookean, depths, coarse);
+  const PressCurve b = press_axisymmetric(body, tool, StrainLaw::kNeoHookean, depths, fine);
+  const PressCurve c = press_axisymmetric(body, tool, StrainLaw::kLinear, depths, fine);
+  add("\n### %s\n| depth, mm | large strain, %d elements, N | %d elements, N | "
+      "published, N | linear, N | energy, mJ |\n",
+      title, coarse.fine_count, fine.fine_count);
+  add("|---|---|---|---|---|---|\n");
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    add("| %.2f | %.4f | %.4f | %.4f | %.4f | %.4f |\n", rows[i].depth_mm, a.points[i].force_N, b.points[i].force_N,
+        rows[i].force_N, c.points[i].force_N, 1e3 * b.points[i].energy_J);
+    EXPECT_NEAR(b.points[i].force_N / rows[i].force_N, 1, share) << title << rows[i].depth_mm;
+  }
+}
+
+void series_errors(const char* title, const DepthOfForce& local, const SeriesBake& bake, const std::vector<Row>& rows) {
+  double largest = 0;
+  for (const Row& row : rows)
+    largest =
+        std::max(largest, std::abs(series_force_N(local, bake.coefficients, 1e-3 * row.depth_mm) / row.force_N - 1));
+  add("| %s | %.4g | %.4g | %.2f | %.2f %% |\n", title, 1e3 * bake.coefficients.c0_m_per_N,
+      1e3 * bake.coefficients.c1_m_per_N2, 1e3 * bake.large.depth_m, 100 * largest);
+  EXPECT_LT(largest, 0.02) << title;
+}
+
+DepthOfForce hertz(double modulus_Pa, double radius_m) {
+  return [=](double f) { return std::pow(f / (4.0 / 3 * modulus_Pa * std::sqrt(radius_m)), 2.0 / 3); };
+}
+
+const std::vector<Row> kBlock = {{0.25, 1.4558}, {0.5, 4.1091}, {1, 11.573}, {2, 32.303}, {3, 58.363}};
+const std::vector<Row> kEllipsoid = {{1, 14.208}, {2, 39.671}, {4, 109.78}, {6, 197.67}, {8, 298.42}};
+
+TEST(Report, SphereOnBlock) {
+  compare("A: sphere of 6.35 mm on a rubber block", rubber_block(), ball(6.35e-3), kBlock, {6e-3, 12, 1.25},
+          {6e-3, 18, 1.25}, 0.01);
+}
+
+TEST(Report, PunchOnLayers) {
+  compare("B: punch of 1.6 mm on a layer of 3.2 mm", layer(3.2e-3), punch(1.6e-3, 0.2e-3),
+          {{0.2, 1.2961}, {0.48, 3.2643}, {0.96, 6.4938}}, {2e-3, 10, 1.25}, {2e-3, 14, 1.25}, 0.012);
+  compare("B: punch of 1.6 mm on a layer of 10 mm", layer(10e-3), punch(1.6e-3, 0.2e-3),
+          {{0.2, 0.8640}, {0.48, 2.1304}, {0.96, 4.2651}}, {2e-3, 10, 1.25}, {2e-3, 14, 1.25}, 0.012);
+}
+
+TEST(Report, SphereOnEllipsoid) {
+  compare("C1: sphere of 10 mm on an ellipsoid", ellipsoid(), ball(0.01), kEllipsoid,
+          default_meshing(ellipsoid(), ball(0.01), 8e-3, 8), default_meshing(ellipsoid(), ball(0.01), 8e-3, 12), 0.01);
+}
+
+TEST(Report, RingBetweenPlates) {
+  const double rows[][3] = {
+      {1, 0.8208, 1.0290}, {4, 3.1874, 3.9951}, {8, 6.0475, 7.5769}, {12, 8.6689, 10.852}, {16, 11.258, 14.091}};
+  RingBetweenPlates coarse(24, Kinematics::kPlaneStress, StrainLaw::kNeoHookean),
+      fine(40, Kinematics::kPlaneStress, StrainLaw::kNeoHookean);
+  RingBetweenPlates strain(40, Kinematics::kPlaneStrain, StrainLaw::kNeoHookean),
+      linear(40, Kinematics::kPlaneStress, StrainLaw::kLinear);
+  add("\n### D: thick ring between plates\n| approach, mm | plane stress, 24 "
+      "elements, N | 40 elements, N | published, N | linear, N | plane strain, "
+      "N | published, N |\n|---|---|---|---|---|---|---|\n");
+  for (const auto& row : rows) {
+    const double d = 1e-3 * row[0], a = coarse.force_N(d), b = fine.force_N(d), c = linear.force_N(d),
+                 e = strain.force_N(d);
+    add("| %.0f | %.4f | %.4f | %.4f | %.4f | %.4f | %.4f |\n", row[0], a, b, row[1], c, e, row[2]);
+    EXPECT_NEAR(b / row[1], 1, row[0] > 1 ? 0.003 : 0.01) << row[0];
+    EXPECT_NEAR(e / row[2], 1, row[0] > 1 ? 0.003 : 0.01) << row[0];
+  }
+}
+
+TEST(Report, SnapClip) {
+  const double rows[][2] = {{0.5, 2.589},   {1, 4.361},   {2, 6.170},   {3, 6.534},  {4, 5.965},
+                            {5, 4.630},     {6, 2.899},   {7, 0.795},   {8, -1.467}, {10, -5.719},
+                            {11.5, -7.351}, {12, -7.232}, {13, -5.505}, {14, -0.944}};
+  ClipOnTube coarse(1e-3), fine(0.5e-3);
+  const ArmSeries arm = bake_clip_arm(0.5e-3);
+  const Point<2> rest = {kClipTipCentreRadius_m * std::cos(kClipArmEnd_rad),
+                         kClipTipCentreRadius_m * std::sin(kClipArmEnd_rad)};
+  add("\n### F: snap clip on a tube, plane stress\n| insertion, mm | 1 mm "
+      "elements, N | 0.5 mm elements, N | published, N | arm series, N | "
+      "energy, mJ |\n|---|---|---|---|---|---|\n");
+  for (const auto& row : rows) {
+    const ClipOnTube::State a = coarse.insert(1e-3 * row[0]), b = fine.insert(1e-3 * row[0]);
+    const Point<2> force = arm_force_from_disc_N(arm, rest, {0, clip_first_contact_m() - 1e-3 * row[0]},
+                                                 kClipTubeRadius_m + kClipTipRadius_m);
+    add("| %.1f | %.3f | %.3f | %.3f | %.3f | %.2f |\n", row[0], a.force_N, b.force_N, row[1], -2 * force[1],
+        1e3 * b.energy_J);
+    EXPECT_NEAR(b.force_N, row[1], 0.08) << row[0];  // the tip touches from one contact point to the next: 0.05 N
+                                                     // more
+    EXPECT_NEAR(-2 * force[1], row[1], 0.02 * 7.35) << row[0];
+  }
+}
+
+TEST(Report, HollowCylinderInSpace) {
+  HollowCylinder large(2.2e-3, 3, StrainLaw::kNeoHookean), linear(2.2e-3, 3, StrainLaw::kLinear);
+  const DepthOfForce local = hertz(3e6 / (1 - 0.45 * 0.45), 1 / std::sqrt((1 / 0.008 + 1 / 0.03) / 0.008));
+  std::vector<LoadPoint> path;
+  LoadPoint small;
+  add("\n### E: hollow cylinder between two spherical fingers, in space\n| "
+      "depth per finger, mm | large strain, N | linear, N |\n|---|---|---|\n");
+  for (const double d : {1e-3, 2e-3, 3e-3, 4e-3, 5e-3, 6e-3, 7e-3, 8e-3}) {
+    path.push_back({d, large.force_N(d)});
+    const double f = linear.force_N(d);
+    if (d == 5e-3) small = {d, f};
+    add("| %.0f | %.3f | %.3f |\n", 1e3 * d, path.back().force_N, f);
+  }
+  SeriesBake bake;
+  bake.linear = small;
+  bake.large = path[4];
+  bake.coefficients = fit_series(local, small, path[4], 60);
+  double largest = 0;
+  for (const LoadPoint& p : path)
+    largest = std::max(largest, std::abs(series_force_N(local, bake.coefficients, p.depth_m) / p.force_N - 1));
+  add("\nHertz + c0 + c1, both fitted at 5 mm: c0 = %.4g mm/N, c1 = %.4g "
+      "mm/N^2, largest error on 1..8 mm %.1f %% (linear law %.0f %%).\n",
+      1e3 * bake.coefficients.c0_m_per_N, 1e3 * bake.coefficients.c1_m_per_N2, 100 * largest,
+      100 * (linear.force_N(8.001e-3) / path.back().force_N - 1));
+  EXPECT_LT(largest,
+            0.03);  // one mesh, 2.2 mm under the finger: 1.5 % of it is the mesh's
+}
+
+TEST(Report, SeriesLaw) {
+  add("\n### Series law against the published large-strain forces\n| scene | "
+      "c0, mm/N | c1, mm/N^2 | fitted at, mm | largest error over the path "
+      "|\n|---|---|---|---|---|\n");
+  const DepthOfForce block = hertz(3.45e6, 6.35e-3),
+                     body = hertz(3e6 / (1 - 0.45 * 0.45), 1 / (1 / 0.01 + 0.03 / (0.04 * 0.04)));
+  series_errors("A", block, bake_series(rubber_block(), ball(6.35e-3), block, 3e-3, 12, 0.67), kBlock);
+  series_errors("C1", body, bake_series(ellipsoid(), ball(0.01), body, 8e-3, 10, 0.6), kEllipsoid);
+  const DepthOfForce none = [](double) { return 0.0; };
+  RingBetweenPlates linear(24, Kinematics::kPlaneStress, StrainLaw::kLinear),
+      large(24, Kinematics::kPlaneStress, StrainLaw::kNeoHookean);
+  SeriesBake ring;
+  ring.linear = {2e-3, linear.force_N(2e-3)};
+  ring.large = {8e-3, large.force_N(8e-3)};
+  ring.coefficients = fit_series(none, ring.linear, ring.large, 12);
+  series_errors("D, plane stress, no local law", none, ring, {{4, 3.1874}, {8, 6.0475}, {12, 8.6689}, {16, 11.258}});
+}
+
+TEST(Report, TwoFingersOnARing) {
+  const FingerStudy s = study_two_fingers(1e-3, {0.75, 1.5, 2.25, 3}, 0.5);
+  add("\n### G2: two fingers on a ring\n| first, mm | second, mm | first, N | "
+      "second, N |\n|---|---|---|---|\n");
+  for (const PairState& p : s.states)
+    add("| %.2f | %.2f | %.3f | %.3f |\n", 1e3 * p.first_m, 1e3 * p.second_m, p.first_N, p.second_N);
+  add("\nc = %.4f mm/N, h12 = %.4f, h21 = %.4f mm/N^2 from three of the "
+      "states. Root mean square of the force errors in the "
+      "other 21 over that of the forces: linear law %.1f %%, uncoupled tables "
+      "%.1f %%, tables with c %.1f %%, second order %.1f %%.\n",
+      1e3 * s.coupling.c_m_per_N, 1e3 * s.coupling.h12_m_per_N2, 1e3 * s.coupling.h21_m_per_N2,
+      100 * s.linear.held_out_rms, 100 * s.uncoupled.held_out_rms, 100 * s.first_order.held_out_rms,
+      100 * s.second_order.held_out_rms);
+  EXPECT_EQ(s.states.size(), 24u);
+  EXPECT_LT(s.second_order.held_out_rms, 0.06);
+  EXPECT_LT(s.second_order.held_out_rms, s.uncoupled.held_out_rms);
+}
+
+}  // namespace
+}  // namespace palpate::fem
