@@ -37,10 +37,10 @@ namespace palpate {
     "none: this is how a grasp ends; raise the stop force to squeeze harder")                                          \
   X(kGraspUnstable, 15, "the palm would have to pull to hold the body",                                                \
     "close the fingers so that their forces push the body into the palm")                                              \
-  X(kStrainBeyondLinear, 16, "a finite-element body is strained beyond its linear range; forces are extrapolated",     \
-    "press less deeply, or raise contact.nodal.strain_limit if the error is acceptable")                               \
-  X(kFootHeld, 17, "a tip is deeper than the surface's curvature allows; its last place of contact is kept",           \
-    "press less deeply, or use a larger body")
+  X(kFootHeld, 16, "a tip is deeper than the surface's curvature allows; its last place of contact is kept",           \
+    "press less deeply, or use a larger body")                                                                         \
+  X(kStrainBeyondLinear, 17, "a finite-element body is strained beyond its linear range; forces are extrapolated",     \
+    "press less deeply, or raise contact.nodal.strain_limit if the error is acceptable")
 
 // X(name, bit, cause, remedy)
 #define PALPATE_FAULT_BITS(X)                                                                                       \
