@@ -1,5 +1,4 @@
 #include "config/fem_body.h"
-#include "config/body.h"
 
 #include <algorithm>
 #include <cmath>

@@ -150,8 +150,13 @@ BeamRatio ratio_of(const BeamCurve& curve, const BeamBuild& build, const Matrix3
   ratio.f2_axis = curve.tangential;
   if (curve.path == BeamPath::kStraight || curve.path == BeamPath::kPoint) {
     const Vector3d n = eigen(curve.radial), t = eigen(curve.tangential);
-    ratio.f1_gain_N_per_m = (-1 / n.dot(compliance * n)) * curve.radial;
-    ratio.f2_gain_N_per_m = (1 / t.dot(compliance * t)) * curve.tangential;
+    // A beam without length gives nothing and shares nothing.
+    const auto stiffness = [&](const Vector3d& along) {
+      const double give = along.dot(compliance * along);
+      return give > 0 ? 1 / give : 0.0;
+    };
+    ratio.f1_gain_N_per_m = -stiffness(n) * curve.radial;
+    ratio.f2_gain_N_per_m = stiffness(t) * curve.tangential;
     return ratio;
   }
   const ArcPaperCompliance c =

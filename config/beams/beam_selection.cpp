@@ -127,8 +127,7 @@ BeamCurve BeamSelector::roomiest(Vec3 tip, Vec3 anchor, Vec3 inside) const {
 BeamCurve BeamSelector::turned(Vec3 tip, Vec3 anchor, Vec3 inside, Vec3 up) const {
   BeamCurve best;
   best.clearance_m = -kHuge;
-  for (int plane = 1; plane < 2 * kPlanes; ++plane) {
-    if (plane == kPlanes) continue;  // the plane itself, from its other side
+  for (int plane = 1; plane < kPlanes; ++plane) {
     const double angle = kPi * plane / kPlanes;
     BeamCurve curve = roomiest(tip, anchor, std::cos(angle) * inside + std::sin(angle) * up);
     if (curve.path != BeamPath::kNone && curve.clearance_m > best.clearance_m + 1e-9) best = curve;
@@ -162,11 +161,12 @@ BeamChoice BeamSelector::choose(std::int32_t vertex, Vec3 anchor, Vec3 anchor_no
                                                3 * mean_edge_m_, 0.5 * mean_edge_m_, up, normal);
   BeamCurve side[2];
   double length[2] = {0, 0};
+  bool turn = false;
   if (section.reaches) {
     for (int way = 0; way < 2; ++way) {
       const SectionCurve& curve = section.way[way];
-      // The centre lies opposite to the bulge of the curve.
-      const Vec3 centre_side = dot(curve.middle_m - 0.5 * (tip + anchor), inside) <= 0 ? inside : -inside;
+      // The centre lies opposite to the bulge of the curve. Between neighbouring vertices the mesh shows none.
+      const Vec3 centre_side = dot(curve.middle_m - 0.5 * (tip + anchor), inside) <= 1e-6 * c ? inside : -inside;
       side[way] = by_rule(tip, anchor, centre_side, curve);
       length[way] = curve.length_m;
       const bool usable = side[way].path != BeamPath::kNone && (rule_.paper || fits(side[way]));
@@ -182,13 +182,19 @@ BeamChoice BeamSelector::choose(std::int32_t vertex, Vec3 anchor, Vec3 anchor_no
     }
     side[0] = roomiest(tip, anchor, inside);
     side[1] = roomiest(tip, anchor, -inside);
-    if (side[0].path == BeamPath::kNone && side[1].path == BeamPath::kNone) side[0] = turned(tip, anchor, inside, up);
+    if (side[0].path == BeamPath::kNone && side[1].path == BeamPath::kNone) {
+      side[0] = turned(tip, anchor, inside, up);
+      side[1] = turned(tip, anchor, inside, -up);
+      turn = true;
+    }
     length[0] = side[0].length_m;
     length[1] = side[1].length_m;
   }
   double weight[2] = {side[0].path != BeamPath::kNone ? 1.0 : 0.0, side[1].path != BeamPath::kNone ? 1.0 : 0.0};
   if (weight[0] + weight[1] > 1.5) {
-    const double difference = (length[1] - length[0]) / (kSharedUpTo * 0.5 * (length[0] + length[1]));
+    // Turned planes go by room, so that mirror images of a body get mirror images of a beam.
+    const double difference = turn ? (side[0].clearance_m - side[1].clearance_m) / tolerance_m_
+                                   : (length[1] - length[0]) / (kSharedUpTo * 0.5 * (length[0] + length[1]));
     weight[0] = std::clamp(0.5 + 0.5 * difference, 0.0, 1.0);
     weight[1] = 1 - weight[0];
   }

@@ -16,7 +16,7 @@ enum class BeamPath : std::int32_t {
   kStraight = 2,  // the chord stays inside (anchors on another surface), or the surface between is not curved
   kArc = 3,       // circle through both with the outer radius from the least curvature between them
   kFitted = 4,    // circle in the same plane with the most room, because the one by the rule leaves the body
-  kTurned = 5,    // circle with the most room in a plane turned about the chord
+  kTurned = 5,    // circle with the most room in a plane turned about the chord, to one side or both
 };
 inline constexpr int kBeamPaths = 6;
 

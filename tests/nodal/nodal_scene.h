@@ -35,7 +35,7 @@ class NodalScene {
     p.nodal_sweeps = 20;
     p.friction_sweeps = 10;
     p.nodal_carry = static_cast<std::int32_t>(options.carry);
-    p.contact_margin_m = 0.25 * mean_edge_m(body.surface);
+    p.contact_margin_m = 0.5 * mean_edge_m(body.surface);
     p.regularisation = options.precision == CompliancePrecision::kDouble ? 1e-6 : 1e-5;
     p.wall_N_per_m = 5e4;
     p.proxy_speed_max_m_per_s = 0.5;
