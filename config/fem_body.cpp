@@ -1,4 +1,5 @@
 #include "config/fem_body.h"
+#include "config/body.h"
 
 #include <algorithm>
 #include <cmath>
