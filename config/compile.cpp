@@ -8,6 +8,8 @@
 #include "config/bvh_build.h"
 #include "config/config_error.h"
 #include "config/fem_body.h"
+#include "config/hand/hand_model.h"
+#include "config/hand/preshape.h"
 #include "config/mesh_io.h"
 #include "config/patches.h"
 #include "config/schema.h"
@@ -168,13 +170,27 @@ class Compiler {
     report_.traversal_stack = bvh.stack_high_water;
   }
 
+  // A finger part touches with a strip of its palm's side, not all around: as long as the capsule's core and a
+  // rounding, and about as wide as its radius (at a third of the radius deep the exact width is 1.5 radii, at the first
+  // touch 0).
+  static void narrow_finger_areas(Tool& tool) {
+    for (ToolPoint& point : tool.point) {
+      const ToolPiece& piece = tool.piece[static_cast<std::size_t>(point.piece)];
+      point.area_m2 = piece.margin_m * (2 * piece.half_extent_m[2] + piece.margin_m) / piece.point_count;
+    }
+  }
+
+  bool is_hand() const { return scene_.articulation == Articulation::kHand; }
+
   void add_tool() {
+    if (is_hand()) hand_ = make_hand(scene_.hand);
     Tool tool;
     try {
-      tool = make_tool(scene_.piece);
+      tool = make_tool(is_hand() ? hand_.piece : scene_.piece);
     } catch (const ConfigError& error) {
       throw ConfigError(scene_.source.file + ": " + error.what());
     }
+    if (is_hand()) narrow_finger_areas(tool);
     double total = 0;
     for (const ToolPoint& point : tool.point) total += point.area_m2;
     report_.reference_area_m2 = is_auto(scene_.contact.reference_area_m2)
@@ -203,7 +219,44 @@ class Compiler {
   void add_articulation() {
     image_.params.articulation = static_cast<std::int32_t>(scene_.articulation);
     image_.params.body_mass_kg = report_.mass_kg;
+    const Vec3 centre = volume_centre_m(mesh_);
+    image_.params.body_centre_x_m = centre.x;
+    image_.params.body_centre_y_m = centre.y;
+    image_.params.body_centre_z_m = centre.z;
     if (scene_.articulation == Articulation::kGripper) add_gripper();
+    if (is_hand()) add_hand();
+    report_.joints = static_cast<std::int32_t>(image_.joint.size());
+  }
+
+  // Each finger part is a piece on its joint; what contacts of different fingers must not do is share a region.
+  void add_hand() {
+    const HandDesc& desc = scene_.hand;
+    image_.params.closing_rate_per_s = 1 / desc.closing_s;
+    image_.params.stop_force_N = desc.stop_force_N;
+    for (std::size_t i = 0; i < image_.piece.size(); ++i) {
+      image_.piece[i].joint = hand_.piece_joint[i];
+      image_.piece[i].group = hand_.piece_finger[i];
+    }
+    image_.joint = hand_.joint;
+    image_.grasp_w.push_back({desc.grasp_position_m, rotation_of(desc.grasp_rotation_rad)});
+    std::vector<double> stretched;
+    for (const Joint& joint : image_.joint) stretched.push_back(joint.open);
+    Model model;  // what the planner needs of it
+    model.vertex_m = image_.vertex_m;
+    model.vertex_normal = image_.vertex_normal;
+    model.triangle = image_.triangle;
+    model.bvh = image_.bvh;
+    model.piece = image_.piece;
+    model.tool_point = image_.tool_point;
+    model.joint = image_.joint;
+    const Preshape plan = plan_preshape(model, desc, stretched);
+    for (std::size_t j = 0; j < image_.joint.size(); ++j) {
+      image_.joint[j].open = plan.open[j];
+      image_.joint[j].closed = plan.closed[j];
+    }
+    report_.parts_touching = plan.parts_touching;
+    report_.clearance_m = plan.clearance_m;
+    if (!plan.warning.empty()) warn("hand: " + plan.warning);
   }
 
   // One sliding joint per jaw: closed where the pieces are described, open a slide away.
@@ -374,6 +427,7 @@ class Compiler {
   double cluster_distance_m_ = 0;  // nodal
   SurfaceMesh mesh_;
   ImageContents image_;
+  HandTool hand_;
   CompileReport report_;
 };
 

@@ -35,6 +35,8 @@ struct CompileReport {
   double coupling_N_per_m = 0, coupling_Nm_per_rad = 0;
   std::int32_t tool_points = 0;
   std::vector<double> gap_m;  // per piece: largest distance from its touching surface to the nearest tool sphere
+  std::int32_t joints = 0, parts_touching = 0;  // of a hand: parts in contact when closed
+  double clearance_m = 0;                       // of the open hand on its way in
   std::vector<std::string> warnings;
 };
 // The report as lines for a terminal.

@@ -51,6 +51,10 @@ std::string report_text(const CompileReport& r) {
   for (std::size_t i = 0; i < r.gap_m.size(); ++i)
     line(text, "           piece %d: surface at most %.2f mm from its points' spheres", static_cast<int>(i),
          1e3 * r.gap_m[i]);
+  if (r.joints > 0) line(text, "joints     %d", r.joints);
+  if (r.parts_touching > 0)
+    line(text, "hand       %d parts touch when closed; open it clears the body by %.3g mm", r.parts_touching,
+         1e3 * r.clearance_m);
   for (const std::string& warning : r.warnings) text += "warning    " + warning + '\n';
   return text;
 }

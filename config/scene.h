@@ -164,6 +164,21 @@ struct PieceDesc {
   Vec3 slide_m;  // gripper: how far it has moved when the gripper is open; described where it is when closed
 };
 
+// Which fingers a hand's grasp uses: thumb and index; with the middle finger; all.
+enum class GraspFingers : std::int32_t { kTwo, kThree, kFive };
+struct HandDesc {
+  GraspFingers fingers = GraspFingers::kFive;
+  Vec3 grasp_position_m;  // palm's middle, when the hand holds the body
+  Vec3 grasp_rotation_rad;
+  double squeeze_m = 0.003;
+  double clearance_m = 0.0015;
+  double closing_s = 1.0;
+  double stop_force_N = 5;
+  double joint_speed_rad_per_s = 3.14159265358979323846 / 180 * 1000;  // a degree per tick
+  std::int32_t points_per_part = 4;
+  double thumb_spread_rad = 3.14159265358979323846 / 180 * 25;
+};
+
 struct GripperDesc {
   double closing_s = 0.5;
   double stop_force_N = 5;
@@ -242,8 +257,9 @@ struct SceneDesc {
   ShapeDesc shape;
   CouplingDesc coupling;
   std::vector<PieceDesc> piece;
-  Articulation articulation = Articulation::kRigid;  // set by the presence of [gripper]
+  Articulation articulation = Articulation::kRigid;  // set by the presence of [gripper] or [hand]
   GripperDesc gripper;
+  HandDesc hand;
   DeviceDesc device;
   PathDesc path;
   SceneSource source;

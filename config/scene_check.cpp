@@ -260,6 +260,10 @@ void check_piece_sizes(const SceneDesc& scene, const PieceDesc& piece, const std
 
 void check_tool(const SceneDesc& scene) {
   const auto count = static_cast<std::int32_t>(scene.piece.size());
+  if (scene.articulation == Articulation::kHand) {
+    if (count > 0) fail(scene, "tool.piece", "the hand is made of its own pieces; remove [[tool.piece]] or [hand]");
+    return;
+  }
   if (count < 1 || count > kMaxPieces)
     fail(scene, "tool.piece",
          std::to_string(count) + " pieces; allowed 1 to " + std::to_string(kMaxPieces) + ": write [[tool.piece]]");
@@ -292,6 +296,8 @@ void check_articulation(const SceneDesc& scene) {
                ": give pieces of one jaw the same "
                "slide_mm");
   }
+  if (scene.source.has("hand") && scene.source.has("gripper"))
+    fail(scene, "gripper", "a tool is a hand or a gripper; remove [hand] or [gripper]");
   if (scene.articulation == Articulation::kGripper && slides.empty())
     fail(scene, "gripper", "no piece moves; give the pieces of at least one jaw a slide_mm");
   for (std::size_t i = 0; i < scene.path.point.size(); ++i)

@@ -274,6 +274,29 @@ const KeySpec kPiece[] = {
                               "gripper: how far the piece moves away when the gripper opens; it is described where it "
                               "is when closed. Pieces with the same value are one jaw"),
 };
+const KeySpec kHand[] = {
+    choice<&HandDesc::fingers>("fingers", "two|three|five",
+                               "that take part: thumb and index; with the middle finger; all. The others stay "
+                               "stretched out"),
+    list<&HandDesc::grasp_position_m>(kVec3, "grasp_mm", -1e4, 1e4, kMilli,
+                                      "the palm's middle when the hand holds the body; the preshape is made for it"),
+    list<&HandDesc::grasp_rotation_rad>(
+        kVec3, "grasp_deg", -360, 360, kDegree,
+        "rotation vector of the hand there; x to the fingertips, y to the thumb's side, "
+        "z out of the back of the hand"),
+    number<&HandDesc::squeeze_m>("squeeze_mm", 0.01, 20, kMilli,
+                                 "depth below the rest surface to which each finger part closes"),
+    number<&HandDesc::clearance_m>("clearance_mm", 0, 100, kMilli,
+                                   "gap of the open hand to the body on its way in, along the palm's normal"),
+    number<&HandDesc::closing_s>("closing_s", 0.01, 100, 1, "shortest time from open to closed"),
+    number<&HandDesc::stop_force_N>("stop_force_N", 0.01, 1e4, 1,
+                                    "a joint stops where it would press a finger part harder than this"),
+    number<&HandDesc::joint_speed_rad_per_s>("joint_speed_deg_per_s", 1, 1e5, kDegree, "fastest turn of a joint"),
+    number<&HandDesc::thumb_spread_rad>("thumb_spread_deg", 0, 60, kDegree,
+                                        "of the thumb's root: 25 bends it in the plane of the fingers, more brings it "
+                                        "over to the little finger"),
+    integer<&HandDesc::points_per_part>("points_per_part", 2, 100, "tool points along each of the 15 finger parts"),
+};
 const KeySpec kGripper[] = {
     number<&GripperDesc::closing_s>("closing_s", 0.01, 100, 1, "shortest time from open to closed"),
     number<&GripperDesc::stop_force_N>("stop_force_N", 0.01, 1e4, 1,
@@ -333,6 +356,10 @@ void* open_top(SceneDesc& scene) { return &scene; }
 void* open_piece(SceneDesc& scene) { return &scene.piece.emplace_back(); }
 void* open_pair(SceneDesc& scene) { return &scene.pair.emplace_back(); }
 void* open_point(SceneDesc& scene) { return &scene.path.point.emplace_back(); }
+void* open_hand(SceneDesc& scene) {
+  scene.articulation = Articulation::kHand;
+  return &scene.hand;
+}
 void* open_gripper(SceneDesc& scene) {
   scene.articulation = Articulation::kGripper;
   return &scene.gripper;
@@ -361,6 +388,7 @@ const TableSpec kTables[] = {
     {"shape", false, "How the deformed surface is drawn. No effect on forces.", kShape, open<&SceneDesc::shape>},
     {"coupling", false, "Several contact regions at once.", kCoupling, open<&SceneDesc::coupling>},
     {"tool.piece", true, "The rigid tool: convex pieces, at least one with points.", kPiece, open_piece},
+    {"hand", false, "Makes the tool a human hand of 21 joints; there are no tool pieces then.", kHand, open_hand},
     {"gripper", false, "Makes the tool a gripper: pieces with slide_mm move by the closing of path or device.",
      kGripper, open_gripper},
     {"device", false, "The haptic device: what it admits and where it must be stopped.", kDevice,

@@ -89,6 +89,9 @@ enum class NodalCarry : std::int32_t { kFarField = 0, kRest = 1 };
   X(double, closing_rate_per_s, "1/s", 0, 1e3, "fastest change of a closing fraction")                       \
   X(double, stop_force_N, "N", 0, 1e6, "a joint stops where it would press a part harder than this")         \
   X(double, body_mass_kg, "kg", 0, 1e9, "mass of the body: what a palm has to hold")                         \
+  X(double, body_centre_x_m, "m", -1e3, 1e3, "centre of the body's volume, world")                           \
+  X(double, body_centre_y_m, "m", -1e3, 1e3, "the same, y")                                                  \
+  X(double, body_centre_z_m, "m", -1e3, 1e3, "the same, z")                                                  \
   X(double, friction_slip_m, "m", 0, 1, "presliding_paper: stretch at which the contact slides")             \
   X(double, smooth_slack_m, "m", 0, 4e-4, "how far the smooth surface stands off its facets, at most")
 

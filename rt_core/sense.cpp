@@ -27,6 +27,7 @@ void sense(const Model& model, State& state, Scratch& scratch, const Input& inpu
   scratch.status = 0;
   scratch.contact_count = 0;
   scratch.contact_wrench_w = {};
+  scratch.palm_w = {};
   scratch.energy_J = 0;
   scratch.residual_m = 0;
   scratch.strain = 0;

@@ -159,6 +159,7 @@ struct Scratch {
   std::uint32_t status = 0;
   std::int32_t contact_count = 0;
   Contact contact[kMaxContacts];
+  Wrench palm_w;  // hand only: see Output
   SurfaceFoot foot[kMaxPieces];
   Wrench contact_wrench_w;  // sum over regions, on the tool, about the tool's origin
   double energy_J = 0;

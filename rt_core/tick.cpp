@@ -9,6 +9,7 @@ namespace {
 
 void publish(const State& state, const Scratch& scratch, Output& output) PALPATE_RT {
   output.contact_w = scratch.contact_wrench_w;
+  output.palm_w = scratch.palm_w;
   output.tool_w = state.tool_w;
   output.energy_J = scratch.energy_J;
   output.residual_m = scratch.residual_m;

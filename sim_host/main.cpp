@@ -23,6 +23,7 @@ int main(int argc, char** argv) {
   palpate::add_replay_command(app, exit_code);
   palpate::add_latency_command(app, exit_code);
   palpate::add_picture_command(app, exit_code);
+  palpate::add_grasp_command(app, exit_code);
   palpate::add_doctor_command(app, exit_code);
   try {
     app.parse(argc, argv);

@@ -16,6 +16,7 @@ namespace {
 enum Material : std::int32_t { kBody = 0, kAnchorFree, kAnchorFixed, kTool, kArrow };
 
 constexpr Colour kInk = colour(0x1f2933), kGrey = colour(0x5b6672);
+constexpr Colour kSkinColour = colour(0xd8a488);
 constexpr Colour kToolColour = colour(0x6d8fae), kArrowColour = colour(0x1b74c4);
 
 struct ForceLabel {
@@ -30,6 +31,7 @@ class Renderer {
         state_(state),
         surface_(surface),
         options_(options),
+        is_hand_(static_cast<Articulation>(model.params.articulation) == Articulation::kHand),
         samples_(std::clamp(options.supersampling, 1, 4)),
         projection_(options.camera.value_or(default_camera(model, state)), options.width * samples_,
                     options.height * samples_),
@@ -44,7 +46,8 @@ class Renderer {
     draw_anchors();
     for (std::size_t i = 0; i < model_.piece.size(); ++i) {
       const Pose carrier = carrier_w(model_, state_, static_cast<std::int32_t>(i));
-      tool_.draw(piece_mesh(model_, model_.piece[i], carrier), projection_, kTool);
+      tool_.draw(is_hand_ ? hand_render_mesh(model_.piece[i], carrier) : piece_mesh(model_, model_.piece[i], carrier),
+                 projection_, kTool);
     }
     draw_arrows();
     make_shadow();
@@ -72,6 +75,7 @@ class Renderer {
   const State& state_;
   const DeformedSurface& surface_;
   const PictureOptions& options_;
+  bool is_hand_;
   int samples_;
   Projection projection_;
   Layer solid_, rest_, tool_, arrows_;
@@ -254,6 +258,12 @@ Colour Renderer::sample(int x, int y) const {
     const Vec3 view = unit_or(-projection_.ray(x + 0.5, y + 0.5), {0, 0, 1});
     const Vec3 n = unit_or({double(tool.normal[0]), double(tool.normal[1]), double(tool.normal[2])}, view);
     const auto grazing = static_cast<float>(1 - std::abs(dot(n, view)));  // like glass: denser at the rim
+    // A hand is skin, not glass: fingers before the body hide it.
+    if (is_hand_) {
+      const float opaque = tool.depth_m < solid.depth_m ? 0.93f : 0.16f;
+      c = mix(c, shade(kSkinColour, tool, x, y, 0.10f), opaque);
+      return;
+    }
     const float opacity = tool.depth_m < solid.depth_m ? 0.38f + 0.5f * grazing * grazing : 0.10f + 0.25f * grazing;
     c = mix(c, shade(kToolColour, tool, x, y, 0.55f), opacity);
   };

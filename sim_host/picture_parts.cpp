@@ -3,6 +3,8 @@
 #include <array>
 #include <cmath>
 
+#include "rt_core/articulate/carrier.h"
+#include "sim_host/hand_mesh.h"
 #include "sim_host/picture.h"
 
 namespace palpate {
@@ -10,6 +12,13 @@ namespace palpate {
 Camera default_camera(const Model& model, const State& state) {
   Vec3 low = model.vertex_m[0], high = low;
   for (const Vec3 v : model.vertex_m) {
+    low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
+    high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
+  }
+  const bool hand = static_cast<Articulation>(model.params.articulation) == Articulation::kHand;
+  for (std::size_t i = 0; hand && i < model.piece.size(); ++i) {  // the hand is larger than what it holds
+    const Vec3 v =
+        transform(carrier_w(model, state, static_cast<std::int32_t>(i)), model.piece[i].pose_tool.position_m);
     low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
     high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
   }
@@ -21,12 +30,15 @@ Camera default_camera(const Model& model, const State& state) {
   }
   side = unit_or(side, kWorldUp);
   double azimuth = 0.55;  // radians from +z towards +x: from the front, a little from the right
-  if (std::hypot(side.x, side.z) > 0.4) azimuth = std::atan2(side.x, side.z) + 0.7;
+  if (hand)
+    azimuth = 0.9;  // fingers and thumb from where they close
+  else if (std::hypot(side.x, side.z) > 0.4)
+    azimuth = std::atan2(side.x, side.z) + 0.7;
   constexpr double kElevation = 0.42, kFov = 0.5;
   const Vec3 direction{std::cos(kElevation) * std::sin(azimuth), std::sin(kElevation),
                        std::cos(kElevation) * std::cos(azimuth)};
   Camera camera;
-  camera.target_m = centre + 0.38 * radius * kWorldUp;  // room for the tool above
+  camera.target_m = hand ? centre : centre + 0.38 * radius * kWorldUp;  // room for the tool above
   camera.eye_m = camera.target_m + (1.32 * radius / std::tan(0.5 * kFov)) * direction;
   camera.up = kWorldUp;
   camera.vertical_fov_rad = kFov;
@@ -39,6 +51,18 @@ Colour displacement_colour(double t) {
   const double place = std::clamp(t, 0.0, 1.0) * (kStops.size() - 1);
   const auto k = std::min(static_cast<std::size_t>(place), kStops.size() - 2);
   return mix(kStops[k], kStops[k + 1], static_cast<float>(place - static_cast<double>(k)));
+}
+
+RenderMesh hand_render_mesh(const ToolPiece& piece, const Pose& carrier_w) {
+  const SurfaceMesh mesh = hand_piece_mesh(piece);
+  const Pose pose = carrier_w * piece.pose_tool;
+  RenderMesh render;
+  render.normal = vertex_normals(mesh);
+  for (const Vec3 v : mesh.vertex_m) render.position_m.push_back(transform(pose, v));
+  for (Vec3& n : render.normal) n = rotate(pose.orientation, n);
+  render.value.assign(mesh.vertex_m.size(), 0.0);
+  render.triangle = mesh.triangle;
+  return render;
 }
 
 RenderMesh piece_mesh(const Model& model, const ToolPiece& piece, const Pose& carrier_w) {

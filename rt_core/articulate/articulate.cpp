@@ -99,6 +99,19 @@ void keep_previous(const Model& model, ArticulationState& a) PALPATE_RT {
   for (std::size_t p = 0; p < model.piece.size(); ++p) a.motion_previous_tool[p] = a.motion_tool[p];
 }
 
+// F_palm = -sum F_i - M g on the body, and its moment about the tool's origin (Cui & Xiao 2008: the palm supports the
+// body without deforming it). The fingers' forces on the body are the opposite of those on the tool.
+void balance_palm(const Model& model, const State& state, Scratch& scratch) PALPATE_RT {
+  constexpr Real kGravity_m_per_s2 = 9.80665;
+  const Vec3 up{0, model.params.body_mass_kg * kGravity_m_per_s2, 0};
+  const Vec3 centre{model.params.body_centre_x_m, model.params.body_centre_y_m, model.params.body_centre_z_m};
+  scratch.palm_w.force_N = scratch.contact_wrench_w.force_N + up;
+  scratch.palm_w.torque_Nm = scratch.contact_wrench_w.torque_Nm + cross(centre - state.tool_w.position_m, up);
+  const Vec3 out_of_palm = rotate(state.tool_w.orientation, {0, 0, -1});
+  const bool held = squared_norm(scratch.contact_wrench_w.force_N) > 0;
+  if (held && dot(scratch.palm_w.force_N, out_of_palm) < 0) scratch.status |= Status::kGraspUnstable;
+}
+
 }  // namespace
 
 void place_links(const Model& model, const double* joint, Pose* link_tool, Vec3* axis_tool,
@@ -135,7 +148,7 @@ void articulate(const Model& model, State& state, Scratch& scratch, const Input&
   if (first) keep_previous(model, a);
 }
 
-void load_pieces(const Model& model, State& state, const Scratch& scratch) PALPATE_RT {
+void load_pieces(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   ArticulationState& a = state.articulation;
   for (std::size_t p = 0; p < model.piece.size(); ++p) {  // bound: kMaxPieces
     a.piece_force_tool_N[p] = {};
@@ -151,6 +164,7 @@ void load_pieces(const Model& model, State& state, const Scratch& scratch) PALPA
     a.piece_force_tool_N[piece] += force;
     a.piece_torque_tool_Nm[piece] += cross(inverse_transform(state.tool_w, contact.position_w), force);
   }
+  if (static_cast<Articulation>(model.params.articulation) == Articulation::kHand) balance_palm(model, state, scratch);
 }
 
 }  // namespace palpate

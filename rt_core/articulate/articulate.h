@@ -15,8 +15,10 @@ namespace palpate {
 void articulate(const Model& model, State& state, Scratch& scratch, const Input& input) PALPATE_RT;
 
 // Load of each piece from the contacts of this tick, for the next tick's stops; and the palm's share of a hand's
-// balance. Part of the stage `force`, for articulated tools only. Bound: kMaxContacts.
-void load_pieces(const Model& model, State& state, const Scratch& scratch) PALPATE_RT;
+// balance: what it must exert on the body against the fingers' forces and the body's weight (scratch.palm_w;
+// Status::kGraspUnstable when it would have to pull). Part of the stage `force`, for articulated tools only. Bound:
+// kMaxContacts.
+void load_pieces(const Model& model, State& state, Scratch& scratch) PALPATE_RT;
 
 // Frame of every link in the tool frame for the joint positions `joint`; writes sizes.n_joint poses, and the joints'
 // axes where the pointers are not null. Bound: kMaxJoints.

@@ -25,4 +25,11 @@ namespace palpate {
 Vec3 transferred_force_w(const Model& model, const State& state, std::int32_t from_slot,
                          std::int32_t to_slot) PALPATE_RT;
 
+// The same for all pairs of regions slot[0..count), first born first: adds to added_N[i] the component along normal_w
+// of slot[i] of what every later slot[j] carries over, in the order of j, bit for bit as transferred_force_w gives it.
+// One skeleton and one set of weights per region instead of one per pair: with 15 regions 105 skeletons were 0.6
+// million instructions. Bound: kMaxRegions skeletons and kMaxRegions^2 / 2 sums over the anchors.
+void add_transferred_forces(const Model& model, const State& state, const std::int32_t* slot, std::int32_t count,
+                            Real* added_N) PALPATE_RT;
+
 }  // namespace palpate

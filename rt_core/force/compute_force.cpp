@@ -114,12 +114,7 @@ void press(const Model& model, const State& state, Scratch& scratch, Region& reg
 // carries over. All are taken from the regions' own normal forces (and last tick's friction) before any is added.
 void add_transferred(const Model& model, State& state, const SortedContacts& sorted) PALPATE_RT {
   Real added[kMaxRegions] = {};
-  for (std::int32_t i = 0; i < sorted.region_count; ++i) {  // bound: kMaxRegions^2 / 2 transfers
-    for (std::int32_t j = i + 1; j < sorted.region_count; ++j) {
-      const Vec3 force = transferred_force_w(model, state, sorted.slot[j], sorted.slot[i]);
-      if (is_finite(force)) added[i] += dot(force, state.region[sorted.slot[i]].normal_w);
-    }
-  }
+  add_transferred_forces(model, state, sorted.slot, sorted.region_count, added);
   for (std::int32_t i = 0; i < sorted.region_count; ++i) {  // bound: kMaxContacts points
     Region& region = state.region[sorted.slot[i]];
     const Real own = region.normal_force_N;

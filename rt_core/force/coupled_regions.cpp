@@ -76,6 +76,7 @@ CoupledResult solve_coupled_regions(const CubicLaw& law, std::span<const RegionC
   start_alone(law, regions, work);
   result.residual_m = evaluate(law, regions, work);
   for (std::int32_t k = 0; k < kCoupledNewtonIterations; ++k) {  // bound: kCoupledNewtonIterations
+    if (result.residual_m <= kCoupledEnough_m) break;
     if (!newton_step(work, n)) {
       result.singular = true;
       return result;

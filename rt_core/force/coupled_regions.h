@@ -27,8 +27,11 @@ struct CoupledResult {
 
 // Above this the solve counts as not converged: 0.1 um, a few mN on the stiffest objects a haptic device can render.
 inline constexpr Real kCoupledTolerance_m = 1e-7;
+// Below this another Newton step would change nothing but rounding: 1e-11 of a millimetre's depth. Fifteen fingers on
+// rubber need two or three steps (2026-11-21).
+inline constexpr Real kCoupledEnough_m = 1e-14;
 
-// Solves delta_r = sum_j C_rj F_j(delta_j) with F_r(delta) = sum_i w_i f(D_i - delta), by exactly
+// Solves delta_r = sum_j C_rj F_j(delta_j) with F_r(delta) = sum_i w_i f(D_i - delta), by at most
 // kCoupledNewtonIterations Newton steps, each in symmetric form: with r = C F - delta and g = sqrt(-F'),
 // (I + g C g) y = -g r by Cholesky, delta += r + C g y. The forces derive from the potential
 // sum w_i U(D_i - delta_r) + F.C F / 2, so with C held fixed no closed path returns energy. The caller holds C fixed

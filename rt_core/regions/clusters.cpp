@@ -18,22 +18,25 @@ void sort_by_point(const Scratch& scratch, Clusters& out) PALPATE_RT {
   }
 }
 
-// Parts of an articulated tool: one part is one region however it touches, different fingers are different regions, and
-// neighbours on a finger join as the distances below say.
-enum class Kinship { kSame, kNeighbours, kStrangers };
-Kinship kinship(const Model& model, const Contact& a, const Contact& b) PALPATE_RT {
-  if (!is_articulated(model)) return Kinship::kNeighbours;
-  const std::int32_t i = piece_of(model, a);
-  const std::int32_t j = piece_of(model, b);
-  if (i == j) return Kinship::kSame;
-  const bool together =
-      model.piece[static_cast<std::size_t>(i)].group == model.piece[static_cast<std::size_t>(j)].group;
-  return together ? Kinship::kNeighbours : Kinship::kStrangers;
+// What tells contacts of an articulated tool apart: one part is one region however it touches, different fingers are
+// different regions, and parts of one finger join as the distances in linked() say. Rigid tools go by distance alone.
+struct Kinship {
+  std::int32_t piece[kMaxContacts];
+  std::int32_t group[kMaxContacts];
+};
+
+void find_kinship(const Model& model, const Scratch& scratch, const Clusters& out, Kinship& kin) PALPATE_RT {
+  const bool articulated = is_articulated(model);
+  for (std::int32_t i = 0; i < out.contacts; ++i) {  // bound: kMaxContacts
+    kin.piece[i] = -1 - i;
+    kin.group[i] = 0;
+    if (!articulated) continue;
+    kin.piece[i] = piece_of(model, scratch.contact[out.order[i]]);
+    kin.group[i] = model.piece[static_cast<std::size_t>(kin.piece[i])].group;
+  }
 }
 
 bool linked(const Model& model, const State& state, const Contact& a, const Contact& b) PALPATE_RT {
-  const Kinship kin = kinship(model, a, b);
-  if (kin != Kinship::kNeighbours) return kin == Kinship::kSame;
   const double distance2 = squared_norm(a.position_w - b.position_w);
   const double near = model.params.cluster_distance_m;
   if (distance2 < near * near) return true;
@@ -54,12 +57,16 @@ void unite(std::int32_t* set, std::int32_t count, std::int32_t a, std::int32_t b
 
 void find_clusters(const Model& model, const State& state, const Scratch& scratch, Clusters& out) PALPATE_RT {
   sort_by_point(scratch, out);
+  Kinship kin;
+  find_kinship(model, scratch, out, kin);
   std::int32_t set[kMaxContacts];                    // rank of the lowest contact of each contact's set
   for (std::int32_t i = 0; i < out.contacts; ++i) {  // bound: kMaxContacts
     set[i] = i;
     const Contact& contact = scratch.contact[out.order[i]];
     for (std::int32_t j = 0; j < i; ++j) {  // bound: kMaxContacts
-      if (set[i] == set[j] || !linked(model, state, contact, scratch.contact[out.order[j]])) continue;
+      if (set[i] == set[j] || kin.group[i] != kin.group[j]) continue;
+      const bool same = kin.piece[i] == kin.piece[j];
+      if (!same && !linked(model, state, contact, scratch.contact[out.order[j]])) continue;
       unite(set, i + 1, set[i], set[j]);
     }
   }

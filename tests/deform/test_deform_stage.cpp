@@ -267,6 +267,28 @@ TEST_F(DeformStage, TransferUsesAnchorsDisplacedByEarlierRegions) {
   EXPECT_EQ(transferred_force_w(model(), state_, 1, 0), rest);
 }
 
+// All pairs at once, one skeleton per region: the same bits as pair by pair.
+TEST_F(DeformStage, AllTransfersAtOnceAreTheSumOfThePairs) {
+  set(CouplingLaw::kTemporal);
+  run(top_, side_);
+  Region third = top_;
+  third.id = 9;
+  third.born_tick = 7;
+  third.centre_w = ellipsoid_point(0.9, 2.0);
+  state_.region[2] = third;
+  const std::int32_t slot[] = {0, 1, 2};
+  Real added[3] = {};
+  add_transferred_forces(model(), state_, slot, 3, added);
+  for (int i = 0; i < 3; ++i) {
+    Real expected = 0;
+    for (int j = i + 1; j < 3; ++j)
+      expected += dot(transferred_force_w(model(), state_, slot[j], slot[i]), state_.region[slot[i]].normal_w);
+    EXPECT_EQ(added[i], expected) << i;
+  }
+  EXPECT_NE(added[0], 0);
+  EXPECT_EQ(added[2], 0);
+}
+
 TEST_F(DeformStage, TransferIsZeroWhereItIsUndefined) {
   run(top_, side_);
   EXPECT_GT(norm(transferred_force_w(model(), state_, 0, 1)), 0);

@@ -69,7 +69,7 @@ Problem two_points(Real depth_a, Real depth_b) {
 
 TEST(CoupledRegions, WorkedNumbers) {
   Problem p = two_points(3e-3, 3e-3);
-  EXPECT_LT(p.solve().residual_m, 1e-16);
+  EXPECT_LE(p.solve().residual_m, kCoupledEnough_m);
   EXPECT_NEAR(3e-3 - p.shift(0), 2.746889e-3, 5e-10);
   EXPECT_NEAR(p.force(0), 6.327785, 5e-7);
   EXPECT_NEAR(p.force(1), 6.327785, 5e-7);
@@ -134,7 +134,7 @@ TEST(CoupledRegions, ConvergesOnTwoThousandRandomProblems) {
     Real self_compliance;
     int points;
     Real bound_m;
-  } cases[] = {{3e-5, 1, 1e-17}, {3e-5, 4, 1e-17}, {1.5e-4, 1, 1e-11}, {1.5e-4, 4, 1e-9}};
+  } cases[] = {{3e-5, 1, kCoupledEnough_m}, {3e-5, 4, kCoupledEnough_m}, {1.5e-4, 1, 1e-11}, {1.5e-4, 4, 1e-9}};
   for (const auto& c : cases) {
     std::mt19937_64 random(5);
     Real worst = 0;
@@ -144,8 +144,9 @@ TEST(CoupledRegions, ConvergesOnTwoThousandRandomProblems) {
       EXPECT_FALSE(result.singular);
       worst = std::max(worst, result.residual_m);
     }
-    // Measured 2026-11-21 over 2000 problems each: 9e-19, 9e-19, 2.3e-13, 1.3e-10 m.
-    EXPECT_LT(worst, c.bound_m) << c.self_compliance << ' ' << c.points;
+    // Measured 2026-11-21 over 2000 problems each with all five steps: 9e-19, 9e-19, 2.3e-13, 1.3e-10 m; the solve ends
+    // early below kCoupledEnough_m.
+    EXPECT_LE(worst, c.bound_m) << c.self_compliance << ' ' << c.points;
   }
 }
 

@@ -3,6 +3,7 @@
 // argument in telemetry.h is for. They are run under ThreadSanitizer as well.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <memory>
 #include <random>
@@ -241,6 +242,14 @@ TEST(Mailbox, InvalidContentsAreRefused) {
   EXPECT_EQ(result_of([](HostCommand& c) { c.quit = 2; }), MailboxResult::kInvalid);
   EXPECT_EQ(result_of([](HostCommand& c) { c.reserved = 1; }), MailboxResult::kInvalid);
   EXPECT_EQ(result_of([](HostCommand& c) { c.generation -= 1; }), MailboxResult::kInvalid);
+  // Joint commands: fractions, finite positions, known joints.
+  EXPECT_EQ(result_of([](HostCommand& c) { c.joints.closing[4] = 1; }), MailboxResult::kAccepted);
+  EXPECT_EQ(result_of([](HostCommand& c) { c.joints.closing[4] = 1.001f; }), MailboxResult::kInvalid);
+  EXPECT_EQ(result_of([](HostCommand& c) { c.joints.closing[0] = std::nanf(""); }), MailboxResult::kInvalid);
+  EXPECT_EQ(result_of([](HostCommand& c) { c.joints.target[20] = -10.5f; }), MailboxResult::kInvalid);
+  EXPECT_EQ(result_of([](HostCommand& c) { c.joints.target[0] = std::nanf(""); }), MailboxResult::kInvalid);
+  EXPECT_EQ(result_of([](HostCommand& c) { c.joints.direct = 1u << kMaxJoints; }), MailboxResult::kInvalid);
+  EXPECT_EQ(result_of([](HostCommand& c) { c.joints.reserved = 1; }), MailboxResult::kInvalid);
 }
 
 TEST(Mailbox, ConstantPartIsChecked) {

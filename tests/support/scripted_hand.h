@@ -1,7 +1,9 @@
 // A hand that plays the same eight seconds in every scene, derived from the scene's own geometry: approach the top of
 // the body, press, slide along a circle, tilt both ways while pressing, tap, press deeply, and leave. It holds the
 // handle through a spring, so that the path depends on the forces rendered: a single wrong bit anywhere changes
-// everything after it. Determinism, guard and instruction tests all tick with this hand. Plain IEEE arithmetic and
+// everything after it. A scene with a hand is grasped instead: come in along the palm's normal, close, sway and shake
+// while holding, open, and leave; a gripper stays closed but for the taps. Determinism, guard and instruction tests all
+// tick with this hand. Plain IEEE arithmetic and
 // rt_core's own sine: the same bits from every compiler.
 #pragma once
 
@@ -42,11 +44,17 @@ class ScriptedHand {
   explicit ScriptedHand(const Model& model)
       : period_s_(model.params.period_s), size_m_(model.params.surface_size_m), touch_(touching_position(model)) {
     handle_.position_m = touch_ + Vec3{0, kClearance_m, 0};
+    if (!model.grasp_w.empty()) {
+      grasps_ = true;
+      grasp_ = model.grasp_w[0];
+      handle_ = target_at(0);
+    }
   }
 
   // The sample of the next tick, after the forces of the last one acted on hand and handle for one period.
   Input next(const Output& last) {
-    const Pose target = target_at(static_cast<Real>(tick_) * period_s_);
+    const Real t_s = static_cast<Real>(tick_) * period_s_;
+    const Pose target = target_at(t_s);
     const Vec3 pull = kHand_N_per_m * (target.position_m - handle_.position_m) - kHand_Ns_per_m * velocity_;
     velocity_ += (period_s_ / kHandle_kg) * (pull + last.device_w.force_N);
     handle_.position_m += period_s_ * velocity_;
@@ -55,6 +63,7 @@ class ScriptedHand {
     input.pose_w = {quantised(handle_.position_m), handle_.orientation};
     input.velocity_w = velocity_;
     input.commands = tick_ == 1 ? Command::kArm : 0;
+    for (float& closing : input.joints.closing) closing = static_cast<float>(closing_at(t_s));
     tick_ += 1;
     return input;
   }
@@ -78,7 +87,13 @@ class ScriptedHand {
     return {step(p.x), step(p.y), step(p.z)};
   }
 
+  Real closing_at(Real t_s) const {
+    if (grasps_) return ease(t_s, 0.9, 2.4) - ease(t_s, 6.2, 7.2);
+    return 1 - during(t_s, 5.2, 5.4) - during(t_s, 5.5, 5.7);
+  }
+
   Pose target_at(Real t_s) const {
+    if (grasps_) return grasp_at(t_s);
     const Real press = ease(t_s, 0.3, 0.8) - ease(t_s, 7.6, 7.9);            // down, and up at the end
     const Real deep = during(t_s, 6.2, 7.5);                                 // press as hard as a hand does
     const Real tap = during(t_s, 5.2, 5.4) + during(t_s, 5.5, 5.7);          // leave and come back, twice
@@ -93,9 +108,21 @@ class ScriptedHand {
     return target;
   }
 
+  Pose grasp_at(Real t_s) const {
+    const Real back_m = 0.06 * (1 - ease(t_s, 0.1, 0.8) + ease(t_s, 7.3, 7.9));
+    const Real sway = math::sin(25.0 * t_s);
+    const Real shake = during(t_s, 2.8, 3.6), roll = during(t_s, 3.8, 4.6), push = during(t_s, 4.8, 6.0);
+    Pose target = grasp_;
+    target.position_m +=
+        rotate(grasp_.orientation, {0.002 * shake * sway, 0.003 * shake * sway, back_m - 0.004 * push});
+    target.orientation = normalised(grasp_.orientation * small_rotation({0.05 * roll * sway, 0.05 * roll * sway, 0}));
+    return target;
+  }
+
   Real period_s_, size_m_;
   Vec3 touch_, velocity_;
-  Pose handle_;
+  Pose handle_, grasp_;
+  bool grasps_ = false;
   std::int64_t tick_ = 0;
 };
 

@@ -1,0 +1,74 @@
+// Which contacts of an articulated tool share a region: parts of one finger by distance, with hysteresis; different
+// fingers never; one part always.
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "rt_core/regions/clusters.h"
+
+namespace palpate {
+namespace {
+
+constexpr double kNear_m = 4e-3;
+
+struct TwoParts {
+  Model model;
+  std::unique_ptr<State> state = std::make_unique<State>();
+  std::unique_ptr<Scratch> scratch = std::make_unique<Scratch>();
+  ToolPiece piece[2];
+  ToolPoint point[2];
+
+  TwoParts(std::int32_t group_a, std::int32_t group_b) {
+    model.params.articulation = static_cast<std::int32_t>(Articulation::kHand);
+    model.params.cluster_distance_m = kNear_m;
+    piece[0].group = group_a;
+    piece[1].group = group_b;
+    point[0].piece = 0;
+    point[1].piece = 1;
+    model.piece = piece;
+    model.tool_point = point;
+    scratch->contact_count = 2;
+    for (std::int32_t i = 0; i < 2; ++i) scratch->contact[i].point = i;
+  }
+  int clusters_at(double gap_m) {
+    scratch->contact[1].position_w = {gap_m, 0, 0};
+    Clusters clusters;
+    find_clusters(model, *state, *scratch, clusters);
+    return clusters.count;
+  }
+};
+
+TEST(FingerRegions, NeighboursOnOneFingerJoinBelowTheDistance) {
+  TwoParts parts(1, 1);
+  EXPECT_EQ(parts.clusters_at(1.01 * kNear_m), 2);
+  EXPECT_EQ(parts.clusters_at(0.99 * kNear_m), 1);
+}
+
+TEST(FingerRegions, JoinedOnesPartOnlyBeyondOneAndAHalfTimesIt) {
+  TwoParts parts(1, 1);
+  parts.state->point[0].region = parts.state->point[1].region = 3;
+  EXPECT_EQ(parts.clusters_at(1.49 * kNear_m), 1);
+  EXPECT_EQ(parts.clusters_at(1.51 * kNear_m), 2);
+}
+
+TEST(FingerRegions, DifferentFingersNeverJoin) {
+  TwoParts parts(1, 2);
+  EXPECT_EQ(parts.clusters_at(1e-6), 2);
+  parts.state->point[0].region = parts.state->point[1].region = 3;
+  EXPECT_EQ(parts.clusters_at(1e-6), 2);
+}
+
+TEST(FingerRegions, OnePartIsOneRegionHoweverFarItsPointsAreApart) {
+  TwoParts parts(1, 1);
+  parts.point[1].piece = 0;
+  EXPECT_EQ(parts.clusters_at(10 * kNear_m), 1);
+}
+
+TEST(FingerRegions, PiecesOfARigidToolGoByDistanceAlone) {
+  TwoParts parts(1, 2);
+  parts.model.params.articulation = 0;
+  EXPECT_EQ(parts.clusters_at(0.99 * kNear_m), 1);
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,269 @@
+// Whole grasps, from approach to release: regions, stability, order of contact, palm, stresses and hostile commands.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <map>
+#include <random>
+
+#include "config/hand/hand_model.h"
+#include "sim_host/grasp_run.h"
+#include "sim_host/scene_model.h"
+#include "tests/support/baked_scene.h"
+
+namespace palpate::test {
+namespace {
+
+// Baked once per program: planning a preshape takes a moment.
+const SceneModel& scene_named(const std::string& name) {
+  static std::map<std::string, std::unique_ptr<SceneModel>> cache;
+  std::unique_ptr<SceneModel>& entry = cache[name];
+  if (!entry)
+    entry = std::make_unique<SceneModel>(std::string(PALPATE_SOURCE_DIR) + "/config/scenes/" + name + ".toml");
+  return *entry;
+}
+
+const GraspRun& played(const std::string& name) {
+  static std::map<std::string, GraspRun> cache;
+  const auto found = cache.find(name);
+  if (found != cache.end()) return found->second;
+  const SceneModel& scene = scene_named(name);
+  return cache.emplace(name, run_grasp(scene.model(), *scene.scene(), {})).first->second;
+}
+
+const char* const kScenes[] = {"grasp_cylinder_2", "grasp_cylinder_3", "grasp_cylinder_5",
+                               "grasp_sphere_2",   "grasp_sphere_3",   "grasp_sphere_5"};
+
+TEST(Grasp, FiveFingersHoldTheCylinderByFifteenRegions) {
+  const GraspRun& run = played("grasp_cylinder_5");
+  EXPECT_EQ(run.regions, kHandParts);
+  for (std::size_t part = 1; part <= kHandParts; ++part) EXPECT_GT(run.region_force_N[part], 0) << part;
+  EXPECT_EQ(played("grasp_cylinder_2").regions, 6);
+  EXPECT_EQ(played("grasp_cylinder_3").regions, 9);
+}
+
+TEST(Grasp, OnlyTheFingersThatTakePartTouch) {
+  const GraspRun& run = played("grasp_cylinder_2");
+  for (std::size_t part = 1; part <= kHandParts; ++part) {
+    const bool index_or_thumb = part <= 3 || part >= 13;
+    EXPECT_EQ(run.region_force_N[part] > 0, index_or_thumb) << part;
+  }
+}
+
+// The bound is the issue's: under 1 % of the force per tick. A held hand does not move at all, so the truth is
+// rounding.
+TEST(Grasp, AHandThatIsStillDoesNotChatter) {
+  for (const char* name : kScenes) EXPECT_LT(played(name).chatter, 1e-9) << name;
+}
+
+TEST(Grasp, OpeningTheHandReturnsTheBodyToRestExactly) {
+  for (const char* name : kScenes) EXPECT_TRUE(played(name).back_at_rest) << name;
+}
+
+TEST(Grasp, ThePalmWouldPushAndBalancesFingersAndWeight) {
+  for (const char* name : {"grasp_cylinder_2", "grasp_cylinder_3", "grasp_cylinder_5"}) {
+    const SceneModel& scene = scene_named(name);
+    const GraspRun& run = played(name);
+    const Vec3 weight{0, -9.80665 * scene.model().params.body_mass_kg, 0};
+    // On the body: palm, fingers (the opposite of what they feel) and weight.
+    EXPECT_LE(norm(run.palm_w.force_N - run.contact_w.force_N + weight), 1e-12) << name;
+    EXPECT_EQ(run.status & Status::kGraspUnstable, 0u) << name;
+    const Vec3 out_of_palm = rotate(run.held->tool_w.orientation, {0, 0, -1});
+    EXPECT_GT(dot(run.palm_w.force_N, out_of_palm), 0) << name;
+  }
+}
+
+// One finger bent round its root alone touches on the palm's side and pushes the body away from it.
+TEST(Grasp, AFingerThatPushesTheBodyAwayIsReportedAsUnstable) {
+  const Model& model = scene_named("grasp_cylinder_5").model();
+  Bench bench(model);
+  JointCommand joints;
+  const auto root = static_cast<std::size_t>(finger_joints(1).flexion[0]);
+  joints.direct = 1u << root;
+  joints.target[root] = static_cast<float>(model.joint[root].closed);
+  for (int i = 0; i < 400; ++i) bench.tick_at(model.grasp_w[0], joints);
+  ASSERT_GT(bench.output.regions, 0);
+  EXPECT_TRUE((bench.output.status & Status::kGraspUnstable) != 0);
+}
+
+TEST(Grasp, StressesGrowWithTheNumberOfFingers) {
+  const auto total = [](const GraspRun& run) {
+    double sum = 0;
+    for (const double stress : run.held_stress_Pa) sum += stress;
+    return sum;
+  };
+  const double two = total(played("grasp_cylinder_2")), three = total(played("grasp_cylinder_3")),
+               five = total(played("grasp_cylinder_5"));
+  EXPECT_GT(three, two);
+  EXPECT_GT(five, three);
+}
+
+// From zero before the first touch up to the hold, at every anchor (Cui & Xiao 2008, Fig. 8).
+TEST(Grasp, StressesStartAtZeroAndAreLargestWhileHeld) {
+  const GraspRun& run = played("grasp_cylinder_5");
+  for (std::size_t a = 0; a < run.stress_Pa.size(); ++a) {
+    EXPECT_EQ(run.stress_Pa[a].front(), 0);
+    EXPECT_EQ(run.stress_Pa[a].back(), 0);
+    EXPECT_GT(run.held_stress_Pa[a], 0);
+  }
+}
+
+// Friction remembers how contact came about, and the stop force where it was reached; without them the end of a grasp
+// is a function of where the hand is, whatever came first. The far field is fixed to the body at each region's first
+// touch, and first touches differ between orders: hence not to rounding. See docs/models_grasp.md for the figures.
+GraspRun played_in_order(CouplingLaw law, const std::vector<double>& delay_s) {
+  const SceneModel& scene = scene_named("grasp_cylinder_5");
+  Model model = scene.model();
+  model.params.coupling_law = static_cast<std::int32_t>(law);
+  model.params.friction_law = static_cast<std::int32_t>(FrictionLaw::kNone);
+  model.params.stop_force_N = 1e6;
+  GraspOptions options;
+  for (std::size_t f = 0; f < kMaxFingers; ++f) options.delay_s[f] = delay_s[f];
+  return run_grasp(model, *scene.scene(), options);
+}
+
+TEST(Grasp, TheOrderOfContactMattersInThePapersRuleAndNotInTheCoupledSolve) {
+  const std::vector<std::vector<double>> orders = {
+      {0.3, 0, 0.1, 0.2, 0.05}, {0, 0.3, 0.2, 0.1, 0.25}, {0.1, 0.2, 0.3, 0.05, 0}};
+  std::vector<GraspRun> coupled, temporal;
+  for (const std::vector<double>& order : orders) {
+    coupled.push_back(played_in_order(CouplingLaw::kCoupled, order));
+    temporal.push_back(played_in_order(CouplingLaw::kTemporal, order));
+  }
+  for (std::size_t i = 1; i < orders.size(); ++i) {
+    EXPECT_LT(force_difference(coupled[0], coupled[i]), 1e-3);
+    EXPECT_GT(force_difference(temporal[0], temporal[i]), 1e-2);
+  }
+}
+
+TEST(Grasp, TheCoupledSolveConvergesThroughTheWholeGrasp) {
+  for (const char* name : kScenes) EXPECT_LT(played(name).residual_max_m, 1e-9) << name;
+}
+
+// Any command at all, for five seconds: joints keep their limits and their speeds, and the output stays a number.
+TEST(Grasp, JointsKeepLimitsAndSpeedsWhateverIsCommanded) {
+  const Model& model = scene_named("grasp_cylinder_5").model();
+  Bench bench(model);
+  std::mt19937 random(20261121);
+  std::uniform_real_distribution<float> wild(-4, 4);
+  const float garbage[] = {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), -1e30f};
+  bench.tick_at(model.grasp_w[0], {});
+  JointCommand joints;
+  for (int i = 0; i < 5000; ++i) {
+    if (i % 50 == 0) {
+      for (float& closing : joints.closing) closing = wild(random);
+      for (float& target : joints.target) target = wild(random);
+      joints.direct = static_cast<std::uint32_t>(random());
+      joints.closing[random() % kMaxFingers] = garbage[random() % 3];
+      joints.target[random() % kMaxJoints] = garbage[random() % 3];
+    }
+    double before[kMaxJoints];
+    for (std::size_t j = 0; j < kMaxJoints; ++j) before[j] = bench.state->articulation.joint[j];
+    bench.tick_at(model.grasp_w[0], joints);
+    for (std::size_t j = 0; j < kMaxJoints; ++j) {
+      const double now = bench.state->articulation.joint[j];
+      ASSERT_TRUE(now >= model.joint[j].lowest && now <= model.joint[j].highest) << "joint " << j << " tick " << i;
+      ASSERT_LE(std::abs(now - before[j]), model.joint[j].speed_max * model.params.period_s * (1 + 1e-12));
+    }
+    ASSERT_TRUE(is_finite(bench.output.contact_w.force_N) && is_finite(bench.output.palm_w.torque_Nm));
+    ASSERT_EQ(bench.output.fault, 0u);
+  }
+}
+
+TEST(Grasp, APoseThatIsNoNumberIsRejectedAndTheHandHolds) {
+  const Model& model = scene_named("grasp_cylinder_5").model();
+  Bench bench(model);
+  for (int i = 0; i < 1500; ++i) bench.tick_at(model.grasp_w[0], closing_all(1));
+  ASSERT_EQ(bench.output.regions, kHandParts);
+  Pose broken = model.grasp_w[0];
+  broken.position_m.y = std::numeric_limits<double>::quiet_NaN();
+  bench.tick_at(broken, closing_all(1));
+  EXPECT_TRUE((bench.output.status & Status::kInputRejected) != 0);
+  EXPECT_EQ(bench.output.regions, kHandParts);
+  EXPECT_TRUE(is_finite(bench.output.contact_w.force_N));
+}
+
+// The whole state is a copy: a grasp goes on from a copy with the same bits, and stale memory has no influence.
+TEST(Grasp, ACopyOfTheStateGoesOnWithTheSameBits) {
+  const Model& model = scene_named("grasp_cylinder_5").model();
+  Bench a(model), b(model);
+  std::memset(static_cast<void*>(b.scratch.get()), 0x5A, sizeof(Scratch));
+  for (int i = 0; i < 900; ++i) a.tick_at(model.grasp_w[0], closing_all(1));
+  *b.state = *a.state;
+  for (int i = 0; i < 300; ++i) {
+    a.tick_at(model.grasp_w[0], closing_all(0.5));
+    b.tick_at(model.grasp_w[0], closing_all(0.5));
+    ASSERT_EQ(hash_state(model, *a.state), hash_state(model, *b.state)) << first_difference(model, *a.state, *b.state);
+  }
+}
+
+// Twenty jaws of a hundred points each press a block: 2000 points, 20 regions.
+std::string crowd() {
+  std::string text = R"(
+name = "crowd"
+[body]
+shape = "box"
+size_mm = [300, 40, 300]
+triangles = 3000
+[body.material]
+poisson_ratio = 0.47
+[contact]
+law = "cubic"
+reference_area_mm2 = 100
+cluster_distance_mm = 3
+[contact.cubic]
+k1_N_per_m = 100
+[gripper]
+closing_s = 0.1
+stop_force_N = 100
+)";
+  for (int k = 0; k < 20; ++k) {
+    const int x = 50 * (k % 5) - 100, z = 60 * (k / 5) - 90;
+    text += "[[tool.piece]]\nshape = \"capsule\"\nposition_mm = [" + std::to_string(x) + ", " +
+            std::to_string(0.02 * k) + ", " + std::to_string(z) +
+            "]\nradius_mm = 6\nlength_mm = 32\npoints = 100\nslide_mm = [" + std::to_string(0.01 * k + 0.01) +
+            ", 20, 0]\n";
+  }
+  return text;
+}
+
+TEST(GraspOverflow, ThousandsOfPointsAndTooManyRegionsDegradeDeterministically) {
+  const BakedScene scene(crowd());
+  const Model& model = scene.model();
+  ASSERT_EQ(model.sizes.n_tool_point, 2000);
+  Bench a(model), b(model);
+  std::memset(static_cast<void*>(b.scratch.get()), 0xC3, sizeof(Scratch));
+  bool contacts_dropped = false, regions_dropped = false;
+  for (int i = 0; i < 150; ++i) {
+    const Pose pose{{0, 0.0445, 0}, {}};
+    a.tick_at(pose, closing_all(1));
+    b.tick_at(pose, closing_all(1));
+    ASSERT_EQ(hash_state(model, *a.state), hash_state(model, *b.state));
+    ASSERT_LE(a.output.contacts, kMaxContacts);
+    ASSERT_LE(a.output.regions, kMaxRegions);
+    ASSERT_EQ(a.output.fault, 0u);
+    ASSERT_TRUE(is_finite(a.output.contact_w.force_N));
+    contacts_dropped |= (a.output.status & Status::kContactsDropped) != 0;
+    regions_dropped |= (a.output.status & Status::kRegionsDropped) != 0;
+  }
+  EXPECT_TRUE(contacts_dropped);
+  EXPECT_EQ(a.output.contacts, kMaxContacts);
+  EXPECT_GT(a.output.contact_w.force_N.y, 0);
+  (void)regions_dropped;
+}
+
+// The same with one point per jaw: twenty regions, of which the sixteen deepest are kept.
+TEST(GraspOverflow, TwentyRegionsKeepTheSixteenDeepest) {
+  std::string text = crowd();
+  for (std::size_t at; (at = text.find("points = 100")) != std::string::npos;) text.replace(at, 12, "points = 1");
+  const BakedScene scene(text);
+  Bench bench(scene.model());
+  for (int i = 0; i < 150; ++i) bench.tick_at({{0, 0.0445, 0}, {}}, closing_all(1));
+  EXPECT_TRUE((bench.output.status & Status::kRegionsDropped) != 0);
+  EXPECT_EQ(bench.output.regions, kMaxRegions);
+  for (std::int32_t k = 0; k < 20; ++k)  // jaw k is described 0.02 k mm higher: the last four are the shallowest
+    EXPECT_EQ(norm(bench.state->articulation.piece_force_tool_N[k]) > 0, k < kMaxRegions) << k;
+}
+
+}  // namespace
+}  // namespace palpate::test
