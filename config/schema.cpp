@@ -164,8 +164,8 @@ const KeySpec kNodal[] = {
                                "normal forces: exact, by block principal pivoting; or approximate, by sweeps"),
     integer<&NodalDesc::sweeps>("sweeps", 1, 100, "gauss_seidel: sweeps per tick"),
     integer<&NodalDesc::friction_sweeps>("friction_sweeps", 1, 20,
-                                         "sweeps per tick of the problem with friction; each costs about 40,000 "
-                                         "instructions for 60 contacts"),
+                                         "sweeps per tick of the problem with friction; each costs about 30,000 "
+                                         "instructions for 45 contacts"),
     choice<&NodalDesc::carry>("carry", "far_field|rest",
                               "where gaps and normals are taken: on the surface carried by its far field, or at rest"),
     number_or_auto<&NodalDesc::margin_m>("margin_mm", 0.001, 100, kMilli,

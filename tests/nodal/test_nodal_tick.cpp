@@ -1,5 +1,6 @@
 // Whole ticks of the nodal back-end: balance, complementarity, friction, the virtual coupling, and the hard cases.
 #include <gtest/gtest.h>
+#include <limits>
 
 #include <cmath>
 #include <cstdio>
@@ -8,6 +9,8 @@
 
 namespace palpate::test {
 namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 PieceDesc box_piece(Vec3 size_m) {
   PieceDesc piece;
@@ -228,10 +231,10 @@ TEST(NodalTick, DroppedNodesAreReported) {
 TEST(NodalTick, NotANumberFaultsAndRecovers) {
   NodalScene scene(block(), {sphere_piece(0.010)}, soft(0.5));
   scene.move(sphere_at(0), sphere_at(0.002), 10);
-  scene.tick_at({NAN, 0, 0});  // refused by sense: the last pose is kept
+  scene.tick_at({kNan, 0, 0});  // refused by sense: the last pose is kept
   EXPECT_NE(scene.output().status & Status::kInputRejected, 0u);
   EXPECT_TRUE(is_finite(scene.output().contact_w.force_N));
-  scene.state().nodal.contact[0].force_w.x = NAN;  // corrupted memory
+  scene.state().nodal.contact[0].force_w.x = kNan;  // corrupted memory
   scene.tick_at(sphere_at(0.002));
   scene.tick_at(sphere_at(0.002));
   EXPECT_TRUE(is_finite(scene.output().device_w.force_N));

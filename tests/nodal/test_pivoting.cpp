@@ -1,5 +1,6 @@
 // The frictionless contact problem: worked numbers, optimality on random problems, degenerate ones.
 #include <gtest/gtest.h>
+#include <limits>
 
 #include <cmath>
 #include <cstdio>
@@ -12,6 +13,8 @@
 
 namespace palpate::test {
 namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 using Matrix = std::vector<std::vector<double>>;
 
@@ -163,7 +166,7 @@ TEST(Pivoting, ErrorOfGaussSeidelPerSweep) {
 }
 
 TEST(Pivoting, NotANumberPushesNothing) {
-  auto p = problem_of(kThree, {NAN, -.5, .2});
+  auto p = problem_of(kThree, {kNan, -.5, .2});
   solve_pivoting(*p);
   for (int i = 0; i < 3; ++i) EXPECT_FALSE(p->push_N[i] < 0);
   EXPECT_LE(p->pivots, kMaxPivots);

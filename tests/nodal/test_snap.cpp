@@ -3,6 +3,7 @@
 // dimensions plane stress is nu = 0: with 0.35 and a width of five thicknesses the arms cannot bend anticlastically,
 // which makes them 7 % stiffer.
 #include <gtest/gtest.h>
+#include <limits>
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +13,8 @@
 
 namespace palpate::test {
 namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 constexpr double kFirstContact_m = 0.01414133;
 
@@ -63,7 +66,7 @@ class Clip {
 double zero_crossing_mm(const std::vector<double>& force) {
   for (std::size_t k = 30; k < force.size(); ++k)
     if (force[k] < 0) return 0.1 * (static_cast<double>(k) - force[k] / (force[k] - force[k - 1]));
-  return NAN;
+  return kNan;
 }
 
 // Linear elasticity itself is 6 % too stiff at the peak; 8 % leaves 2 % for the meshes. The coarsest gets 10 %.
