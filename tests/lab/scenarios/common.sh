@@ -1,4 +1,5 @@
 # Sourced by the scenarios. $seconds is the guest time to render.
+image=/lab/scenes/ellipsoid_mallet.pal
 
 # raise PATTERN PRIORITY: puts kernel threads whose name matches at that SCHED_FIFO priority.
 raise() {
@@ -74,7 +75,7 @@ render() {
 
 render_recorded() {
   status=0
-  palpate run /lab/ellipsoid_mallet.pal --device "$controller_at" --duration "$seconds" --record /tmp/run.plr \
+  palpate run "$image" --device "$controller_at" --duration "$seconds" --record /tmp/run.plr \
     --priority 80 --quiet || status=$?
   kill $device 2> /dev/null || true
   palpate replay /tmp/run.plr
@@ -86,7 +87,7 @@ render_recorded() {
 
 render_hostile() {
   disturb & chaos=$!
-  lab_host /lab/ellipsoid_mallet.pal "$controller_at" "$seconds" 30 /results || [ $? -eq 137 ]
+  lab_host "$image" "$controller_at" "$seconds" 30 /results || [ $? -eq 137 ]
   kill $chaos 2> /dev/null || true
   ends_alone
   kill $device
