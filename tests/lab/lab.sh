@@ -70,6 +70,7 @@ judge() { # SCENARIO FOLDER: problems found in the numbers, one a line
   ! above "$wake" $((kernel + allowance_us)) || echo "wake-up $wake us, cyclictest $kernel us"
   case $name in scene_ellipsoid_mallet*) ;; scene_*) limit_us=$scene_limit_us ;; esac
   ! above "$sent" $limit_us || echo "deadline to sent $sent us, allowed $limit_us us"
+  [ ! -e "$results/$2/replay.txt" ] || grep -q '^identical' "$results/$2/replay.txt" || echo "another result outside the guest"
   above "$hand" 0.5 || echo "the hand felt nothing"
   case $name in host_chaos) ;; *) [ "${lost:-0}" = 0 ] || echo "$lost records lost" ;; esac
 }
@@ -91,6 +92,14 @@ default_seconds() { # SCENARIO
   esac
 }
 
+replay_outside() { # SCENARIO RESULT_DIR: what was computed inside must be what a real processor computes
+  local scene=ellipsoid_mallet
+  [ -e "$2/run.plr" ] || return
+  case $1 in scene_*) scene=${1#scene_} ;; esac
+  "$programs/palpate" replay "$2/run.plr" --image "$out/scenes/$scene.pal" > "$2/replay.txt" 2>&1
+  rm "$2/run.plr"
+}
+
 run_one() { # SCENARIO[:SECONDS]
   local name=${1%%:*} seconds=${1#*:} folder=${1/:/_} started=$SECONDS
   [ "$seconds" != "$1" ] || seconds=$(default_seconds "$name")
@@ -103,6 +112,7 @@ run_one() { # SCENARIO[:SECONDS]
   if ! bash "$here/boot.sh" run "$out" "$name" "$seconds" "$results/$folder" $((300 + 10 * seconds)) 2> "$results/$folder/boot.txt"; then
     cat "$results/$folder/boot.txt" >&2
   fi
+  replay_outside "$name" "$results/$folder"
   verdict "$1" $((SECONDS - started))
 }
 
@@ -111,6 +121,7 @@ determinism() { # FOLDER: two runs of one scenario must give the same bytes, to 
   for run in 1 2; do
     mkdir -p "$results/$1/$run"
     bash "$here/boot.sh" run "$out" vcan 3 "$results/$1/$run" 400 || differ=" run $run failed"
+    rm -f "$results/$1/$run/run.plr"
   done
   for file in recording.sha256 latency.txt cyclictest.txt kernel.log log.txt; do
     [ -s "$results/$1/1/$file" ] && cmp -s "$results/$1/1/$file" "$results/$1/2/$file" || differ+=" $file differs"
@@ -163,6 +174,7 @@ write_table() {
 if [ "${1:-}" = --one ]; then # this script calls itself for each scenario
   out=$3
   results=$4
+  programs=$5
   run_one "$2"
   exit
 fi
@@ -227,7 +239,7 @@ bash "$here/guest.sh" "$cache" "$out" "$programs"/{palpate,palpate-rt,palpate-de
 echo "lab: booting the guest" >&2
 bash "$here/boot.sh" save "$out" || die "the guest does not boot"
 mkdir -p "$results"
-printf '%s\n' "${scenarios[@]}" | xargs -P "$jobs" -I{} bash "$here/lab.sh" --one {} "$out" "$results" | tee "$out/verdicts"
+printf '%s\n' "${scenarios[@]}" | xargs -P "$jobs" -I{} bash "$here/lab.sh" --one {} "$out" "$results" "$programs" | tee "$out/verdicts"
 write_table
 failed=$(grep -c '^FAILED' "$out/verdicts")
 passed=$(grep -c '^passed' "$out/verdicts")

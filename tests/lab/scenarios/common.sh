@@ -82,6 +82,7 @@ render_recorded() {
   palpate latency --recording /tmp/run.plr --histfile /results/latency.txt --json /results/latency.json \
     --overlay /results/cyclictest.txt --plot /results/latency.svg || true
   sha256sum < /tmp/run.plr | cut -c1-64 > /results/recording.sha256
+  cp /tmp/run.plr /results/
   return $status
 }
 
