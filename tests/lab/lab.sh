@@ -109,7 +109,7 @@ run_one() { # SCENARIO[:SECONDS]
     determinism "$folder"
     return
   fi
-  if ! bash "$here/boot.sh" run "$out" "$name" "$seconds" "$results/$folder" $((300 + 10 * seconds)) 2> "$results/$folder/boot.txt"; then
+  if ! bash "$here/boot.sh" run "$out" "$name" "$seconds" "$results/$folder" $((600 + 40 * seconds)) 2> "$results/$folder/boot.txt"; then
     cat "$results/$folder/boot.txt" >&2
   fi
   replay_outside "$name" "$results/$folder"
