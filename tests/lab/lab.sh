@@ -96,7 +96,7 @@ replay_outside() { # SCENARIO RESULT_DIR: what was computed inside must be what 
   local scene=ellipsoid_mallet
   [ -e "$2/run.plr" ] || return
   case $1 in scene_*) scene=${1#scene_} ;; esac
-  "$programs/palpate" replay "$2/run.plr" --image "$out/scenes/$scene.pal" > "$2/replay.txt" 2>&1
+  "$out/palpate" replay "$2/run.plr" --image "$out/scenes/$scene.pal" > "$2/replay.txt" 2>&1
   rm "$2/run.plr"
 }
 
@@ -174,7 +174,6 @@ write_table() {
 if [ "${1:-}" = --one ]; then # this script calls itself for each scenario
   out=$3
   results=$4
-  programs=$5
   run_one "$2"
   exit
 fi
@@ -228,6 +227,7 @@ done
 
 out=$(mktemp -d "${TMPDIR:-/tmp}/palpate-lab.XXXXXX")
 trap 'rm -rf "$out"' EXIT
+cp "$programs/palpate" "$out/" # a long run may outlive the build
 mkdir "$out/scenes"
 for one in $scenes; do
   one=${one#scene_}
@@ -239,7 +239,7 @@ bash "$here/guest.sh" "$cache" "$out" "$programs"/{palpate,palpate-rt,palpate-de
 echo "lab: booting the guest" >&2
 bash "$here/boot.sh" save "$out" || die "the guest does not boot"
 mkdir -p "$results"
-printf '%s\n' "${scenarios[@]}" | xargs -P "$jobs" -I{} bash "$here/lab.sh" --one {} "$out" "$results" "$programs" | tee "$out/verdicts"
+printf '%s\n' "${scenarios[@]}" | xargs -P "$jobs" -I{} bash "$here/lab.sh" --one {} "$out" "$results" | tee "$out/verdicts"
 write_table
 failed=$(grep -c '^FAILED' "$out/verdicts")
 passed=$(grep -c '^passed' "$out/verdicts")
