@@ -1,5 +1,6 @@
 // Rules between keys: what one key's value allows or forbids for another.
 #include <algorithm>
+#include <cmath>
 
 #include "config/config_error.h"
 #include "config/scene.h"
@@ -141,10 +142,11 @@ void check_presses(const SceneDesc& scene) {
   if (stated > 0 && scene.body.shape != BodyShape::kBox && scene.body.shape != BodyShape::kCylinder)
     fail(scene, "contact.layer.thickness_mm",
          "has no effect on this body with contact.table.source = \"fem\"; remove it");
+  const auto in_mm = [](double length_m) { return number_text(std::round(1e9 * length_m) / 1e6) + " mm"; };
   if (stated > 0 && !(std::abs(stated - height) <= 1e-9))
     fail(scene, "contact.layer.thickness_mm",
-         number_text(1e3 * stated) + " mm, but the body that contact.table.source = \"fem\" presses is " +
-             number_text(1e3 * height) + " mm high; make them equal");
+         in_mm(stated) + ", but the body that contact.table.source = \"fem\" presses is " + in_mm(height) +
+             " high; make them equal");
 }
 
 void check_contact(const SceneDesc& scene) {

@@ -1,6 +1,7 @@
 // Large-strain presses of a body at its top as one smooth law: travel = local(F) + (c0 + c1 F + c2 F^2) F.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -42,9 +43,12 @@ FarSeries fit_far_series(const LocalLaw& local, const std::vector<fem::LoadPoint
 // than three elements may find no equilibrium; shallower, the fit's local law takes over.
 std::vector<double> press_shares(fem::RigidShape tool);
 
-// Presses to depth_max_m and their fit. Throws ConfigError, saying how far the last attempt came, when no mesh finds
-// all equilibria or the fit misses a press by more than 2 % of its depth.
+// Elements under the tool of the meshes to try.
+std::span<const int> press_elements(fem::RigidShape tool);
+
+// Presses to depth_max_m and their fit, on the first mesh that finds all equilibria. Throws ConfigError, saying how far
+// the last attempt came, when none does, or when the fit misses a press by more than 2 % of its depth.
 PressSeries press_series(const fem::PressBody& body, const fem::RigidTool& tool, const LocalLaw& local,
-                         double depth_max_m);
+                         double depth_max_m, std::span<const int> meshes);
 
 }  // namespace palpate

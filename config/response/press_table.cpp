@@ -25,23 +25,20 @@ double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-// The one shape of all tips that touch.
+// The one shape of all tips that touch; the scene check has seen that there is one.
 const PieceDesc& only_tip(const SceneDesc& scene) {
   const PieceDesc* tip = nullptr;
   for (std::size_t i = 0; i < scene.piece.size(); ++i) {
     const PieceDesc& piece = scene.piece[i];
     if (piece.points == 0) continue;
-    const bool same = tip == nullptr || (piece.shape == tip->shape && piece.radius_m == tip->radius_m &&
-                                         (piece.shape != PieceShape::kCone || piece.length_m == tip->length_m));
+    if (tip == nullptr) tip = &piece;
+    const bool same = piece.shape == tip->shape && piece.radius_m == tip->radius_m &&
+                      (piece.shape != PieceShape::kCone || piece.length_m == tip->length_m);
     if (!same)
       throw ConfigError(scene.source.where("tool.piece[" + std::to_string(i) + "]") +
                         ": a table holds the response of one tip, and this piece has another shape; make all touching "
                         "pieces alike, or set contact.law = \"tool\"");
-    tip = &piece;
   }
-  if (tip == nullptr)
-    throw ConfigError(scene.source.where("tool.piece") +
-                      ": no piece touches; set points = 1 for the tip to be pressed");
   return *tip;
 }
 
@@ -118,7 +115,7 @@ PressSeries press_top(const SceneDesc& scene, const PlaceTips& tips, const Press
   const fem::PressBody body = pressed_body(scene, kKey);
   const fem::RigidTool tool = pressed_tool(tips.piece(), tip_indenter(tips.piece()), tip.depth_max_m);
   try {
-    return press_series(body, tool, law.local(), tip.depth_max_m);
+    return press_series(body, tool, law.local(), tip.depth_max_m, press_elements(tool.shape));
   } catch (const ConfigError& error) {
     fail(scene, kKey,
          std::string(error.what()) +
