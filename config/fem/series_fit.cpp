@@ -107,15 +107,18 @@ double series_force_N(const DepthOfForce& local, const SeriesCoefficients& c, do
 }
 
 SeriesBake bake_series(const PressBody& body, const RigidTool& tool, const DepthOfForce& local, double depth_max_m,
-                       int fine_count, double share) {
+                       int fine_count) {
   std::vector<double> depths_m;
-  for (const double read : kReadShares) depths_m.push_back(read * share * depth_max_m);
-  const PressMeshing meshing = default_meshing(body, tool, share * depth_max_m, fine_count);
+  for (const double share : kReadShares) depths_m.push_back(share * depth_max_m);
+  const PressMeshing meshing = default_meshing(body, tool, depth_max_m, fine_count);
   SeriesBake bake;
-  for (const PressPoint& p : press_axisymmetric(body, tool, StrainLaw::kNeoHookean, depths_m, meshing).points)
+  for (const PressPoint& p : press_as_far_as_possible(body, tool, StrainLaw::kNeoHookean, depths_m, meshing).points)
     bake.large.push_back({p.depth_m, p.force_N});
+  if (bake.large.size() < 2)
+    throw ConfigError("press: no equilibrium at depth " + std::to_string(1e3 * depths_m[bake.large.size()]) + " mm");
   // Force grows faster than depth, at most like its square in every law offered.
-  bake.coefficients = fit_series(local, bake.large, bake.large.back().force_N / (share * share));
+  const double beyond = depth_max_m / bake.large.back().depth_m;
+  bake.coefficients = fit_series(local, bake.large, bake.large.back().force_N * beyond * beyond);
   return bake;
 }
 

@@ -38,12 +38,14 @@ SeriesCoefficients fit_series(const DepthOfForce& local, const std::vector<LoadP
 double series_depth_m(const DepthOfForce& local, const SeriesCoefficients& c, double force_N);
 double series_force_N(const DepthOfForce& local, const SeriesCoefficients& c, double depth_m);
 
-// Large-strain press of a body of revolution to `share` of depth_max_m and the fit to its states.
+// Large-strain press of a body of revolution to `depth_max_m`, read at quarters of it, and the fit to its states. A
+// press that finds no equilibrium further on is taken as far as it came, if that is half way or more: beyond, the law
+// is then its continuation. Throws ConfigError otherwise.
 struct SeriesBake {
   SeriesCoefficients coefficients;
   std::vector<LoadPoint> large;
 };
 SeriesBake bake_series(const PressBody& body, const RigidTool& tool, const DepthOfForce& local, double depth_max_m,
-                       int fine_count = 12, double share = 1);
+                       int fine_count = 12);
 
 }  // namespace palpate::fem
