@@ -14,7 +14,8 @@ constexpr int kPanel = 32;
 constexpr double kZeroShare = 0.2;
 
 // For every column the rows that the matrix has below its diagonal, in the order of elimination.
-std::vector<std::vector<int>> permuted_columns(const Eigen::SparseMatrix<double>& lower, const std::vector<int>& order) {
+std::vector<std::vector<int>> permuted_columns(const Eigen::SparseMatrix<double>& lower,
+                                               const std::vector<int>& order) {
   std::vector<std::vector<int>> below(order.size());
   for (int column = 0; column < lower.outerSize(); ++column)
     for (Eigen::SparseMatrix<double>::InnerIterator it(lower, column); it; ++it) {
@@ -71,6 +72,43 @@ void fill(std::vector<std::vector<int>>& below, const std::vector<int>& parent) 
     if (parent[j] < 0) continue;
     std::vector<int>& up = below[static_cast<std::size_t>(parent[j])];
     up.insert(up.end(), rows.begin() + 1, rows.end());  // the first is the parent itself
+  }
+}
+
+// Takes the panel's part from columns j and j + 1, rows from j on (what lands above the second's diagonal is never
+// read). Four panel columns at a time, so that loads and stores are shared.
+template <class Columns>
+void subtract_from_two(const Columns& at, int start, int end, int j, int rows, const double* diagonal) {
+  double* __restrict first = at(j), * __restrict second = at(j + 1);
+  int k = start;
+  for (; k + 4 <= end; k += 4) {
+    const double* __restrict a = at(k), * __restrict b = at(k + 1), * __restrict c = at(k + 2), * __restrict e = at(k + 3);
+    const double fa = a[j] * diagonal[k], fb = b[j] * diagonal[k + 1], fc = c[j] * diagonal[k + 2],
+                 fe = e[j] * diagonal[k + 3];
+    const double sa = a[j + 1] * diagonal[k], sb = b[j + 1] * diagonal[k + 1], sc = c[j + 1] * diagonal[k + 2],
+                 se = e[j + 1] * diagonal[k + 3];
+    for (int i = j; i < rows; ++i) {
+      first[i] -= (fa * a[i] + fb * b[i]) + (fc * c[i] + fe * e[i]);
+      second[i] -= (sa * a[i] + sb * b[i]) + (sc * c[i] + se * e[i]);
+    }
+  }
+  for (; k < end; ++k) {
+    const double* __restrict a = at(k);
+    const double f = a[j] * diagonal[k], s = a[j + 1] * diagonal[k];
+    for (int i = j; i < rows; ++i) {
+      first[i] -= f * a[i];
+      second[i] -= s * a[i];
+    }
+  }
+}
+
+template <class Columns>
+void subtract_from_one(const Columns& at, int start, int end, int j, int rows, const double* diagonal) {
+  double* __restrict target = at(j);
+  for (int k = start; k < end; ++k) {
+    const double* __restrict a = at(k);
+    const double factor = a[j] * diagonal[k];
+    for (int i = j; i < rows; ++i) target[i] -= factor * a[i];
   }
 }
 
@@ -154,7 +192,9 @@ void SupernodalFactor::place_entries(const Eigen::SparseMatrix<double>& lower) {
 // The first `columns` of a square front, lower triangle, column by column: L below the diagonal (which stays 1,
 // unwritten), D apart, and the rest of the front less what they carry.
 bool SupernodalFactor::eliminate(std::vector<double>& front, int rows, int columns, double* diagonal) {
-  const auto at = [&](int column) { return front.data() + static_cast<std::size_t>(column) * static_cast<std::size_t>(rows); };
+  const auto at = [&](int column) {
+    return front.data() + static_cast<std::size_t>(column) * static_cast<std::size_t>(rows);
+  };
   for (int start = 0; start < columns; start += kPanel) {
     const int end = std::min(columns, start + kPanel);
     for (int k = start; k < end; ++k) {
@@ -172,22 +212,9 @@ bool SupernodalFactor::eliminate(std::vector<double>& front, int rows, int colum
       double* pivot = at(k);
       for (int i = k + 1; i < rows; ++i) pivot[i] /= diagonal[k];
     }
-    // Four columns of the panel at a time: one load and store of the target per four products.
-    for (int j = end; j < rows; ++j) {
-      double* target = at(j);
-      int k = start;
-      for (; k + 4 <= end; k += 4) {
-        const double *a = at(k), *b = at(k + 1), *c = at(k + 2), *e = at(k + 3);
-        const double fa = a[j] * diagonal[k], fb = b[j] * diagonal[k + 1], fc = c[j] * diagonal[k + 2],
-                     fe = e[j] * diagonal[k + 3];
-        for (int i = j; i < rows; ++i) target[i] -= (fa * a[i] + fb * b[i]) + (fc * c[i] + fe * e[i]);
-      }
-      for (; k < end; ++k) {
-        const double* a = at(k);
-        const double fa = a[j] * diagonal[k];
-        for (int i = j; i < rows; ++i) target[i] -= fa * a[i];
-      }
-    }
+    int j = end;
+    for (; j + 2 <= rows; j += 2) subtract_from_two(at, start, end, j, rows, diagonal);
+    if (j < rows) subtract_from_one(at, start, end, j, rows, diagonal);
   }
   return true;
 }

@@ -16,8 +16,8 @@ namespace {
 // Edge of a flat punch and apex of a cone, rounded for the solver: small against the contact, large against the mesh.
 constexpr double kPunchFillet = 0.1;  // of the radius
 constexpr double kApexFillet = 0.05;  // of the deepest press
-// Elements under the tool, in the order they are tried: the large-strain solver now and then finds no equilibrium on one
-// mesh that it finds on another.
+// Elements under the tool, in the order they are tried: the large-strain solver now and then finds no equilibrium on
+// one mesh that it finds on another.
 constexpr int kElements[] = {12, 10, 16};
 // The solver's stiffest volume; rubber and tissue at 0.5 differ by less than 1 % in force here.
 constexpr double kLargestRatio = 0.495;
@@ -89,8 +89,7 @@ FarFieldFit fit_far_field(const SceneDesc& scene, std::size_t piece, const TipDe
   std::string why;
   for (const int elements : kElements) {
     try {
-      const fem::SeriesCoefficients c =
-          fem::bake_series(body, tool, depth_of, tip.depth_max_m, elements).coefficients;
+      const fem::SeriesCoefficients c = fem::bake_series(body, tool, depth_of, tip.depth_max_m, elements).coefficients;
       return {c.c0_m_per_N, c.c1_m_per_N2};
     } catch (const ConfigError& error) {
       why = error.what();

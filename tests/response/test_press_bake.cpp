@@ -52,11 +52,10 @@ const char* const kAutoSeries = "[contact.series]\nc0_mm_per_N = \"auto\"\nc1_mm
 // Measured on 2026-11-21: 0.49 % with the parabola as local law, 0.19 % with the true sphere.
 TEST(PressBake, SeriesLawOfTheRubberBlockWithEitherSphere) {
   for (const char* sphere : {"parabola", "exact"}) {
-    const SceneDesc scene =
-        scene_of(kBlock,
-                 std::string("law = \"tool\"\nmax_depth_mm = 3\n") + kAutoSeries +
-                     "body_radius_1_mm = 0\nbody_radius_2_mm = 0\nsphere = \"" + sphere + "\"\n",
-                 6.35);
+    const SceneDesc scene = scene_of(kBlock,
+                                     std::string("law = \"tool\"\nmax_depth_mm = 3\n") + kAutoSeries +
+                                         "body_radius_1_mm = 0\nbody_radius_2_mm = 0\nsphere = \"" + sphere + "\"\n",
+                                     6.35);
     EXPECT_LT(series_error(scene, kBlockRows), 0.01) << sphere;
   }
 }

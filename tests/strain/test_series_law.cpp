@@ -82,8 +82,7 @@ TEST(SeriesLaw, StaysWithinTwoPerCentOnTheSpreadClipThroughTheRunTimeLaw) {
     path.push_back({1e-3 * d, clip.force_N(1e-3 * d)});
   const double modulus = 2e9 / (1 - 0.35 * 0.35), range = 0.2e-3;
   const RunTimeLaw local(TipProfile::kSphere, kClipTipRadius_m, modulus, range);
-  const SeriesCoefficients c =
-      fit_series(local.local_depth(), {path[2], path[4], path[6], path[8]}, path[8].force_N);
+  const SeriesCoefficients c = fit_series(local.local_depth(), {path[2], path[4], path[6], path[8]}, path[8].force_N);
   EXPECT_FALSE(c.clamped);
   const RunTimeLaw law(TipProfile::kSphere, kClipTipRadius_m, modulus, range, c);
   for (const LoadPoint& p : path) EXPECT_NEAR(law.force_N(p.depth_m) / p.force_N, 1, 0.02) << p.depth_m;
