@@ -218,7 +218,7 @@ const KeySpec kLayer[] = {
 const KeySpec kSeries[] = {
     number_or_auto<&SeriesDesc::c0_m_per_N>(
         "c0_mm_per_N", -1e3, 1e3, kMilli,
-        "far-field compliance c0; auto: from one linear press by finite elements (bodies of revolution)"),
+        "far-field compliance c0; auto: from a large-strain press by finite elements (bodies of revolution)"),
     number_or_auto<&SeriesDesc::c1_m_per_N2>("c1_mm_per_N2", -1e3, 1e3, kMilli,
                                              "its change with the force, c1; auto: from one large-strain press"),
 };
