@@ -171,7 +171,7 @@ class TipReader {
 
   void add_far_field(TipDesc& tip) const {
     const SeriesDesc& series = scene_.series;
-    FarFieldFit fit{series.c0_m_per_N, series.c1_m_per_N2, 0, 0, 0};
+    FarFieldFit fit{series.c0_m_per_N, series.c1_m_per_N2};
     if (is_auto(series.c0_m_per_N) || is_auto(series.c1_m_per_N2)) fit = fit_far_field(scene_, index_, tip);
     tip.c0_m_per_N = auto_or(series.c0_m_per_N, fit.c0_m_per_N);
     tip.c1_m_per_N2 = auto_or(series.c1_m_per_N2, fit.c1_m_per_N2);
@@ -212,7 +212,8 @@ class TipReader {
 
 void bake_response(const SceneDesc& scene, ImageContents& image, ResponseReport& report,
                    std::vector<std::string>& warnings) {
-  if (scene.contact.law != ContactLaw::kTool && scene.contact.law != ContactLaw::kTable) return;
+  const bool whole_tip = scene.contact.law == ContactLaw::kTool || scene.contact.law == ContactLaw::kTable;
+  if (!whole_tip && scene.contact.surface == ContactSurface::kFacets) return;
   image.corner_normal = corner_normals(scene.body, image.vertex_m, image.triangle);
   report.slack_m = largest_sag_m(image.corner_normal, image.vertex_m, image.triangle);
   // Half the margin within which the tick measures every point.
@@ -220,6 +221,7 @@ void bake_response(const SceneDesc& scene, ImageContents& image, ResponseReport&
     throw ConfigError(scene.source.where("body.triangles") + ": facets stand off the smooth surface by " +
                       number_text(1e3 * report.slack_m) + " mm; allowed 0.25 mm: use more triangles");
   image.params.smooth_slack_m = 1.5 * report.slack_m;
+  if (!whole_tip) return;
   for (const PieceDesc& piece : scene.piece)
     if (piece.points > 1)
       throw ConfigError(scene.source.where("tool.piece") +
