@@ -296,6 +296,9 @@ const KeySpec kHand[] = {
     choice<&HandDesc::fingers>("fingers", "two|three|five",
                                "that take part: thumb and index; with the middle finger; all. The others stay "
                                "stretched out"),
+    choice<&HandDesc::side>(
+        "side", "right|left",
+        "left: the mirror image of the right hand in y = 0 of its frame, so the thumb's side is -y"),
     list<&HandDesc::grasp_position_m>(kVec3, "grasp_mm", -1e4, 1e4, kMilli,
                                       "the palm's middle when the hand holds the body; the preshape is made for it"),
     list<&HandDesc::grasp_rotation_rad>(
