@@ -256,7 +256,9 @@ const KeySpec kShape[] = {
                                       "how anchor displacements spread over the surface"),
     choice<&ShapeDesc::tail>("tail", "constant|linear", "polynomial of the rbf; linear needs 4 anchors not in a plane"),
     choice<&ShapeDesc::neighbourhood>("neighbourhood", "none|log|log_c1|punch", "dent around a contact"),
-    number<&ShapeDesc::radius_m>("radius_mm", 0.001, 1000, kMilli, "radius R of the dent"),
+    number<&ShapeDesc::radius_m>("radius_mm", 0.001, 1000, kMilli,
+                                 "radius R of the dent; a hand whose scene leaves it out takes that of each finger "
+                                 "part from Cui & Xiao 2008, Table I"),
 };
 const KeySpec kCoupling[] = {
     choice<&CouplingDesc::law>("law", "none|coupled|temporal",

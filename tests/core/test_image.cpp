@@ -117,6 +117,8 @@ const Damage kDamages[] = {
      [](ImageBytes& i) { i.array<ToolPiece>(kPiece)->pose_tool.orientation.w = 2; }},
     {"piece margin", ImageError::kNotFinite, "piece.margin_m",
      [](ImageBytes& i) { i.array<ToolPiece>(kPiece)->margin_m = -1; }},
+    {"piece neighbourhood", ImageError::kNotFinite, "piece.neighbourhood_m",
+     [](ImageBytes& i) { i.array<ToolPiece>(kPiece)->neighbourhood_m = kNan; }},
     {"piece points", ImageError::kCrossReference, "piece.first_point",
      [](ImageBytes& i) { i.array<ToolPiece>(kPiece)->point_count = INT32_MAX; }},
     {"tool point piece", ImageError::kCrossReference, "tool_point.piece",
