@@ -80,10 +80,13 @@ struct SkeletonDesc {
 };
 
 enum class ContactLaw : std::int32_t { kDuffing, kCubic, kHertz, kTool, kTable };
+// What a tool point touches. Laws of a whole tip (kTool, kTable) always have the smooth surface.
+enum class ContactSurface : std::int32_t { kFacets, kSmooth };
 enum class DuffingCoefficient : std::int32_t { kStatic, kPaper };
 struct ContactDesc {
   ContactLaw law = ContactLaw::kDuffing;
   ContactWeight weight = ContactWeight::kWinkler;
+  ContactSurface surface = ContactSurface::kFacets;
   double reference_area_m2 = kAuto;
   double max_depth_m = 0.006;
   double cluster_distance_m = kAuto;

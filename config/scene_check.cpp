@@ -155,6 +155,7 @@ void check_contact(const SceneDesc& scene) {
 // Laws of whole tips: what friction, coupling and the pieces must be.
 void check_tips(const SceneDesc& scene) {
   if (scene.contact.law != ContactLaw::kTool && scene.contact.law != ContactLaw::kTable) return;
+  check_effect(scene, "contact", {"surface"}, {}, "with laws of whole tips, which always have the smooth surface");
   const FrictionLaw friction = scene.friction.law;
   if (friction == FrictionLaw::kReturnMap || friction == FrictionLaw::kPaper)
     fail(scene, "friction.law",
@@ -216,7 +217,7 @@ void check_backend(const SceneDesc& scene) {
   }
   for (const char* table : {"skeleton", "shape", "coupling", "contact.duffing", "contact.cubic", "contact.hertz"})
     no_table(table, "with contact.backend = \"nodal\"");
-  check_effect(scene, "contact", {"law", "weight", "reference_area_mm2", "max_depth_mm"}, {},
+  check_effect(scene, "contact", {"law", "weight", "surface", "reference_area_mm2", "max_depth_mm"}, {},
                "with contact.backend = \"nodal\"");
   if (scene.friction.law != FrictionLaw::kNone && !coulomb)
     fail(scene, "friction.law", "is not available with contact.backend = \"nodal\"; use \"none\" or \"coulomb\"");

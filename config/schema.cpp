@@ -146,6 +146,10 @@ const KeySpec kContact[] = {
     choice<&ContactDesc::weight>("weight", "winkler|area|paper",
                                  "weight of a tool point: area / reference area (force continuous as points enter and "
                                  "leave), share of the area in contact, or 1/n"),
+    choice<&ContactDesc::surface>("surface", "facets|smooth",
+                                  "what a tool point touches: the triangles, whose edges are felt by a tool of few "
+                                  "points; or the smooth surface they stand for, about 1,400 instructions more a "
+                                  "point. laws tool and table: always smooth"),
     number_or_auto<&ContactDesc::reference_area_m2>(
         "reference_area_mm2", 1e-3, 1e8, kMilliSquared,
         "winkler: contact area over which the law holds as stated; auto: mean area of a tool point"),

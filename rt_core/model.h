@@ -275,7 +275,7 @@ struct BeamResponse {
     "strain per newton: 3 n_vertex rows of 6 components (xx yy zz xy yz zx) per gauge")                         \
   X(Joint, joint, n_joint, "tool", "joints of an articulated tool, parents first")                              \
   X(Pose, grasp_w, n_grasp, "world", "tool pose for which the closed joint positions were made: 0 or 1")        \
-  X(CornerNormals, corner_normal, n_corner, "world", "smooth normals; empty for ResponseLaw::kPoints")          \
+  X(CornerNormals, corner_normal, n_corner, "world", "smooth normals; empty where the facets are touched")      \
   X(TipLaw, tip_law, n_tip_law, "-", "law of each piece's tip (kTip only)")                                     \
   X(FactorKnot, factor, n_factor, "-", "factor tables of the tip laws, kFactorKnots each")                      \
   X(TipPair, tip_pair, n_tip_pair, "-", "coupling of pairs of pieces; others use the far field")                \

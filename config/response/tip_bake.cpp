@@ -212,7 +212,8 @@ class TipReader {
 
 void bake_response(const SceneDesc& scene, ImageContents& image, ResponseReport& report,
                    std::vector<std::string>& warnings) {
-  if (scene.contact.law != ContactLaw::kTool && scene.contact.law != ContactLaw::kTable) return;
+  const bool whole_tip = scene.contact.law == ContactLaw::kTool || scene.contact.law == ContactLaw::kTable;
+  if (!whole_tip && scene.contact.surface == ContactSurface::kFacets) return;
   image.corner_normal = corner_normals(scene.body, image.vertex_m, image.triangle);
   report.slack_m = largest_sag_m(image.corner_normal, image.vertex_m, image.triangle);
   // Half the margin within which the tick measures every point.
@@ -220,6 +221,7 @@ void bake_response(const SceneDesc& scene, ImageContents& image, ResponseReport&
     throw ConfigError(scene.source.where("body.triangles") + ": facets stand off the smooth surface by " +
                       number_text(1e3 * report.slack_m) + " mm; allowed 0.25 mm: use more triangles");
   image.params.smooth_slack_m = 1.5 * report.slack_m;
+  if (!whole_tip) return;
   for (const PieceDesc& piece : scene.piece)
     if (piece.points > 1)
       throw ConfigError(scene.source.where("tool.piece") +

@@ -37,7 +37,8 @@ struct ResponseReport {
   double bytes_per_vertex = 0;   // of the tables: curves, knots and the index, over the vertices
 };
 
-// Fills what the scene's response law needs in `image`, whose surface and tool are complete. Nothing for point laws.
+// Fills what the scene's response law needs in `image`, whose surface and tool are complete; for point laws on the
+// smooth surface, its normals.
 void bake_response(const SceneDesc& scene, ImageContents& image, ResponseReport& report,
                    std::vector<std::string>& warnings);
 
