@@ -25,8 +25,8 @@ struct Kinship {
   std::int32_t group[kMaxContacts];
   std::int32_t previous[kMaxContacts];  // the last contact before, of the same chain of groups; or -1
 };
-// Contacts are compared along their chain only: fifteen parts of five fingers compare 250 pairs instead of 1,300. Groups
-// that share a chain are told apart when compared.
+// Contacts are compared along their chain only: fifteen parts of five fingers compare 250 pairs instead of 1,300.
+// Groups that share a chain are told apart when compared.
 constexpr std::uint32_t kChains = 32;
 
 void find_kinship(const Model& model, const Scratch& scratch, const Clusters& out, Kinship& kin) PALPATE_RT {
