@@ -171,7 +171,7 @@ class TipReader {
 
   void add_far_field(TipDesc& tip) const {
     const SeriesDesc& series = scene_.series;
-    FarFieldFit fit{series.c0_m_per_N, series.c1_m_per_N2, 0, 0, 0};
+    FarFieldFit fit{series.c0_m_per_N, series.c1_m_per_N2};
     if (is_auto(series.c0_m_per_N) || is_auto(series.c1_m_per_N2)) fit = fit_far_field(scene_, index_, tip);
     tip.c0_m_per_N = auto_or(series.c0_m_per_N, fit.c0_m_per_N);
     tip.c1_m_per_N2 = auto_or(series.c1_m_per_N2, fit.c1_m_per_N2);

@@ -23,7 +23,7 @@ SceneDesc scene_of(const std::string& body, const std::string& contact, double b
 }
 
 // Rubber block 60 mm deep and 120 mm wide under a sphere of 6.35 mm; large-strain forces on a mesh of 30 elements over
-// 6 mm, good to 0.5 %. Nowhere used for the fit but through the baker's own presses at 1.8 mm.
+// 6 mm, computed elsewhere, good to 0.5 %. The baker presses for itself, at quarters of 3 mm.
 const char* const kBlock =
     "[body]\nshape = \"cylinder\"\nradius_mm = 60\nheight_mm = 60\ntriangles = 4000\n"
     "[body.material]\nyoungs_modulus_Pa = 2.62166e6\npoisson_ratio = 0.49\n";
@@ -47,28 +47,31 @@ double series_error(const SceneDesc& scene, std::span<const Row> rows) {
   return worst;
 }
 
-TEST(PressBake, SeriesLawOfTheRubberBlock) {
-  const SceneDesc scene =
-      scene_of(kBlock,
-               "law = \"tool\"\nmax_depth_mm = 3\n[contact.series]\nc0_mm_per_N = \"auto\"\n"
-               "c1_mm_per_N2 = \"auto\"\n[contact.tip]\nbody_radius_1_mm = 0\nbody_radius_2_mm = 0\n"
-               "sphere = \"parabola\"\n",
-               6.35);
-  const double worst = series_error(scene, kBlockRows);
-  std::printf("  block: largest error %.2f %%\n", 100 * worst);
-  EXPECT_LT(worst, 0.02);
+const char* const kAutoSeries = "[contact.series]\nc0_mm_per_N = \"auto\"\nc1_mm_per_N2 = \"auto\"\n[contact.tip]\n";
+
+// Measured on 2026-11-21: 0.49 % with the parabola as local law, 0.19 % with the true sphere.
+TEST(PressBake, SeriesLawOfTheRubberBlockWithEitherSphere) {
+  for (const char* sphere : {"parabola", "exact"}) {
+    const SceneDesc scene = scene_of(kBlock,
+                                     std::string("law = \"tool\"\nmax_depth_mm = 3\n") + kAutoSeries +
+                                         "body_radius_1_mm = 0\nbody_radius_2_mm = 0\nsphere = \"" + sphere + "\"\n",
+                                     6.35);
+    EXPECT_LT(series_error(scene, kBlockRows), 0.01) << sphere;
+  }
 }
 
-// Ellipsoid of revolution 40 x 30 mm under a sphere of 10 mm, pressed to 0.8 of it: 0.21 %.
-TEST(PressBake, SeriesLawOfTheEllipsoid) {
-  const SceneDesc scene = scene_of(
-      "[body]\nshape = \"ellipsoid\"\nhalf_axes_mm = [40, 30, 40]\n[body.material]\nyoungs_modulus_Pa = 3e6\n"
-      "poisson_ratio = 0.45\n[body.fixed]\nbase_height_mm = 6\n",
-      "law = \"tool\"\nmax_depth_mm = 8\n[contact.series]\nc0_mm_per_N = \"auto\"\nc1_mm_per_N2 = \"auto\"\n"
-      "[contact.tip]\nsphere = \"parabola\"\nbody_radius_1_mm = 53.3333333\nbody_radius_2_mm = 53.3333333\n",
-      10);
+// Ellipsoid of revolution 40 x 30 mm under a sphere of 10 mm, pressed to 0.8 of it: 0.26 and 0.25 %.
+TEST(PressBake, SeriesLawOfTheEllipsoidWithEitherSphere) {
   const Row rows[] = {{1, 14.208}, {2, 39.671}, {4, 109.78}, {6, 197.67}, {8, 298.42}};
-  EXPECT_LT(series_error(scene, rows), 0.02);
+  for (const char* sphere : {"parabola", "exact"}) {
+    const SceneDesc scene = scene_of(
+        "[body]\nshape = \"ellipsoid\"\nhalf_axes_mm = [40, 30, 40]\n[body.material]\nyoungs_modulus_Pa = 3e6\n"
+        "poisson_ratio = 0.45\n[body.fixed]\nbase_height_mm = 6\n",
+        std::string("law = \"tool\"\nmax_depth_mm = 8\n") + kAutoSeries +
+            "body_radius_1_mm = 53.3333333\nbody_radius_2_mm = 53.3333333\nsphere = \"" + sphere + "\"\n",
+        10);
+    EXPECT_LT(series_error(scene, rows), 0.01) << sphere;
+  }
 }
 
 TEST(PressBake, RefusesBodiesItCannotCompute) {
