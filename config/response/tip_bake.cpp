@@ -191,15 +191,27 @@ class TipReader {
             elliptic_radius_m(a, b), 0};
   }
 
+  // Radii of the body under a sphere, as the report names them.
+  std::string body_text() const {
+    double first = 0, second = 0;
+    body_curvature(first, second);
+    if (first == 0 && second == 0) return " on a flat body";
+    const auto radius = [](double curvature) {
+      return curvature == 0 ? std::string("flat") : number_text(std::round(1e5 / curvature) / 100) + " mm";
+    };
+    return " on a body of radii " + radius(first) + " and " + radius(second);
+  }
+
   std::string describe(const TipDesc& tip) const {
     static const char* const names[] = {"flat punch", "sphere (parabola)", "sphere", "cone"};
-    char text[256];
-    const bool cone = tip.indenter.profile == TipProfile::kCone;
-    std::snprintf(text, sizeof text, "piece %d: %s, %s %.5g, E* = %.5g Pa%s, c0 = %.5g m/N, c1 = %.5g m/N2",
-                  static_cast<int>(index_), names[static_cast<int>(tip.indenter.profile)],
-                  cone ? "tan of half angle" : "effective radius in mm",
-                  cone ? tip.indenter.tan_half_angle : 1e3 * tip.indenter.radius_m, tip.modulus_Pa,
-                  tip.layer.thickness_m > 0 ? ", on a layer" : "", tip.c0_m_per_N, tip.c1_m_per_N2);
+    const bool cone = tip.indenter.profile == TipProfile::kCone, flat = tip.indenter.profile == TipProfile::kFlat;
+    char text[320];
+    std::snprintf(text, sizeof text, "piece %d: %s%s, %s %.5g, E* = %.5g Pa", static_cast<int>(index_),
+                  names[static_cast<int>(tip.indenter.profile)], cone || flat ? "" : body_text().c_str(),
+                  cone   ? "tan of half angle"
+                  : flat ? "radius in mm"
+                         : "effective radius in mm",
+                  cone ? tip.indenter.tan_half_angle : 1e3 * tip.indenter.radius_m, tip.modulus_Pa);
     return text;
   }
 
@@ -207,6 +219,23 @@ class TipReader {
   const PieceDesc& piece_;
   std::size_t index_;
 };
+
+// What the law comes to at the end of its range, and how much of that is the layer's or the true sphere's doing.
+std::string describe_law(const TipDesc& tip, const TipLaw& law) {
+  const double half_space =
+      tip_coefficient(tip.indenter, tip.modulus_Pa) * math::pow(law.depth_max_m, 0.5 * law.half_power);
+  std::string layer = "half space";
+  if (tip.layer.thickness_m > 0)
+    layer = "layer of " + number_text(std::round(1e6 * tip.layer.thickness_m) / 1e3) +
+            (tip.layer.base == LayerBase::kBonded ? " mm, bonded" : " mm, slipping");
+  char text[256];
+  std::snprintf(
+      text, sizeof text,
+      "         %s: %.4g N at %.4g mm, %.4g times the power law of a half space; c0 = %.4g mm/N, c1 = %.4g mm/N2",
+      layer.c_str(), law.force_max_N, 1e3 * law.depth_max_m, law.force_max_N / half_space, 1e3 * law.c0_m_per_N,
+      1e3 * law.c1_m_per_N2);
+  return text;
+}
 
 }  // namespace
 
@@ -241,6 +270,7 @@ void bake_response(const SceneDesc& scene, ImageContents& image, ResponseReport&
       throw ConfigError(scene.source.where("contact") + ": " + error.what());
     }
     report.tip.push_back(line);
+    report.tip.push_back(describe_law(tip, image.tip_law.back()));
   }
   for (const PairDesc& pair : scene.pair)
     image.tip_pair.push_back({pair.piece_a, pair.piece_b, pair.c_m_per_N, pair.h_ab_m_per_N2, pair.h_ba_m_per_N2});

@@ -152,6 +152,57 @@ TEST(PressTools, FrictionlessLoopsAreConservative) {
   }
 }
 
+// The energy the tick reports, and `palpate press` writes, is the work done against the tips at every depth: that of
+// the far field with c1, and of two tips that lean on one another in first and second order, included.
+void expect_energy_is_work(const SceneModel& scene, const char* name) {
+  std::vector<TimedPose> poses;
+  constexpr int kSteps = 4000;
+  // Down, and then along a slant, so that depths and places change together.
+  for (int i = 0; i <= kSteps; ++i) {
+    const double t = static_cast<double>(i) / kSteps;
+    poses.push_back({t, pose_at(0.02 * t * t, 0.1 * t, 0.004 * t)});
+  }
+  const auto state = std::make_unique<State>();
+  double work = 0, worst = 0, energy = 0;
+  Wrench last;
+  Pose from;
+  press(scene.model(), poses, {}, *state, nullptr, [&](const PressRow& row, const State&, const Scratch&) {
+    const Output& output = row.record.output;
+    if (row.record.tick > 0) {
+      const Vec3 step = output.tool_w.position_m - from.position_m;
+      const Vec3 turn = small_rotation_vector(output.tool_w.orientation * conjugate(from.orientation));
+      work -= 0.5 * (dot(output.contact_w.force_N + last.force_N, step) +
+                     dot(output.contact_w.torque_Nm + last.torque_Nm, turn));
+      worst = std::max(worst, std::abs(output.energy_J - work));
+    }
+    energy = output.energy_J;
+    last = output.contact_w;
+    from = output.tool_w;
+  });
+  ASSERT_GT(energy, 1e-4) << name;
+  std::printf("  %-12s %.5f mJ stored, at most %.4f %% of it from the work done\n", name, 1e3 * energy,
+              100 * worst / energy);
+  EXPECT_LT(worst, 1e-4 * energy) << name;
+}
+
+TEST(PressTools, EnergyReportedIsTheWorkDone) {
+  expect_energy_is_work(SceneModel(cylinder_scene("", {"friction.law=none", "contact.series.c0_mm_per_N=0.02",
+                                                       "contact.series.c1_mm_per_N2=0.0004"})),
+                        "c0, c1");
+  const std::string path =
+      (std::filesystem::temp_directory_path() / "palpate_EnergyReportedIsTheWorkDone.toml").string();
+  std::ofstream(path) << "[[tool.piece]]\nshape = \"sphere\"\nposition_mm = [-15, -13.65, 0]\nradius_mm = 6.35\n"
+                         "[[tool.piece]]\nshape = \"sphere\"\nposition_mm = [15, -13.65, 0]\nradius_mm = 6.35\n"
+                         "[[contact.pair]]\npiece_a = 0\npiece_b = 1\nc_mm_per_N = 0.004\nh_ab_mm_per_N2 = 5e-5\n"
+                         "h_ba_mm_per_N2 = -3e-5\n";
+  SceneOverlays overlays;
+  overlays.file.push_back(path);
+  overlays.setting = {"friction.law=none", "contact.series.c0_mm_per_N=0.01", "contact.series.c1_mm_per_N2=0.0001"};
+  const SceneModel two(load_scene(scene_path("tools_on_cylinder"), overlays));
+  std::filesystem::remove(path);
+  expect_energy_is_work(two, "two tips");
+}
+
 // Curves that differ over the surface by a factor of two and more.
 class TableScene : public ::testing::Test {
  protected:
