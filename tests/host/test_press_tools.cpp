@@ -226,6 +226,35 @@ TEST_F(TableScene, LoopsOverSoftAndStiffPlacesAreConservative) {
   expect_conservative(scene, "table", 8, 1e-3);
 }
 
+// Curves pressed by the baker, cubic in the root of the depth, softer towards the edge: loops up to 20 mm from the edge
+// of a layer and back, at 3 mm of its 10.
+TEST(PressTools, PressesOfTheBakerAreConservative) {
+  SceneOverlays overlays;
+  overlays.file.push_back(scene_path("responses/table_fem"));
+  overlays.setting = {"friction.law=none", "contact.max_depth_mm=4", "body.triangles=1200"};
+  const SceneModel scene(load_scene(scene_path("tools_on_layer"), overlays));
+  ASSERT_EQ(scene.model().params.response_root, 1);
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> symmetric(-1, 1);
+  double worst = 0;
+  for (int loop = 0; loop < 6; ++loop) {
+    double a[6];
+    for (double& x : a) x = symmetric(random);
+    std::vector<TimedPose> poses;
+    for (int i = 0; i <= 8000; ++i) {
+      const double t = i / 8000.0, w = kTwoPi * t, u = clamp_to(std::min(t, 1 - t) / 0.2, 0, 1);
+      const double in = u * u * (3 - 2 * u), depth = -0.001 + in * (0.0035 + 0.0005 * std::sin(2 * w + a[4]));
+      const double x = 0.05 + in * (0.005 * a[0] * std::sin(w) - 0.03 * a[1] * a[1] * std::sin(0.5 * w));
+      poses.push_back({t, {{x, 0.01 - depth + kTip, 0.03 * a[2] * std::sin(w + a[3]) * in}, {}}});
+    }
+    const LoopWork work = loop_work(scene.model(), poses);
+    ASSERT_GT(work.energy_max_J, 1e-5);
+    worst = std::max(worst, std::abs(work.work_J) / work.energy_max_J);
+  }
+  std::printf("  fem table    largest loop energy %.4f %% of the energy stored\n", 100 * worst);
+  EXPECT_LT(worst, 1e-3);
+}
+
 // At the place of a press its samples come back, through baker, image and tick.
 TEST_F(TableScene, MeasuredSamplesComeBackThroughTheTick) {
   const SceneModel scene = make("depth_mm,force_N\n0,0\n0.5,0.8\n1,2.5\n2,7\n3,7.5\n5,21\n");
