@@ -136,8 +136,9 @@ class TipReader {
     if (tip.indenter.profile == TipProfile::kCone && !is_auto(angle))
       tip.indenter.tan_half_angle = math::sin(angle) / math::cos(angle);
     if (tip.indenter.profile == TipProfile::kSphere && !(tip.depth_max_m <= tip.indenter.radius_m))
-      fail("contact.max_depth_mm", number_text(1e3 * tip.depth_max_m) + " mm is more than the sphere's radius of " +
-                                       number_text(1e3 * tip.indenter.radius_m) +
+      fail("contact.max_depth_mm", number_text(std::round(1e6 * tip.depth_max_m) / 1e3) +
+                                       " mm is more than the sphere's radius of " +
+                                       number_text(std::round(1e6 * tip.indenter.radius_m) / 1e3) +
                                        " mm; lower it, or set contact.tip.sphere = \"parabola\"");
     add_far_field(tip);
     line = describe(tip);

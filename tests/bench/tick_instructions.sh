@@ -23,7 +23,7 @@ ring 60000
 hollow_cylinder 60000
 grasp_cylinder_5 250000
 snap_in 300000'
-# Every tool on every material in the two tool scenes.
+# Every tool on the softest and the stiffest material in the two tool scenes.
 tools_budget=20000
 # Largest ratio between the meshes: cost may grow with the hierarchy's depth only. 115 % for the worst tick and 101 % for
 # the mean in contact, 2026-11-21.
@@ -70,9 +70,9 @@ elif [ "$mode" = overlays ]; then
   most=0
   for scene in tools_on_cylinder tools_on_layer; do
     for tool in "$scenes"/tools/*.toml; do
-      for material in "$scenes"/materials/*.toml; do
-        echo "== $scene, $(basename "$tool" .toml), $(basename "$material" .toml)"
-        "$palpate" bake "$scenes/$scene.toml" --with "$tool" --with "$material" -o "$work/scene.pal" >"$work/log" 2>&1 ||
+      for material in liver rubber; do
+        echo "== $scene, $(basename "$tool" .toml), $material"
+        "$palpate" bake "$scenes/$scene.toml" --with "$tool" --with "$scenes/materials/$material.toml" -o "$work/scene.pal" >"$work/log" 2>&1 ||
           { cat "$work/log"; exit 1; }
         count "$work/scene.pal" >"$work/stages"
         tail -n 1 "$work/stages"
