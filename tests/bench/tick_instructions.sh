@@ -72,8 +72,8 @@ elif [ "$mode" = overlays ]; then
     for tool in "$scenes"/tools/*.toml; do
       for material in liver rubber; do
         echo "== $scene, $(basename "$tool" .toml), $material"
-        "$palpate" bake "$scenes/$scene.toml" --with "$tool" --with "$scenes/materials/$material.toml" -o "$work/scene.pal" >"$work/log" 2>&1 ||
-          { cat "$work/log"; exit 1; }
+        "$palpate" bake "$scenes/$scene.toml" --with "$tool" --with "$scenes/materials/$material.toml" \
+          -o "$work/scene.pal" >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
         count "$work/scene.pal" >"$work/stages"
         tail -n 1 "$work/stages"
         [ "$most" -ge "$worst" ] || most=$worst
