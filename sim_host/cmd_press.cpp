@@ -135,7 +135,9 @@ int run_press(const PressOptions& options) {
   const SceneModel scene(options.scene, options.overlays);
   const Model& model = scene.model();
   std::vector<TimedPose> poses = poses_of(options, scene);
-  const JointScript joints(options.joints, model);
+  std::vector<TimedJoints> scripted;
+  for (const TimedPose& pose : poses) scripted.push_back({pose.time_s, pose.joints});
+  const JointScript joints(options.joints, model, std::move(scripted));
   for (TimedPose& pose : poses)
     if (!joints.empty()) pose.joints = joints.at(pose.time_s);
   ForceCsv csv(options.out);

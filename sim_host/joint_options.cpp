@@ -9,8 +9,8 @@ namespace palpate {
 void add_joint_options(CLI::App& command, JointOptions& options) {
   command
       .add_option("--close", options.close,
-                  "how far the fingers (or jaws) are closed, 0 to 1: one number for all, or five, thumb first, as "
-                  "1,0.8,0,0,0; replaces the scene's own closing")
+                  "how far the fingers (or jaws) close, 0 to 1: one number for all, or five, thumb first, as "
+                  "1,0.8,0,0,0. When: as the motion closes them; from the beginning if it does not")
       ->delimiter(',');
   command
       .add_option("--joint", options.joint,

@@ -133,7 +133,18 @@ std::vector<TimedJoints> read_joint_table(std::istream& text, const std::string&
   return rows;
 }
 
-JointScript::JointScript(const JointOptions& options, const Model& model) {
+std::vector<TimedJoints> scripted_joints(const PathDesc& path) {
+  std::vector<TimedJoints> rows;
+  JointCommand now;
+  for (const PathPoint& point : path.point) {
+    for (std::size_t f = 0; !point.closing.empty() && f < kMaxFingers; ++f)
+      now.closing[f] = static_cast<float>(point.closing[point.closing.size() == 1 ? 0 : f]);
+    rows.push_back({point.time_s, now});
+  }
+  return rows;
+}
+
+JointScript::JointScript(const JointOptions& options, const Model& model, std::vector<TimedJoints> scripted) {
   if (options.empty()) return;
   need_joints(model, !options.close.empty() ? "--close" : !options.joint.empty() ? "--joint" : "--joints");
   if (!options.table.empty()) {
@@ -157,12 +168,23 @@ JointScript::JointScript(const JointOptions& options, const Model& model) {
     set_joint(row.joints, model, joint_named(names, given.substr(0, equals), where),
               number(given.substr(equals + 1), where), where);
   }
-  rows_.push_back(row);
+  const bool closes = std::ranges::any_of(scripted, [](const TimedJoints& r) {
+    return std::ranges::any_of(r.joints.closing, [](float closing) { return closing > 0; });
+  });
+  if (!closes) scripted = {row};
+  for (TimedJoints& r : scripted) {
+    for (std::size_t f = 0; closes && !options.close.empty() && f < kMaxFingers; ++f)
+      r.joints.closing[f] *= row.joints.closing[f];
+    std::copy_n(row.joints.target, kMaxJoints, r.joints.target);
+    r.joints.direct = row.joints.direct;
+  }
+  rows_ = std::move(scripted);
 }
 
 JointCommand JointScript::at(double time_s) const {
   if (rows_.empty()) return {};
-  const auto after = std::find_if(rows_.begin(), rows_.end(), [&](const TimedJoints& r) { return r.time_s > time_s; });
+  const auto after = std::upper_bound(rows_.begin(), rows_.end(), time_s,
+                                      [](double at, const TimedJoints& row) { return at < row.time_s; });
   if (after == rows_.begin()) return rows_.front().joints;
   if (after == rows_.end()) return rows_.back().joints;
   const TimedJoints &a = *(after - 1), &b = *after;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "config/scene.h"
 #include "rt_core/io.h"
 #include "rt_core/model.h"
 
@@ -31,8 +32,9 @@ struct TimedJoints {
 class JointScript {
  public:
   JointScript() = default;
-  // Throws std::runtime_error naming the option, what is wrong and what is allowed.
-  JointScript(const JointOptions& options, const Model& model);
+  // `scripted`: how the motion itself closes the hand. Where it does, --close says how far, and otherwise how far from
+  // the beginning; a table replaces it. Throws std::runtime_error naming the option, what is wrong and what is allowed.
+  JointScript(const JointOptions& options, const Model& model, std::vector<TimedJoints> scripted = {});
   bool empty() const { return rows_.empty(); }
   // Between rows linear, before the first and after the last row that row's.
   JointCommand at(double time_s) const;
@@ -40,6 +42,9 @@ class JointScript {
  private:
   std::vector<TimedJoints> rows_;
 };
+
+// What a scene's path tells the fingers at each of its points.
+std::vector<TimedJoints> scripted_joints(const PathDesc& path);
 
 // Reads a table with a header row: time_s (strictly increasing), and any of `closing` (all fingers), the fingers thumb,
 // index, middle, ring, little (fractions 0 to 1) and joint names (degrees; slides in millimetres). Blank lines and

@@ -278,8 +278,10 @@ RunResult run_session(const RunOptions& options) {
   SceneImage scene = prepare_scene(options.scene, options.image, options.record);
   const std::unique_ptr<ImageFile> image = open_if_valid(scene.image_path);
   if (image) check_bus(address, image->model().params.period_s);
-  const JointScript joints = image ? JointScript(options.joints, image->model()) : JointScript();
-  // Told what to do, the hand leaves its closing button alone: it would close every finger.
+  std::vector<TimedJoints> scripted;
+  if (scene.scene && options.path.empty()) scripted = scripted_joints(scene.scene->path);
+  const JointScript joints = image ? JointScript(options.joints, image->model(), scripted) : JointScript();
+  // The commands go through the mailbox; the closing button, which closes every finger, is left alone then.
   if (!joints.empty() && scene.scene)
     for (PathPoint& point : scene.scene->path.point) point.closing.clear();
   if (options.repeat_path && scene.scene) repeat_path(scene.scene->path, options.duration_s);

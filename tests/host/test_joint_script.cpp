@@ -2,6 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
+#include <regex>
 #include <sstream>
 #include <stdexcept>
 
@@ -53,6 +56,24 @@ TEST(JointScript, ClosesAllFingersOrEachItsOwn) {
   const JointCommand each = JointScript({{1, 0.8, 0, 0.25, 0}, {}, ""}, hand()).at(0);
   EXPECT_EQ(each.closing[1], 0.8f);
   EXPECT_EQ(each.closing[3], 0.25f);
+}
+
+// Where the motion itself closes the hand, the option says how far.
+TEST(JointScript, ClosesAsFarAsToldWhenTheMotionCloses) {
+  const SceneModel scene(scene_path("grasp_cylinder_2"));
+  const std::vector<TimedJoints> scripted = scripted_joints(scene.scene()->path);
+  ASSERT_EQ(scripted.size(), scene.scene()->path.point.size());
+  const JointScript script({{0.5, 1, 0, 0, 0}, {"index_tip_flexion=20"}, ""}, hand(), scripted);
+  for (const TimedJoints& row : scripted) {
+    const JointCommand command = script.at(row.time_s);
+    EXPECT_EQ(command.closing[0], 0.5f * row.joints.closing[0]) << row.time_s;
+    EXPECT_EQ(command.closing[1], row.joints.closing[1]) << row.time_s;
+    EXPECT_EQ(command.closing[2], 0) << row.time_s;
+    EXPECT_EQ(command.direct, 1u << 8) << row.time_s;
+  }
+  // One joint alone leaves the closing as it is.
+  const JointScript joint({{}, {"index_tip_flexion=20"}, ""}, hand(), scripted);
+  EXPECT_EQ(joint.at(scripted[3].time_s).closing[0], scripted[3].joints.closing[0]);
 }
 
 TEST(JointScript, NamesEveryJointOfTheHandOnce) {
@@ -109,7 +130,11 @@ class RunWithJoints : public BallRun {};
 
 // Through the mailbox into the running controller: the records hold the command, and nothing else closes the hand.
 TEST_F(RunWithJoints, TheControllerIsTold) {
-  options_.scene = scene_path("grasp_cylinder_2");
+  // The scene's path without its closing: told from the beginning.
+  std::ifstream source(scene_path("grasp_cylinder_2"));
+  const std::string text{std::istreambuf_iterator<char>(source), {}};
+  options_.scene = (folder_ / "hand.toml").string();
+  std::ofstream(options_.scene) << std::regex_replace(text, std::regex(", closing = \\[[^]]*\\]"), "");
   options_.record = (folder_ / "run.plr").string();
   options_.image = (folder_ / "run.pal").string();
   options_.duration_s = 1.0;
@@ -127,6 +152,7 @@ TEST_F(RunWithJoints, TheControllerIsTold) {
 }
 
 TEST_F(RunWithJoints, ARigidToolIsRefusedBeforeAnythingStarts) {
+  options_.record = (folder_ / "run.plr").string();
   options_.joints.close = {0.5};
   EXPECT_THROW(run_session(options_), std::runtime_error);
 }
