@@ -9,7 +9,7 @@ programs=$root/build/release/bin
 results=$root/out/lab
 jobs=${PALPATE_JOBS:-$(nproc)}
 every='faults usb kvaser vcan vcan_classic:21 determinism cyclictest'
-standard="scene_snap_in $every scene_grasp_cylinder_5" # the longest first
+standard="$every scene_grasp_cylinder_5 scene_ring"
 scenes=$(cd "$root/config/scenes" && printf 'scene_%s ' *.toml | sed 's/\.toml//g')
 thorough="$every scenes buses vcan_classic usb_unplug host_chaos vcan:60 kvaser:60 usb:60 vcan_classic:600"
 
