@@ -204,6 +204,78 @@ TEST(Report, SeriesLaw) {
   series_errors("D, plane stress, no local law", none, ring, {{4, 3.1874}, {8, 6.0475}, {12, 8.6689}, {16, 11.258}});
 }
 
+// Two discs 16 mm apart on a plane-strain block of 80 x 30 mm, large strain.
+struct DiscsOnBlock {
+  static constexpr double kRadius_m = 6e-3, kHalf_m = 8e-3;
+  DiscsOnBlock() : mesh(make_mesh()), solver(make_solver(mesh)) {}
+  static StrainMesh<2> make_mesh() {
+    std::vector<double> across;
+    const auto half = graded_steps(0, kHalf_m + 4e-3, 0.04, 12, 1.3), down = graded_steps(0, 5e-3, 0.03, 5, 1.3);
+    for (std::size_t i = half.size(); i-- > 1;) across.push_back(-half[i]);
+    across.insert(across.end(), half.begin(), half.end());
+    std::vector<double> heights;
+    for (std::size_t i = down.size(); i-- > 0;) heights.push_back(-down[i]);
+    return make_plane_mesh({{across, heights, [](double s, double t) { return Point<2>{s, t}; }}}, 1e-9);
+  }
+  static LargeStrainSolver<2> make_solver(const StrainMesh<2>& mesh) {
+    std::vector<bool> fixed;
+    for (const Point<2>& p : mesh.nodes_m) fixed.insert(fixed.end(), 2, p[1] < -0.03 + 1e-9);
+    const auto top = nodes_where<2>(mesh, [](const Point<2>& p) { return p[1] > -1e-9 && std::abs(p[0]) < 0.014; });
+    StrainBody body;
+    body.youngs_modulus_Pa = 1e5;
+    body.poisson_ratio = 0.45;
+    body.kinematics = Kinematics::kPlaneStrain;
+    body.thickness_m = 0.01;
+    LargeStrainSolver<2> solver(mesh, body, fixed, top, {ball(kRadius_m), ball(kRadius_m)});
+    solver.place_tools({{-kHalf_m, kRadius_m}, {kHalf_m, kRadius_m}});
+    return solver;
+  }
+  PressState<2> press(double first_m, double second_m) {
+    const PressState<2> s = solver.move_tools({{-kHalf_m, kRadius_m - first_m}, {kHalf_m, kRadius_m - second_m}});
+    EXPECT_TRUE(s.converged) << first_m << " " << second_m;
+    return s;
+  }
+  StrainMesh<2> mesh;
+  LargeStrainSolver<2> solver;
+};
+
+// What "auto" in contact.pair does: c and h from presses of one disc, held against states of both.
+TEST(Report, PairFromPressesOfOne) {
+  constexpr double kAway_m = -0.02;
+  DiscsOnBlock one;
+  std::vector<LoadPoint> table, touch;
+  for (int i = 1; i <= 18; ++i) {
+    const double d = 0.25e-3 * i;
+    const PressState<2> s = one.press(d, kAway_m);
+    table.push_back({d, s.force_on_tool_N[0][1]});
+    if (i % 4 == 0)
+      touch.push_back({touch_depth_m(top_line(one.mesh, s.u_m), ball(DiscsOnBlock::kRadius_m), DiscsOnBlock::kHalf_m),
+                       table.back().force_N});
+  }
+  const TouchFit fit = fit_touch(touch);
+  const DepthOfForce depth = depth_table(table);
+  double wrong[2] = {}, whole = 0;
+  for (const double second : {1e-3, 3e-3}) {
+    DiscsOnBlock both;
+    both.press(kAway_m, second);
+    for (const double first : {1e-3, 2e-3, 4e-3}) {
+      const PressState<2> s = both.press(first, second);
+      const double f = s.force_on_tool_N[0][1], g = s.force_on_tool_N[1][1];
+      const PairCoupling law[2] = {{}, {fit.c_m_per_N, fit.h_m_per_N2, fit.h_m_per_N2}};
+      for (int k = 0; k < 2; ++k) {
+        const PairState p = solve_pair(depth, depth, law[k], first, second);
+        wrong[k] += std::pow(p.first_N - f, 2) + std::pow(p.second_N - g, 2);
+      }
+      whole += f * f + g * g;
+    }
+  }
+  add("\nTwo discs on a block: c = %.4f mm/N, h = %.5f mm/N^2 from presses of one; root mean square of the errors with "
+      "both %.2f %%, uncoupled %.2f %%.\n",
+      1e3 * fit.c_m_per_N, 1e3 * fit.h_m_per_N2, 100 * std::sqrt(wrong[1] / whole), 100 * std::sqrt(wrong[0] / whole));
+  EXPECT_LT(std::sqrt(wrong[1] / whole), 0.02);
+  EXPECT_LT(wrong[1], 0.25 * wrong[0]);
+}
+
 // Two meshes: 1 and 0.7 mm under the fingers. A grid to 3 mm: beyond 4 mm the ring sways sideways under the upper
 // finger (a limit point), where no law of two forces holds.
 TEST(Report, TwoFingersOnARing) {
