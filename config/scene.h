@@ -140,7 +140,10 @@ struct PairDesc {
   double c_m_per_N = 0;
   double h_ab_m_per_N2 = 0, h_ba_m_per_N2 = 0;
 };
+// Where the curves of contact.law = "table" come from: a CSV of measured presses, or presses the baker makes.
+enum class TableSource : std::int32_t { kFile, kFem };
 struct TableDesc {
+  TableSource source = TableSource::kFile;
   std::string file;
   bool smooth = false;
 };

@@ -142,7 +142,7 @@ const KeySpec kContact[] = {
     choice<&ContactDesc::law>("law", "duffing|cubic|hertz|tool|table",
                               "force per unit weight of each tool point, f = k1 D + k3 D^3: from Duffing parameters, "
                               "given directly, or fitted to Hertz' contact; or the response of the whole tip: of the "
-                              "piece's own shape (tool), or measured curves (table)"),
+                              "piece's own shape (tool), or curves of presses (table)"),
     choice<&ContactDesc::weight>("weight", "winkler|area|paper",
                                  "weight of a tool point: area / reference area (force continuous as points enter and "
                                  "leave), share of the area in contact, or 1/n"),
@@ -235,11 +235,13 @@ const KeySpec kPair[] = {
                                              "second order, the other way round; auto: likewise"),
 };
 const KeySpec kTable[] = {
+    choice<&TableDesc::source>("source", "file|fem",
+                               "a CSV of measured presses, or presses by finite elements when the scene is baked "
+                               "(standing cylinder, box, sphere, ellipsoid of revolution about y)"),
     text<&TableDesc::file>(
         "file", 4096,
         "CSV of presses, relative to the scene file: depth_mm,force_N, or with x_mm,y_mm,z_mm before "
-        "them for presses at several places; each starts at 0,0",
-        true),
+        "them for presses at several places; each starts at 0,0"),
     boolean<&TableDesc::smooth>("smooth", "pool rows whose force falls instead of refusing them"),
 };
 const KeySpec kFriction[] = {
@@ -408,7 +410,7 @@ const TableSpec kTables[] = {
      open<&SceneDesc::series>},
     {"contact.pair", true, "With law = \"tool\": how two tips lean on one another; other pairs use the far field.",
      kPair, open_pair},
-    {"contact.table", false, "With law = \"table\": measured presses.", kTable, open<&SceneDesc::table>},
+    {"contact.table", false, "With law = \"table\": presses, measured or computed.", kTable, open<&SceneDesc::table>},
     {"contact.nodal", false, "With backend = \"nodal\".", kNodal, open<&SceneDesc::nodal>},
     {"friction", false, "Friction per contact region.", kFriction, open<&SceneDesc::friction>},
     {"shape", false, "How the deformed surface is drawn. No effect on forces.", kShape, open<&SceneDesc::shape>},

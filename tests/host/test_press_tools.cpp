@@ -268,6 +268,34 @@ TEST(PressTools, LayerIsExactThroughTheTick) {
   EXPECT_NEAR(force / hertz, 2.10988, 2e-5);
 }
 
+// Past the middle of a thin body its other face is nearer, and past the axis of a cylinder its other side: neither may
+// pull the tip through. Pressed from 10 mm above to 9 of 10 mm, and to 1.6 of the radius.
+TEST(PressTools, DeepPressesNeverPull) {
+  for (const char* tool : {"cone_30", "cone_60", "flat_3_2", "sphere_3_2", "sphere_12_7"}) {
+    SceneOverlays overlays;
+    overlays.file.push_back(scene_path(std::string("tools/") + tool));
+    overlays.setting = {"friction.law=none"};
+    const SceneModel layer(load_scene(scene_path("tools_on_layer"), overlays));
+    std::vector<TimedPose> down;
+    for (int i = 0; i <= 2000; ++i) down.push_back({0, {{0.003, 0.02 - 9.5e-6 * i + kTip, 0.002}, {}}});
+    const auto state = std::make_unique<State>();
+    double last = 0;
+    press(layer.model(), down, {}, *state, nullptr, [&](const PressRow& row, const State&, const Scratch&) {
+      const Vec3 force = row.record.output.contact_w.force_N;
+      EXPECT_GE(force.y, last) << tool << " " << row.record.tick;
+      EXPECT_LT(norm(Vec3{force.x, 0, force.z}), 1e-9 + 1e-6 * force.y) << tool << " " << row.record.tick;
+      last = force.y;
+    });
+    EXPECT_GT(last, 0.1) << tool;
+    const SceneModel cylinder(cylinder_scene(tool, {"friction.law=none"}));
+    std::vector<TimedPose> through;
+    for (int i = 0; i <= 3200; ++i) through.push_back({0, pose_at(0, 0, 5e-5 * i)});
+    press(cylinder.model(), through, {}, *state, nullptr, [&](const PressRow& row, const State&, const Scratch&) {
+      ASSERT_GE(row.record.output.contact_w.force_N.y, 0) << tool << " " << row.record.tick;
+    });
+  }
+}
+
 TEST(PressTools, OverlaysAndSettingsNameThemselvesInErrors) {
   const auto message = [](const SceneOverlays& overlays) {
     try {
