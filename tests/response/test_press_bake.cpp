@@ -101,8 +101,8 @@ TipPair baked_pair(const std::string& body, double ball_mm, double apart_mm, dou
 }
 
 // On a deep block another tip's far field is Boussinesq's, (1 - nu^2) / (pi E r), less what the bonded bottom takes: of
-// the order of half the displacement at its depth, 1/60 against 1/15 mm. On a layer two thirds as thick as the tips are
-// apart the bonded base carries nearly all of it. Published layer kernel: nothing reaches further than about its depth.
+// the order of the half space's displacement at its depth, 1/60 against 1/15 mm. A thin bonded layer that keeps its
+// volume rises beside the tip.
 TEST(PressBake, PairsLeanOnOneAnotherLessTheThinnerTheBody) {
   const double e = 2.62166e6, nu = 0.49, r = 0.015, boussinesq = (1 - nu * nu) / (3.14159265358979 * e * r);
   const TipPair deep = baked_pair(kBlock, 6.35, 15, 2);
@@ -115,7 +115,8 @@ TEST(PressBake, PairsLeanOnOneAnotherLessTheThinnerTheBody) {
       "[body]\nshape = \"cylinder\"\nradius_mm = 60\nheight_mm = 10\ntriangles = 4000\n"
       "[body.material]\nyoungs_modulus_Pa = 2.62166e6\npoisson_ratio = 0.49\n",
       6.35, 15, 1);
-  EXPECT_LT(std::abs(thin.c_m_per_N), 0.15 * boussinesq);
+  EXPECT_LT(thin.c_m_per_N, 0);
+  EXPECT_GT(thin.c_m_per_N, -0.3 * boussinesq);
 }
 
 TEST(PressBake, RefusesPairsItCannotCompute) {
