@@ -188,8 +188,10 @@ struct PieceDesc {
 
 // Which fingers a hand's grasp uses: thumb and index; with the middle finger; all.
 enum class GraspFingers : std::int32_t { kTwo, kThree, kFive };
+enum class HandSide : std::int32_t { kRight, kLeft };
 struct HandDesc {
   GraspFingers fingers = GraspFingers::kFive;
+  HandSide side = HandSide::kRight;
   Vec3 grasp_position_m;  // palm's middle, when the hand holds the body
   Vec3 grasp_rotation_rad;
   double squeeze_m = 0.003;

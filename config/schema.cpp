@@ -266,7 +266,9 @@ const KeySpec kShape[] = {
                                       "how anchor displacements spread over the surface"),
     choice<&ShapeDesc::tail>("tail", "constant|linear", "polynomial of the rbf; linear needs 4 anchors not in a plane"),
     choice<&ShapeDesc::neighbourhood>("neighbourhood", "none|log|log_c1|punch", "dent around a contact"),
-    number<&ShapeDesc::radius_m>("radius_mm", 0.001, 1000, kMilli, "radius R of the dent"),
+    number<&ShapeDesc::radius_m>("radius_mm", 0.001, 1000, kMilli,
+                                 "radius R of the dent; a hand whose scene leaves it out takes that of each finger "
+                                 "part from Cui & Xiao 2008, Table I"),
 };
 const KeySpec kCoupling[] = {
     choice<&CouplingDesc::law>("law", "none|coupled|temporal",
@@ -306,6 +308,9 @@ const KeySpec kHand[] = {
     choice<&HandDesc::fingers>("fingers", "two|three|five",
                                "that take part: thumb and index; with the middle finger; all. The others stay "
                                "stretched out"),
+    choice<&HandDesc::side>(
+        "side", "right|left",
+        "left: the mirror image of the right hand in y = 0 of its frame, so the thumb's side is -y"),
     list<&HandDesc::grasp_position_m>(kVec3, "grasp_mm", -1e4, 1e4, kMilli,
                                       "the palm's middle when the hand holds the body; the preshape is made for it"),
     list<&HandDesc::grasp_rotation_rad>(

@@ -142,6 +142,7 @@ struct ToolPiece {
   std::int32_t joint = -1;                // that carries it; -1: fixed to the tool frame
   std::int32_t group = 0;  // articulated tools: contacts of different groups (fingers, jaws) never share a region
   std::int32_t reserved = 0;
+  double neighbourhood_m = 0;  // radius of the dent it makes; 0: the scene's
 };
 // One degree of freedom of an articulated tool. Its link's frame in the tool frame is
 //   link = link(parent) * before * motion(q) * after,   motion = rotation about z or translation along z,

@@ -11,6 +11,7 @@
 #include "sim_host/anchor_loads.h"
 #include "sim_host/cli.h"
 #include "sim_host/force_csv.h"
+#include "sim_host/joint_script.h"
 #include "sim_host/picture.h"
 #include "sim_host/plot.h"
 #include "sim_host/scene_model.h"
@@ -27,6 +28,7 @@ struct PressOptions {
   SceneOverlays overlays;
   int every = 1;
   bool resample = false;
+  JointOptions joints;
   double hand_N_per_m = -1;  // -1: the scene's for the demo, otherwise none
 };
 
@@ -132,7 +134,12 @@ void write_pictures(const PressOptions& options, const Model& model, const Colle
 int run_press(const PressOptions& options) {
   const SceneModel scene(options.scene, options.overlays);
   const Model& model = scene.model();
-  const std::vector<TimedPose> poses = poses_of(options, scene);
+  std::vector<TimedPose> poses = poses_of(options, scene);
+  std::vector<TimedJoints> scripted;
+  for (const TimedPose& pose : poses) scripted.push_back({pose.time_s, pose.joints});
+  const JointScript joints(options.joints, model, std::move(scripted));
+  for (TimedPose& pose : poses)
+    if (!joints.empty()) pose.joints = joints.at(pose.time_s);
   ForceCsv csv(options.out);
   std::optional<VtuSeries> vtu;
   if (!options.vtu.empty()) vtu.emplace(options.vtu);
@@ -193,12 +200,14 @@ void add_press_command(CLI::App& app, int& exit_code) {
                    "default: 0, or the scene's hand with `--path demo`")
       ->check(CLI::Range(0.0, 1e6));
   command->add_flag("--resample", options->resample, "interpolate the poses by their time_s to one per tick period");
+  add_joint_options(*command, options->joints);
   command->footer(
       "One pose is one tick, friction history included. Columns of both tables: docs/press.md.\n"
       "Examples:\n"
       "  palpate press config/scenes/ellipsoid_mallet.toml --path demo --out forces.csv --png press.png\n"
       "  palpate press mallet.pal --path poses.csv --out forces.csv --vtu surface --every 10\n"
-      "  palpate press config/scenes/tools_on_layer.toml --with config/scenes/tools/flat_3_2.toml --plot flat.svg");
+      "  palpate press config/scenes/tools_on_layer.toml --with config/scenes/tools/flat_3_2.toml --plot flat.svg\n"
+      "  palpate press config/scenes/grasp_cylinder_5.toml --close 1,0.8,0,0,0 --png pinch.png");
   command->callback([options, &exit_code] { exit_code = run_press(*options); });
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 
+#include "config/hand/hand_model.h"
 #include "rt_core/articulate/carrier.h"
 #include "sim_host/plot.h"
 #include "sim_host/png_file.h"
@@ -48,7 +49,8 @@ class Renderer {
     draw_anchors();
     for (std::size_t i = 0; i < model_.piece.size(); ++i) {
       const Pose carrier = carrier_w(model_, state_, static_cast<std::int32_t>(i));
-      tool_.draw(is_hand_ ? hand_render_mesh(model_.piece[i], carrier) : piece_mesh(model_, model_.piece[i], carrier),
+      tool_.draw(is_hand_ ? hand_render_mesh(model_.piece[i], carrier, is_left_hand(model_))
+                          : piece_mesh(model_, model_.piece[i], carrier),
                  projection_, kTool);
     }
     draw_arrows();
