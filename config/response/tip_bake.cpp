@@ -221,6 +221,31 @@ class TipReader {
   std::size_t index_;
 };
 
+void bake_pairs(const SceneDesc& scene, const std::vector<TipDesc>& tips, ImageContents& image,
+                ResponseReport& report) {
+  for (std::size_t i = 0; i < scene.pair.size(); ++i) {
+    PairDesc pair = scene.pair[i];
+    if (is_auto(pair.c_m_per_N) || is_auto(pair.h_ab_m_per_N2) || is_auto(pair.h_ba_m_per_N2)) {
+      const auto place = [&](std::int32_t index) {
+        const ToolPiece& piece = image.piece[static_cast<std::size_t>(index)];
+        if (piece.point_count == 0)
+          throw ConfigError(scene.source.where("tool.piece[" + std::to_string(index) + "].points") +
+                            ": 0, so this piece touches nothing and no pair can be computed for it");
+        return image.tool_point[static_cast<std::size_t>(piece.first_point)].position_tool_m;
+      };
+      const PairFit fit = fit_pair_far_field(scene, i, norm(place(pair.piece_a) - place(pair.piece_b)), tips);
+      if (is_auto(pair.c_m_per_N)) pair.c_m_per_N = fit.c_m_per_N;
+      if (is_auto(pair.h_ab_m_per_N2)) pair.h_ab_m_per_N2 = fit.h_ab_m_per_N2;
+      if (is_auto(pair.h_ba_m_per_N2)) pair.h_ba_m_per_N2 = fit.h_ba_m_per_N2;
+      char text[160];
+      std::snprintf(text, sizeof text, "pieces %d and %d: c = %.5g m/N, h_ab = %.5g, h_ba = %.5g m/N2", pair.piece_a,
+                    pair.piece_b, pair.c_m_per_N, pair.h_ab_m_per_N2, pair.h_ba_m_per_N2);
+      report.tip.push_back(text);
+    }
+    image.tip_pair.push_back({pair.piece_a, pair.piece_b, pair.c_m_per_N, pair.h_ab_m_per_N2, pair.h_ba_m_per_N2});
+  }
+}
+
 // What the law comes to at the end of its range, and how much of that is the layer's or the true sphere's doing.
 std::string describe_law(const TipDesc& tip, const TipLaw& law) {
   const double half_space =
@@ -262,19 +287,19 @@ void bake_response(const SceneDesc& scene, ImageContents& image, ResponseReport&
     return;
   }
   image.params.response_law = static_cast<std::int32_t>(ResponseLaw::kTip);
+  std::vector<TipDesc> tips;
   for (std::size_t i = 0; i < scene.piece.size(); ++i) {
     std::string line;
-    const TipDesc tip = TipReader(scene, i).read(line);
+    tips.push_back(TipReader(scene, i).read(line));
     try {
-      image.tip_law.push_back(make_tip_law(tip, image.factor));
+      image.tip_law.push_back(make_tip_law(tips.back(), image.factor));
     } catch (const ConfigError& error) {
       throw ConfigError(scene.source.where("contact") + ": " + error.what());
     }
     report.tip.push_back(line);
-    report.tip.push_back(describe_law(tip, image.tip_law.back()));
+    report.tip.push_back(describe_law(tips.back(), image.tip_law.back()));
   }
-  for (const PairDesc& pair : scene.pair)
-    image.tip_pair.push_back({pair.piece_a, pair.piece_b, pair.c_m_per_N, pair.h_ab_m_per_N2, pair.h_ba_m_per_N2});
+  bake_pairs(scene, tips, image, report);
 }
 
 }  // namespace palpate
