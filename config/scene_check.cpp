@@ -387,8 +387,8 @@ void check_scene(const SceneDesc& scene) {
   check_contact(scene);
   check_friction(scene);
   check_backend(scene);
-  check_tool(scene);
   check_tips(scene);
+  check_tool(scene);
   check_articulation(scene);
   check_device_and_path(scene);
 }

@@ -225,10 +225,14 @@ const KeySpec kSeries[] = {
 const KeySpec kPair[] = {
     integer<&PairDesc::piece_a>("piece_a", 0, kMaxPieces - 1, "a tool piece, counted from 0"),
     integer<&PairDesc::piece_b>("piece_b", 0, kMaxPieces - 1, "another"),
-    number<&PairDesc::c_m_per_N>("c_mm_per_N", -1e3, 1e3, kMilli, "travel of one per newton on the other"),
-    number<&PairDesc::h_ab_m_per_N2>("h_ab_mm_per_N2", -1e3, 1e3, kMilli,
-                                     "second order: energy h_ab F_a^2 F_b / 2 + h_ba F_b^2 F_a / 2"),
-    number<&PairDesc::h_ba_m_per_N2>("h_ba_mm_per_N2", -1e3, 1e3, kMilli, "second order, the other way round"),
+    number_or_auto<&PairDesc::c_m_per_N>(
+        "c_mm_per_N", -1e3, 1e3, kMilli,
+        "travel of one per newton on the other; auto: from presses by finite elements (standing cylinders, boxes)"),
+    number_or_auto<&PairDesc::h_ab_m_per_N2>(
+        "h_ab_mm_per_N2", -1e3, 1e3, kMilli,
+        "second order: energy h_ab F_a^2 F_b / 2 + h_ba F_b^2 F_a / 2; auto: likewise"),
+    number_or_auto<&PairDesc::h_ba_m_per_N2>("h_ba_mm_per_N2", -1e3, 1e3, kMilli,
+                                             "second order, the other way round; auto: likewise"),
 };
 const KeySpec kTable[] = {
     choice<&TableDesc::source>("source", "file|fem",

@@ -107,10 +107,9 @@ double series_force_N(const DepthOfForce& local, const SeriesCoefficients& c, do
 }
 
 SeriesBake bake_series(const PressBody& body, const RigidTool& tool, const DepthOfForce& local, double depth_max_m,
-                       int fine_count) {
+                       const PressMeshing& meshing) {
   std::vector<double> depths_m;
   for (const double share : kReadShares) depths_m.push_back(share * depth_max_m);
-  const PressMeshing meshing = default_meshing(body, tool, depth_max_m, fine_count);
   SeriesBake bake;
   for (const PressPoint& p : press_as_far_as_possible(body, tool, StrainLaw::kNeoHookean, depths_m, meshing).points)
     bake.large.push_back({p.depth_m, p.force_N});

@@ -46,6 +46,6 @@ struct SeriesBake {
   std::vector<LoadPoint> large;
 };
 SeriesBake bake_series(const PressBody& body, const RigidTool& tool, const DepthOfForce& local, double depth_max_m,
-                       int fine_count = 12);
+                       const PressMeshing& meshing);
 
 }  // namespace palpate::fem

@@ -14,4 +14,11 @@ struct FarFieldFit {
 };
 FarFieldFit fit_far_field(const SceneDesc& scene, std::size_t piece, const TipDesc& tip);
 
+// What two pieces feel of one another through a level top, from large-strain presses of each alone at its middle.
+// `apart_m`: between their tips. Throws ConfigError naming the pair's key.
+struct PairFit {
+  double c_m_per_N = 0, h_ab_m_per_N2 = 0, h_ba_m_per_N2 = 0;
+};
+PairFit fit_pair_far_field(const SceneDesc& scene, std::size_t pair, double apart_m, const std::vector<TipDesc>& tip);
+
 }  // namespace palpate

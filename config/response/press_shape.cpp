@@ -40,9 +40,8 @@ fem::PressBody pressed_body(const SceneDesc& scene, const std::string& key) {
   } else {
     throw ConfigError(
         scene.source.where(key) +
-        ": presses are computed for a standing cylinder, a box, a sphere, or an ellipsoid with equal half "
-        "axes along x and z; for other bodies measure presses and give their CSV, or set contact.law = "
-        "\"tool\"");
+        ": presses are computed for a standing cylinder, a box, a sphere, or an ellipsoid with equal half axes along x "
+        "and z; for other bodies give numbers instead of \"auto\", or measure presses and give their CSV");
   }
   return body;
 }
@@ -52,6 +51,7 @@ fem::RigidTool pressed_tool(const PieceDesc& piece, const Indenter& indenter, do
   tool.radius_m = piece.radius_m;
   if (indenter.profile == TipProfile::kFlat) {
     tool.shape = fem::RigidShape::kPunch;
+    tool.radius_m = indenter.radius_m;
     tool.fillet_m = kPressedPunchFillet * tool.radius_m;
   } else if (indenter.profile == TipProfile::kCone) {
     tool.shape = fem::RigidShape::kCone;

@@ -88,6 +88,9 @@ class PlaceLaws {
   std::map<std::array<double, 3>, OwnedLaw> law_;
 };
 
+// To the micrometre.
+std::string mm_text(double length_m) { return number_text(std::round(1e6 * length_m) / 1e3) + " mm"; }
+
 [[noreturn]] void fail(const SceneDesc& scene, const char* key, const std::string& what) {
   throw ConfigError(scene.source.where(key) + ": " + what);
 }
@@ -99,13 +102,13 @@ void check_depth(const SceneDesc& scene, const PlaceTips& tips, const std::vecto
                                                                    : kHuge;
   if (!(depth < height))
     fail(scene, "contact.max_depth_mm",
-         number_text(1e3 * depth) + " mm is not less than the body's height of " + number_text(1e3 * height) + " mm");
+         mm_text(depth) + " is not less than the body's height of " + mm_text(height) + "; lower it");
   for (const PressPlace& place : places) {
     const Indenter tip = tips.at(place).indenter;
     if (tip.profile == TipProfile::kSphere && !(depth <= tip.radius_m))
       fail(scene, "contact.max_depth_mm",
-           number_text(1e3 * depth) + " mm is more than the effective radius of tip and body, " +
-               number_text(1e3 * tip.radius_m) + " mm; lower it");
+           mm_text(depth) + " is more than the effective radius of tip and body, " + mm_text(tip.radius_m) +
+               "; lower it");
   }
 }
 
@@ -147,8 +150,7 @@ std::vector<ResponseKnot> press_row(const LocalLaw& local, const FarSeries& far,
     const LawPoint point = local_at(local, indentation_at(local, far, extra_m_per_N, knot[k] * knot[k]));
     const double share = 1 + (far.slope_m_per_N(point.force_N) + extra_m_per_N) * point.tangent_N_per_m;
     if (!(share >= kLeastStiffness && point.force_N > row[k - 1].force_N))
-      throw ConfigError("at " + number_text(1e3 * knot[k] * knot[k]) +
-                        " mm the body would give way faster than it is pressed");
+      throw ConfigError("at " + mm_text(knot[k] * knot[k]) + " the body would give way faster than it is pressed");
     row[k].force_N = point.force_N;
     row[k].slope = 2 * knot[k] * point.tangent_N_per_m / share;
   }
@@ -201,6 +203,13 @@ std::vector<std::string> describe(const PressTable& table) {
     std::snprintf(buffer, sizeof buffer, pattern, values...);
     return std::string(buffer);
   };
+  double lowest = 0, highest = 0;
+  for (std::size_t i = 0; i < table.places.place.size(); ++i) {
+    if (!table.places.place[i].pressed_face) continue;
+    const double more = table.compliance.m_per_N[i] - table.compliance.m_per_N[0];
+    lowest = std::min(lowest, more);
+    highest = std::max(highest, more);
+  }
   const FarSeries& far = table.top.far;
   return {text("pressed at the top to %.4g mm: %d large-strain solves with %d elements under the tool, %.1f s",
                1e3 * table.top.press.back().depth_m, static_cast<int>(table.top.press.size()), table.top.elements,
@@ -209,12 +218,9 @@ std::vector<std::string> describe(const PressTable& table) {
                100 * table.top.misfit),
           text("c0 = %.4g mm/N, c1 = %.4g mm/N2, c2 = %.4g mm/N3", 1e3 * far.c0_m_per_N, 1e3 * far.c1_m_per_N2,
                1e3 * far.c2_m_per_N3),
-          text("%d places: compliance relative to the top %.4g to %.4g mm/N (%d nodes, load over %.3g mm), %.1f s",
-               static_cast<int>(table.places.place.size()),
-               1e3 * (*std::min_element(table.compliance.m_per_N.begin(), table.compliance.m_per_N.end()) -
-                      table.compliance.m_per_N[0]),
-               1e3 * (*std::max_element(table.compliance.m_per_N.begin(), table.compliance.m_per_N.end()) -
-                      table.compliance.m_per_N[0]),
+          text("%d places; compliance of the pressed face relative to its top %.4g to %.4g mm/N (%d nodes, load over "
+               "%.3g mm), %.1f s",
+               static_cast<int>(table.places.place.size()), 1e3 * lowest, 1e3 * highest,
                static_cast<int>(table.compliance.nodes), 1e3 * table.compliance.patch_m, table.place_s)};
 }
 

@@ -30,7 +30,7 @@ Indenter tip_indenter(const PieceDesc& piece);
 double tip_coefficient(const Indenter& indenter, double modulus_Pa);
 
 struct ResponseReport {
-  std::vector<std::string> tip;  // one line per piece
+  std::vector<std::string> tip;  // lines: two per piece, or what was pressed
   double slack_m = 0;            // largest distance between facets and smooth surface
   std::int64_t curves = 0;       // distinct force curves
   std::int64_t knots = 0;        // of each

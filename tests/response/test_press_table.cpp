@@ -199,6 +199,35 @@ TEST(PressTable, PlacesOfABlock) {
   EXPECT_LT(compliance.m_per_N[1], 1.3 * compliance.m_per_N[0]);
 }
 
+// A ball of 8 mm on a block of 60 x 30 x 60 mm, in the middle, 15 and 8 mm from an edge. The shares of the middle's
+// force are those of contact solved directly at each place (linear, quadratic tetrahedra of 1.6 mm under the ball,
+// every node there free to touch; 2026-11-21): 27.704 N in the middle at 3 mm.
+TEST(PressTable, PlacesTowardsAnEdgeAgainstDirectPresses) {
+  const SceneDesc scene = scene_of(
+      "[body]\nshape = \"box\"\nsize_mm = [60, 30, 60]\n[body.material]\nyoungs_modulus_Pa = 1e6\npoisson_ratio = "
+      "0.45\n"
+      "[body.fixed]\nbase_height_mm = 0.01\n",
+      "max_depth_mm = 4\n", ball(8));
+  const std::vector<PressPlace> place{
+      {{0, 0.03, 0}, {0, 1, 0}}, {{0.015, 0.03, 0}, {0, 1, 0}}, {{0.022, 0.03, 0}, {0, 1, 0}}};
+  const PlaceCompliance compliance = place_compliance(scene, place, 5.7e-3, {});
+  const OwnedLaw law = make_owned_law(
+      {{TipProfile::kSphere, 8e-3, 0}, 1e6 / (1 - 0.45 * 0.45), {0.03, 0.45, LayerBase::kBonded}, 4e-3, 0, 0});
+  CurveTable table{root_knots(4e-3), {}};
+  for (const double c : compliance.m_per_N)
+    table.row.push_back(press_row(law.local(), {}, c - compliance.m_per_N[0], table.knot));
+  EXPECT_NEAR(force_at(table, 0, 3e-3) / 27.704, 1, 0.02);
+  const double share[3][2] = {{1, 1}, {0.9673, 0.9533}, {0.8671, 0.8262}};
+  for (std::size_t i = 1; i < 3; ++i)
+    for (int d = 0; d < 2; ++d) {
+      const double depth = 1.5e-3 * (d + 1), here = force_at(table, i, depth) / force_at(table, 0, depth);
+      std::printf("  %g mm from the edge, %g mm deep: %.4f of the middle's force, directly %.4f\n",
+                  30 - 1e3 * place[i].position_m.x, 1e3 * depth, here, share[i][d]);
+      // 8 mm is 1.3 times the width of the load that stands for the contact.
+      EXPECT_NEAR(here / share[i][d], 1, i == 1 ? 0.01 : 0.03);
+    }
+}
+
 std::string message(const SceneDesc& scene) {
   try {
     press_table(scene, {{0, 0, 0}});

@@ -28,7 +28,7 @@ void expect_within(const DepthOfForce& local, const SeriesCoefficients& c, const
 TEST(SeriesLaw, StaysWithinTwoPerCentOnTheRubberBlock) {
   const PressBody body = rubber_block();
   const DepthOfForce local = hertz(3.45e6, 6.35e-3);
-  const SeriesBake bake = bake_series(body, ball(6.35e-3), local, 3e-3, 10);
+  const SeriesBake bake = bake_series(body, ball(6.35e-3), local, 3e-3, default_meshing(body, ball(6.35e-3), 3e-3, 10));
   EXPECT_FALSE(bake.coefficients.clamped);
   // Large-strain forces on a mesh of 30 elements over 6 mm (published with the scene), good to 0.5 %.
   expect_within(local, bake.coefficients, {{0.25, 1.4558}, {0.5, 4.1091}, {1, 11.573}, {2, 32.303}, {3, 58.363}}, 0.02);
@@ -36,7 +36,8 @@ TEST(SeriesLaw, StaysWithinTwoPerCentOnTheRubberBlock) {
 
 TEST(SeriesLaw, StaysWithinTwoPerCentOnTheEllipsoid) {
   const DepthOfForce local = hertz(3e6 / (1 - 0.45 * 0.45), 1 / (1 / 0.01 + 0.03 / (0.04 * 0.04)));
-  const SeriesBake bake = bake_series(ellipsoid(), ball(0.01), local, 8e-3, 8);
+  const SeriesBake bake =
+      bake_series(ellipsoid(), ball(0.01), local, 8e-3, default_meshing(ellipsoid(), ball(0.01), 8e-3, 8));
   expect_within(local, bake.coefficients, {{1, 14.208}, {2, 39.671}, {4, 109.78}, {6, 197.67}, {8, 298.42}}, 0.02);
 }
 
@@ -66,10 +67,12 @@ TEST(SeriesLaw, LeastSquaresReturnTheCoefficientsOfAnExactSeries) {
 // A press that finds no equilibrium beyond half way is fitted as far as it came; one that fails sooner is refused.
 TEST(SeriesLaw, APressThatEndsEarlyIsUsedAsFarAsItCame) {
   const DepthOfForce local = hertz(1e6 / (1 - 0.45 * 0.45), 5e-3);
-  const SeriesBake bake = bake_series(layer(2e-3), ball(5e-3), local, 2.2e-3, 4);  // deeper than the layer
+  const SeriesBake bake = bake_series(layer(2e-3), ball(5e-3), local, 2.2e-3,
+                                      default_meshing(layer(2e-3), ball(5e-3), 2.2e-3, 4));  // deeper than the layer
   EXPECT_GE(bake.large.size(), 2u);
   EXPECT_LT(bake.large.size(), 4u);
-  EXPECT_THROW(bake_series(layer(1e-3), ball(5e-3), local, 4e-3, 3), ConfigError);
+  EXPECT_THROW(bake_series(layer(1e-3), ball(5e-3), local, 4e-3, default_meshing(layer(1e-3), ball(5e-3), 4e-3, 3)),
+               ConfigError);
 }
 
 // The clip's tips spread by a level-faced wedge as far as its tube opens them (2.6 mm each): thin arms that bend, the
