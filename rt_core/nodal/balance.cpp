@@ -10,6 +10,10 @@ namespace {
 // Above this a problem counts as not solved: a sixth of an encoder's step. The sweeps with friction leave 3e-6 m after
 // a tool is put 5 mm deep in one tick, below 1e-7 m in steady motion (2026-11-21); without friction it is rounding.
 constexpr Real kTolerance_m = 5e-6;
+// Of one visit in a sweep: the next one goes on from there.
+constexpr SlipSearch kSweepSearch{2, 1e-6};
+// Nodes that the sweeps may open before the normal problem is left as they found it.
+constexpr std::int32_t kMostOpened = 8;
 
 Real friction_coefficient(const Model& model) PALPATE_RT {
   const bool coulomb = model.params.friction_law == static_cast<std::int32_t>(FrictionLaw::kCoulomb);
@@ -48,13 +52,14 @@ class Balance {
     return model_.params.nodal_solver == static_cast<std::int32_t>(NodalSolver::kPivoting);
   }
 
-  // Any two tangents; with friction they are turned later.
+  // Any two tangents (Duff et al. 2017); with friction they are turned later.
   static void set_frame(ContactNode& node) PALPATE_RT {
     const Vec3 n = node.normal_w;
-    const Vec3 axis = abs_of(n.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-    node.tangent_w[0] = unit_or(cross(n, axis), {});
-    node.tangent_w[1] = cross(n, node.tangent_w[0]);
+    const Real sign = n.z < 0 ? -1.0 : 1.0, a = -1.0 / (sign + n.z), b = n.x * n.y * a;
+    node.tangent_w[0] = {1 + sign * n.x * n.x * a, sign * b, -sign * n.x};
+    node.tangent_w[1] = {b, sign + n.y * n.y * a, -n.y};
     node.push = {};
+    node.force_w = {};
     node.block.normal = 0;  // not made yet
   }
 
@@ -66,14 +71,18 @@ class Balance {
   }
 
   // How far the body's material at a node is from the tool's material it is compared with, without any push.
-  Vec3 free_offset(const ContactNode& node) const PALPATE_RT {
+  Vec3 free_offset(const ContactNode& node) PALPATE_RT {
     Vec3 anchor_tool;
     if (node.memory >= 0 && state_.nodal.contact[node.memory].piece == node.piece) {
       anchor_tool = state_.nodal.contact[node.memory].anchor_tool_m;
     } else {
       anchor_tool = inverse_transform(carried_before(model_, state_, before_, node.piece), node.rest_w + node.carry_w);
     }
-    return node.rest_w - transform(carrier_w(model_, state_, node.piece), anchor_tool) - tool_motion(node);
+    if (node.piece != carried_piece_) {
+      carried_piece_ = node.piece;
+      carrier_ = carrier_w(model_, state_, node.piece);
+    }
+    return node.rest_w - transform(carrier_, anchor_tool) - tool_motion(node);
   }
   Vec3 tool_motion(const ContactNode& node) const PALPATE_RT {
     return drift_.translation_m + cross(drift_.rotation_rad, node.arm_w);
@@ -82,7 +91,6 @@ class Balance {
   // Turns the tangents to those of the node's own compliance, once the node is known to push.
   void prepare_friction(std::int32_t i) PALPATE_RT {
     ContactNode& node = p_.node[i];
-    if (node.block.normal > 0) return;
     Real w[3][3];
     own_compliance(model_, p_, i, w);
     node.block = make_friction_block(w, mu_);
@@ -103,8 +111,17 @@ class Balance {
       const Vec3 force = tangential_part(state_.nodal.contact[node.memory].force_w, node.normal_w);
       node.push.tangent_N[0] = dot(force, node.tangent_w[0]);
       node.push.tangent_N[1] = dot(force, node.tangent_w[1]);
-      if (squared_norm(force) > 0) add_push(p_, i, push_w(node));
+      set_force(i);
     }
+  }
+
+  // Carries node.push over to the forces and displacements.
+  void set_force(std::int32_t i) PALPATE_RT {
+    ContactNode& node = p_.node[i];
+    const Vec3 force = push_w(node);
+    const Vec3 step = force - node.force_w;
+    node.force_w = force;
+    if (squared_norm(step) > 0) add_push(p_, i, step);
   }
 
   Real normal_gap(std::int32_t i) const PALPATE_RT {
@@ -127,31 +144,23 @@ class Balance {
       solve_sweeping(normal, model_.params.nodal_sweeps);
     }
     for (std::int32_t i = 0; i < p_.count; ++i) {  // bound: kMaxContacts
-      ContactNode& node = p_.node[i];
-      node.push.normal_N = normal.push_N[i];
-      if (node.push.normal_N > 0) add_push(p_, i, node.push.normal_N * node.normal_w);
+      p_.node[i].push.normal_N = normal.push_N[i];
+      set_force(i);
     }
   }
 
-  void set_push(std::int32_t i, const Push& push) PALPATE_RT {
-    ContactNode& node = p_.node[i];
-    const Vec3 before = push_w(node);
-    node.push = push;
-    const Vec3 step = push_w(node) - before;
-    if (squared_norm(step) > 0) add_push(p_, i, step);
-  }
-
   void solve_node(std::int32_t i) PALPATE_RT {
-    const ContactNode& node = p_.node[i];
+    ContactNode& node = p_.node[i];
     const Vec3 u = relative_motion(p_, i);
     const Real normal_m = node.offset_m[0] + dot(u, node.normal_w);
-    if (node.memory < 0 && node.push.normal_N == 0 && normal_m >= 0) return;  // open, and stays so
-    prepare_friction(i);
-    Real own[3];
-    own_displacement(node.block, node.push, own);
-    const Real free_m[3] = {normal_m - own[0], node.offset_m[1] + dot(u, node.tangent_w[0]) - own[1],
-                            node.offset_m[2] + dot(u, node.tangent_w[1]) - own[2]};
-    set_push(i, solve_friction(node.block, mu_, free_m));
+    if (!(node.block.normal > 0)) {
+      if (node.push.normal_N == 0 && normal_m >= 0) return;  // open, and stays so
+      prepare_friction(i);
+    }
+    const Real now_m[3] = {normal_m, node.offset_m[1] + dot(u, node.tangent_w[0]),
+                           node.offset_m[2] + dot(u, node.tangent_w[1])};
+    node.push = improve_friction(node.block, mu_, node.push, now_m, kSweepSearch);
+    set_force(i);
   }
 
   void solve_with_friction() PALPATE_RT {
@@ -159,33 +168,33 @@ class Balance {
       for (std::int32_t i = 0; i < p_.count; ++i) solve_node(i);                    // bound: kMaxContacts
     }
     if (pivots()) close_normal_gaps();
-    for (std::int32_t i = 0; i < p_.count; ++i) keep_in_cone(i);  // bound: kMaxContacts
   }
 
   // The sweeps leave the normal gaps of the nodes visited first slightly wrong. With the friction they found, the
-  // normal problem is solved once more through the factor at hand, if the same nodes still push.
+  // normal problem is solved once more through the factor at hand, over its nodes that still push.
   void close_normal_gaps() PALPATE_RT {
     NormalProblem& normal = p_.normal;
     if (normal.factored == 0) return;
-    std::int32_t pushing = 0;
-    for (std::int32_t i = 0; i < p_.count; ++i) pushing += p_.node[i].push.normal_N > 0 ? 1 : 0;
-    if (pushing != normal.factor.n) return;
+    std::int32_t opened = 0;
+    for (std::int32_t k = 0; k < normal.factor.n; ++k) {  // bound: kMaxContacts, kMostOpened updates
+      const std::int32_t i = normal.active[k];
+      if (i < 0 || p_.node[i].push.normal_N > 0) continue;
+      if (++opened > kMostOpened) return;
+      remove_unknown(normal.factor, k);
+      normal.active[k] = -1;
+    }
     alignas(32) double step[kContactStride] = {};
     for (std::int32_t k = 0; k < normal.factor.n; ++k) {  // bound: kMaxContacts
-      const std::int32_t i = normal.active[k];
-      if (!(p_.node[i].push.normal_N > 0)) return;
-      step[k] = -normal_residual(i);
+      if (normal.active[k] >= 0) step[k] = -normal_residual(normal.active[k]);
     }
     solve_lower(normal.factor, step);
     solve_upper(normal.factor, step);
-    for (std::int32_t k = 0; k < normal.factor.n; ++k) {
-      if (!(p_.node[normal.active[k]].push.normal_N + step[k] >= 0)) return;
-    }
-    for (std::int32_t k = 0; k < normal.factor.n; ++k) {
-      const std::int32_t i = normal.active[k];
-      Push push = p_.node[i].push;
-      push.normal_N += step[k];
-      set_push(i, push);
+    for (std::int32_t k = 0; k < normal.factor.n; ++k) {  // bound: kMaxContacts
+      if (normal.active[k] < 0) continue;
+      Push& push = p_.node[normal.active[k]].push;
+      push.normal_N = max_of(push.normal_N + step[k], 0.0);
+      cut_to_cone(push);
+      set_force(normal.active[k]);
     }
   }
 
@@ -198,14 +207,13 @@ class Balance {
   }
 
   // The last step changed normal pushes only: friction beyond their limit is cut.
-  void keep_in_cone(std::int32_t i) PALPATE_RT {
-    Push push = p_.node[i].push;
-    const Real size = square_root(push.tangent_N[0] * push.tangent_N[0] + push.tangent_N[1] * push.tangent_N[1]);
+  void cut_to_cone(Push& push) const PALPATE_RT {
     const Real limit = mu_ * push.normal_N;
-    if (!(size > limit)) return;
+    const Real size2 = push.tangent_N[0] * push.tangent_N[0] + push.tangent_N[1] * push.tangent_N[1];
+    if (!(size2 > limit * limit)) return;
     push.slips = true;
-    for (Real& t : push.tangent_N) t *= limit / size;
-    set_push(i, push);
+    const Real share = limit / square_root(size2);
+    for (Real& t : push.tangent_N) t *= share;
   }
 
   void measure() PALPATE_RT {
@@ -227,6 +235,8 @@ class Balance {
   const Twist drift_;
   const Pose before_;
   const Real mu_;
+  Pose carrier_;  // of the piece last asked for
+  std::int32_t carried_piece_ = -1;
 };
 
 }  // namespace

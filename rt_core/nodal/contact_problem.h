@@ -23,6 +23,7 @@ struct ContactNode {
   FrictionBlock block;
   double offset_m[3];  // displacement relative to the tool without any push, in the node's frame
   Push push;
+  Vec3 force_w;  // of the push, on the body: push_w() once it has been carried over to motion_m
 };
 
 struct ContactProblem {
@@ -41,7 +42,7 @@ struct ContactProblem {
 };
 static_assert(kMaxContacts <= 127, "nodes are numbered in 8 bits");
 
-// Force of a node's push on the body.
+// What its push does to the body.
 inline Vec3 push_w(const ContactNode& node) PALPATE_RT {
   return node.push.normal_N * node.normal_w + node.push.tangent_N[0] * node.tangent_w[0] +
          node.push.tangent_N[1] * node.tangent_w[1];

@@ -12,6 +12,7 @@ struct FrictionBlock {
   Real normal = 0;     // W_nn
   Real lean[2] = {};   // W_nt
   Real slide[2] = {};  // diagonal of W_tt - W_tn W_nt / W_nn, positive
+  Real per_normal = 0, per_slide[2] = {};  // 1 / normal, 1 / slide
   Real cosine = 1, sine = 0;
 };
 // From a symmetric positive definite 3 x 3 compliance (normal, first tangent, second tangent). Where the normal gap
@@ -25,9 +26,23 @@ struct Push {
   bool slips = false;
 };
 // Displacement of the contact by its own push.
-void own_displacement(const FrictionBlock& block, const Push& push, Real (&displacement_m)[3]) PALPATE_RT;
+inline void own_displacement(const FrictionBlock& block, const Push& push, Real (&u)[3]) PALPATE_RT {
+  const Real leaning = block.lean[0] * push.tangent_N[0] + block.lean[1] * push.tangent_N[1];
+  u[0] = block.normal * push.normal_N + leaning;
+  const Real along = push.normal_N + leaning * block.per_normal;
+  u[1] = block.lean[0] * along + block.slide[0] * push.tangent_N[0];
+  u[2] = block.lean[1] * along + block.slide[1] * push.tangent_N[1];
+}
+// How closely a slipping push is sought: Newton steps, at most, and the error of |tangent| = mu normal that ends them.
+struct SlipSearch {
+  int steps = 8;
+  Real tolerance = 1e-12;
+};
 // The push under which the contact, displaced by `free_m` (normal gap, tangents) without it, is open, sticks (no
-// tangential displacement) or slips against its displacement with |tangent| = mu normal. Bound: 8 Newton steps.
-Push solve_friction(const FrictionBlock& block, Real mu, const Real (&free_m)[3]) PALPATE_RT;
+// tangential displacement) or slips against its displacement with |tangent| = mu normal.
+Push solve_friction(const FrictionBlock& block, Real mu, const Real (&free_m)[3], SlipSearch search = {}) PALPATE_RT;
+// The same for a contact displaced by `now_m` under the push `now`.
+Push improve_friction(const FrictionBlock& block, Real mu, const Push& now, const Real (&now_m)[3],
+                      SlipSearch search) PALPATE_RT;
 
 }  // namespace palpate

@@ -4,27 +4,33 @@ namespace palpate {
 
 namespace {
 
-// to[i] = row[index[i]] for n entries, whole lanes at a time (the rest of the index is 0). One instruction fetches
-// eight numbers where there is one; left to itself gcc 12 loads them one by one, at four times the instructions.
-void pick(const float* row, const std::int32_t* index, std::int32_t n, float* to) PALPATE_RT {
+// to[b][i] = row[3 vertex(i) + b] for whole lanes of nodes (the rest of the index is 0). One instruction fetches eight
+// numbers where there is one; left to itself gcc 12 loads them one by one, at four times the instructions.
+void pick(const float* row, const std::int32_t* index, std::int32_t n, float (*to)[kContactStride]) PALPATE_RT {
 #if defined(__AVX2__)
   using Int8 [[gnu::vector_size(32)]] = std::int32_t;
   const Float8 all = __builtin_bit_cast(Float8, Int8{-1, -1, -1, -1, -1, -1, -1, -1});
+  Float8 v{};
   for (std::int32_t i = 0; i < n; i += 8) {  // bound: kMaxContacts / 8
     Int8 at;
     __builtin_memcpy(&at, index + i, sizeof at);
+    for (int b = 0; b < 3; ++b) {  // bound: 3
 #if defined(__clang__)
-    store(to + i, __builtin_ia32_gatherd_ps256(Float8{}, row, at, all, 4));
+      v = __builtin_ia32_gatherd_ps256(v, row + b, at, all, 4);
 #else
-    store(to + i, __builtin_ia32_gathersiv8sf(Float8{}, row, at, all, 4));
+      v = __builtin_ia32_gathersiv8sf(v, row + b, at, all, 4);
 #endif
+      store(to[b] + i, v);
+    }
   }
 #else
-  for (std::int32_t i = 0; i < n; ++i) to[i] = row[index[i]];  // bound: kMaxContacts
+  for (int b = 0; b < 3; ++b)
+    for (std::int32_t i = 0; i < n; ++i) to[b][i] = row[index[i] + b];  // bound: 3 kMaxContacts
 #endif
 }
-void pick(const double* row, const std::int32_t* index, std::int32_t n, float* to) PALPATE_RT {
-  for (std::int32_t i = 0; i < n; ++i) to[i] = static_cast<float>(row[index[i]]);  // bound: kMaxContacts
+void pick(const double* row, const std::int32_t* index, std::int32_t n, float (*to)[kContactStride]) PALPATE_RT {
+  for (int b = 0; b < 3; ++b)
+    for (std::int32_t i = 0; i < n; ++i) to[b][i] = static_cast<float>(row[index[i] + b]);  // bound: 3 kMaxContacts
 }
 
 template <class Number>
@@ -33,10 +39,8 @@ void gather_rows(std::span<const Number> compliance, std::size_t row_length, Con
   const std::int32_t lanes = whole_lanes(p.count, 8);
   for (std::int32_t i = 0; i < lanes; ++i) index[i] = i < p.count ? 3 * p.node[i].vertex : 0;
   for (std::int32_t j = 0; j < p.count; ++j) {  // bound: kMaxContacts
-    for (std::int32_t a = 0; a < 3; ++a) {
-      const Number* row = compliance.data() + static_cast<std::size_t>(index[j] + a) * row_length;
-      for (std::int32_t b = 0; b < 3; ++b) pick(row + b, index, lanes, p.influence[j][a][b]);
-    }
+    const Number* row = compliance.data() + static_cast<std::size_t>(index[j]) * row_length;
+    for (std::int32_t a = 0; a < 3; ++a) pick(row + static_cast<std::size_t>(a) * row_length, index, lanes, p.influence[j][a]);
   }
 }
 
@@ -93,6 +97,20 @@ void normal_row_exact(const Model& model, ContactProblem& p, std::int32_t j) PAL
   }
 }
 
+// The lower triangle from the upper one, which rows hold from the vector of their diagonal on.
+void mirror(NormalProblem& p) PALPATE_RT {
+  for (std::int32_t j = 0; j < p.n; j += 4) {  // bound: kMaxContacts^2 / 32 blocks
+    for (std::int32_t a = 1; a < 4; ++a)
+      for (std::int32_t b = 0; b < a; ++b) p.compliance[j + a][j + b] = p.compliance[j + b][j + a];
+    for (std::int32_t i = j + 4; i < p.n; i += 4) {
+      Double4 block[4];
+      for (int k = 0; k < 4; ++k) block[k] = load4(p.compliance[j + k] + i);
+      transpose(block);
+      for (int k = 0; k < 4; ++k) store(p.compliance[i + k] + j, block[k]);
+    }
+  }
+}
+
 bool is_held(const Model& model, const ContactNode& node) PALPATE_RT {
   return model.nodal_vertex[static_cast<std::size_t>(node.vertex)].is_free == 0;
 }
@@ -102,11 +120,13 @@ bool is_held(const Model& model, const ContactNode& node) PALPATE_RT {
 void add_push(ContactProblem& p, std::int32_t j, Vec3 force) PALPATE_RT {
   const Float8 x = splat8(static_cast<float>(force.x)), y = splat8(static_cast<float>(force.y)),
                z = splat8(static_cast<float>(force.z));
-  const auto& from = p.influence[j];
-  for (int b = 0; b < 3; ++b) {                      // bound: 3
-    for (std::int32_t i = 0; i < p.count; i += 8) {  // bound: kMaxContacts / 8
-      store(p.motion_m[b] + i, load8(p.motion_m[b] + i) +
-                                   (load8(from[0][b] + i) * x + load8(from[1][b] + i) * y + load8(from[2][b] + i) * z));
+  const float* from = p.influence[j][0][0];
+  float* to = p.motion_m[0];
+  for (std::int32_t i = 0; i < p.count; i += 8, from += 8, to += 8) {  // bound: kMaxContacts / 8
+    for (int b = 0; b < 3; ++b) {                                      // bound: 3
+      const Float8 by_x = load8(from + b * kContactStride) * x, by_y = load8(from + (3 + b) * kContactStride) * y,
+                   by_z = load8(from + (6 + b) * kContactStride) * z;
+      store(to + b * kContactStride, load8(to + b * kContactStride) + (by_x + by_y + by_z));
     }
   }
   p.force_N += force;
@@ -135,23 +155,24 @@ void gather_normal(const Model& model, ContactProblem& p) PALPATE_RT {
     double& diagonal = p.normal.compliance[j][j];
     diagonal *= 1.0 + model.params.regularisation;
     if (is_held(model, p.node[j])) diagonal += 1.0 / model.params.wall_N_per_m;
-    for (std::int32_t i = 0; i < j; ++i) p.normal.compliance[j][i] = p.normal.compliance[i][j];  // bound: kMaxContacts
   }
+  mirror(p.normal);
 }
 
 void own_compliance(const Model& model, const ContactProblem& p, std::int32_t i, Real (&w)[3][3]) PALPATE_RT {
   const ContactNode& node = p.node[i];
+  const auto& c = p.influence[i];
+  const Vec3 r = node.arm_w, turn = p.per_Nm * r;
+  const Real stretch = p.per_N + dot(turn, r);  // (r x f) x r = r.r f - r.f r
+  const auto entry = [&](int a, int b) PALPATE_RT { return static_cast<Real>(c[a][b][i]); };
+  const Real xx = entry(0, 0) + stretch - turn.x * r.x, xy = entry(0, 1) - turn.x * r.y,
+             xz = entry(0, 2) - turn.x * r.z, yy = entry(1, 1) + stretch - turn.y * r.y,
+             yz = entry(1, 2) - turn.y * r.z, zz = entry(2, 2) + stretch - turn.z * r.z;
   const Vec3 frame[3] = {node.normal_w, node.tangent_w[0], node.tangent_w[1]};
-  Vec3 column[3];
-  for (int a = 0; a < 3; ++a) {  // bound: 3
-    const auto& c = p.influence[i][a];
-    column[a] = {static_cast<Real>(c[0][i]), static_cast<Real>(c[1][i]), static_cast<Real>(c[2][i])};
-  }
   for (int a = 0; a < 3; ++a) {  // bound: 3 x 3
     const Vec3 f = frame[a];
-    const Vec3 u = f.x * column[0] + f.y * column[1] + f.z * column[2] + p.per_N * f +
-                   p.per_Nm * cross(cross(node.arm_w, f), node.arm_w);
-    for (int b = 0; b < 3; ++b) w[a][b] = dot(u, frame[b]);
+    const Vec3 u{xx * f.x + xy * f.y + xz * f.z, xy * f.x + yy * f.y + yz * f.z, xz * f.x + yz * f.y + zz * f.z};
+    for (int b = 0; b <= a; ++b) w[a][b] = w[b][a] = dot(u, frame[b]);
     w[a][a] *= 1.0 + model.params.regularisation;
     if (is_held(model, node)) w[a][a] += 1.0 / model.params.wall_N_per_m;
   }

@@ -31,6 +31,17 @@ inline void store(double* to, const Double4& v) PALPATE_RT { __builtin_memcpy(to
 inline void store(float* to, const Float8& v) PALPATE_RT { __builtin_memcpy(to, &v, sizeof v); }
 inline Double4 splat4(double x) PALPATE_RT { return Double4{x, x, x, x}; }
 inline Float8 splat8(float x) PALPATE_RT { return Float8{x, x, x, x, x, x, x, x}; }
+// Swaps rows and columns of a 4 x 4 block.
+inline void transpose(Double4 (&row)[4]) PALPATE_RT {
+  const Double4 a = __builtin_shufflevector(row[0], row[1], 0, 4, 2, 6);
+  const Double4 b = __builtin_shufflevector(row[0], row[1], 1, 5, 3, 7);
+  const Double4 c = __builtin_shufflevector(row[2], row[3], 0, 4, 2, 6);
+  const Double4 d = __builtin_shufflevector(row[2], row[3], 1, 5, 3, 7);
+  row[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5);
+  row[1] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+  row[2] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
+  row[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+}
 // In this order on every machine.
 inline double sum(const Double4& v) PALPATE_RT { return (v[0] + v[1]) + (v[2] + v[3]); }
 

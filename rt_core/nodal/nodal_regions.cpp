@@ -31,7 +31,7 @@ struct Sums {
 
 void add(const Model& model, const Scratch& scratch, const Contact& contact, Sums& s) PALPATE_RT {
   const ContactNode& node = scratch.nodal.node[contact.point];
-  const Vec3 on_tool = -push_w(node);
+  const Vec3 on_tool = -node.force_w;
   s.centre += contact.force_N * contact.position_w;
   s.normal += contact.force_N * contact.normal_w;
   s.friction += on_tool - contact.force_N * contact.normal_w;
@@ -39,7 +39,7 @@ void add(const Model& model, const Scratch& scratch, const Contact& contact, Sum
   s.torque += cross(node.arm_w, on_tool);
   s.carry += contact.force_N * motion_of(scratch.nodal, contact.point);
   s.load += contact.force_N;
-  s.energy += 0.5 * dot(push_w(node), motion_of(scratch.nodal, contact.point));
+  s.energy += 0.5 * dot(node.force_w, motion_of(scratch.nodal, contact.point));
   s.area += model.nodal_vertex[static_cast<std::size_t>(node.vertex)].area_m2;
   s.slipping += node.push.slips ? 1 : 0;
   s.count += 1;

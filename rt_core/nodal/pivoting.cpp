@@ -6,33 +6,45 @@ namespace palpate {
 
 namespace {
 
+// to[i] = from[at[i]] for n entries of rising indices: whole vectors where four of them follow one another.
+void pick(const double* from, const std::int32_t* at, std::int32_t n, double* to) PALPATE_RT {
+  std::int32_t i = 0;
+  while (i < n) {  // bound: kMaxContacts
+    if (i + 4 <= n && at[i + 3] == at[i] + 3) {
+      store(to + i, load4(from + at[i]));
+      i += 4;
+    } else {
+      to[i] = from[at[i]];
+      i += 1;
+    }
+  }
+}
+
 // M over the active contacts, as the lower triangle of the factor. Rows past the last are zero.
 void gather_active(NormalProblem& p) PALPATE_RT {
   ContactFactor& factor = p.factor;
   const std::int32_t rows = whole_lanes(factor.n, 4);
   for (std::int32_t j = 0; j < factor.n; ++j) {  // bound: kMaxContacts^2 / 2
-    const double* from = p.compliance[p.active[j]];
+    const std::int32_t first = j / 4 * 4;
     double* to = factor.column[j];
-    for (std::int32_t i = j / 4 * 4; i < j; ++i) to[i] = 0;
-    for (std::int32_t i = j; i < factor.n; ++i) to[i] = from[p.active[i]];
-    for (std::int32_t i = factor.n; i < rows; ++i) to[i] = 0;
+    pick(p.compliance[p.active[j]], p.active + first, factor.n - first, to + first);
+    for (std::int32_t i = factor.n; i < rows; ++i) to[i] = 0;  // bound: 3
   }
 }
 
-// Pushes that close exactly the active contacts; false when M is not positive definite over them.
-bool close_active(NormalProblem& p) PALPATE_RT {
-  gather_active(p);
-  p.pivots += 1;
-  p.factored = factorise(p.factor) ? 1 : 0;
-  if (p.factored == 0) return false;
+// Pushes that close exactly the contacts of the factor.
+void close_active(NormalProblem& p) PALPATE_RT {
+  const ContactFactor& factor = p.factor;
   alignas(32) double x[kContactStride];
-  const std::int32_t rows = whole_lanes(p.factor.n, 4);
-  for (std::int32_t k = 0; k < rows; ++k) x[k] = k < p.factor.n ? -p.free_gap_m[p.active[k]] : 0.0;
-  solve_lower(p.factor, x);
-  solve_upper(p.factor, x);
+  for (std::int32_t k = 0; k < whole_lanes(factor.n, 4); ++k) {  // bound: kMaxContacts
+    x[k] = k < factor.n && p.active[k] >= 0 ? -p.free_gap_m[p.active[k]] : 0.0;
+  }
+  solve_lower(factor, x);
+  solve_upper(factor, x);
   for (std::int32_t i = 0; i < p.n; ++i) p.push_N[i] = 0;  // bound: kMaxContacts
-  for (std::int32_t k = 0; k < p.factor.n; ++k) p.push_N[p.active[k]] = x[k];
-  return true;
+  for (std::int32_t k = 0; k < factor.n; ++k) {            // bound: kMaxContacts
+    if (p.active[k] >= 0) p.push_N[p.active[k]] = x[k];
+  }
 }
 
 void add_gaps(NormalProblem& p) PALPATE_RT {
@@ -62,11 +74,68 @@ Exchange find_wrong(const NormalProblem& p, const bool (&is_active)[kMaxContacts
   return exchange;
 }
 
-void list_active(NormalProblem& p, const bool (&is_active)[kMaxContacts]) PALPATE_RT {
+// Factorises M over the active contacts; false when it is not positive definite.
+bool factorise_active(NormalProblem& p, const bool (&is_active)[kMaxContacts]) PALPATE_RT {
   p.factor.n = 0;
   for (std::int32_t i = 0; i < p.n; ++i) {  // bound: kMaxContacts
     if (is_active[i]) p.active[p.factor.n++] = i;
   }
+  gather_active(p);
+  p.factored = factorise(p.factor) ? 1 : 0;
+  return p.factored != 0;
+}
+
+// Adds contact i to the factor as its last unknown.
+bool append_contact(NormalProblem& p, std::int32_t i) PALPATE_RT {
+  ContactFactor& factor = p.factor;
+  const std::int32_t n = factor.n;
+  alignas(32) double row[kContactStride];
+  for (std::int32_t k = 0; k < whole_lanes(n, 4); ++k) {  // bound: kMaxContacts
+    row[k] = k < n && p.active[k] >= 0 ? p.compliance[p.active[k]][i] : 0.0;
+  }
+  solve_lower(factor, row);
+  double rest = p.compliance[i][i];
+  for (std::int32_t k = 0; k < n; ++k) {  // bound: kMaxContacts
+    factor.column[k][n] = row[k];
+    rest -= row[k] * row[k];
+  }
+  if (!(rest > 1e-13 * p.compliance[i][i] && rest < kHuge * kHuge)) return false;
+  const std::int32_t first = n / 4 * 4;
+  for (std::int32_t k = first; k < first + 4; ++k) factor.column[n][k] = 0;  // bound: 4
+  if (n == first) {  // a new vector of rows: what follows the new row is zero
+    for (std::int32_t k = 0; k < n; ++k)
+      for (std::int32_t r = n + 1; r < n + 4; ++r) factor.column[k][r] = 0;  // bound: 3 kMaxContacts
+  }
+  factor.column[n][n] = square_root(rest);
+  factor.inverse_pivot[n] = 1.0 / factor.column[n][n];
+  p.active[n] = i;
+  factor.n = n + 1;
+  return true;
+}
+
+// Exchanges dearer than this many updates of the factor are cheaper as a new one.
+constexpr std::int32_t kMostUpdates = 8;
+
+// Carries the exchanges over to the factor. False when it has to be made anew.
+bool update_factor(NormalProblem& p, const bool (&is_active)[kMaxContacts],
+                   const bool (&flips)[kMaxContacts]) PALPATE_RT {
+  std::int32_t changes = 0, joins = 0;
+  for (std::int32_t i = 0; i < p.n; ++i) {  // bound: kMaxContacts
+    if (!flips[i]) continue;
+    changes += 1;
+    joins += is_active[i] ? 1 : 0;
+  }
+  if (changes > kMostUpdates || p.factor.n + joins > kMaxContacts) return false;
+  for (std::int32_t k = 0; k < p.factor.n; ++k) {  // bound: kMostUpdates updates
+    const std::int32_t i = p.active[k];
+    if (i < 0 || !flips[i]) continue;
+    remove_unknown(p.factor, k);
+    p.active[k] = -1;
+  }
+  for (std::int32_t i = 0; i < p.n; ++i) {  // bound: kMostUpdates updates
+    if (flips[i] && is_active[i] && !append_contact(p, i)) return false;
+  }
+  return true;
 }
 
 // The whole vector lanes past n hold zeros, so that they take part in sums harmlessly.
@@ -77,17 +146,32 @@ void pad(NormalProblem& p) PALPATE_RT {
   }
 }
 
-}  // namespace
-
-void measure_gaps(NormalProblem& p) PALPATE_RT {
-  pad(p);
-  add_gaps(p);
+void measure_residual(NormalProblem& p) PALPATE_RT {
   p.residual_m = 0;
   for (std::int32_t i = 0; i < p.n; ++i) {  // bound: kMaxContacts
     const double push_m = p.push_N[i] * p.compliance[i][i];
     const double wrong = abs_of(push_m < p.gap_m[i] ? push_m : p.gap_m[i]);
     if (!(wrong <= p.residual_m)) p.residual_m = wrong;
   }
+}
+
+// The solution, without the pull that the tolerance lets pass.
+void settle(NormalProblem& p) PALPATE_RT {
+  bool pulls = false;
+  for (std::int32_t i = 0; i < p.n; ++i) {  // bound: kMaxContacts
+    pulls = pulls || !(p.push_N[i] >= 0);
+    p.push_N[i] = max_of(p.push_N[i], 0.0);
+  }
+  if (pulls) add_gaps(p);
+  measure_residual(p);
+}
+
+}  // namespace
+
+void measure_gaps(NormalProblem& p) PALPATE_RT {
+  pad(p);
+  add_gaps(p);
+  measure_residual(p);
 }
 
 void solve_sweeping(NormalProblem& p, std::int32_t sweeps) PALPATE_RT {
@@ -121,15 +205,14 @@ void solve_pivoting(NormalProblem& p) PALPATE_RT {
   const double tolerance_m = 1e-10 * largest_m;
   std::int32_t best = p.n + 1, patience = 3;
   p.pivots = 0;
+  bool fits = false;  // the factor is that of the active set
   for (std::int32_t pivot = 0; pivot < kMaxPivots; ++pivot) {  // bound: kMaxPivots
-    list_active(p, is_active);
-    if (!close_active(p)) break;
+    p.pivots += 1;
+    if (!fits && !factorise_active(p, is_active)) break;
+    close_active(p);
     add_gaps(p);
     const Exchange exchange = find_wrong(p, is_active, tolerance_m);
-    if (exchange.count == 0) {
-      for (std::int32_t i = 0; i < p.n; ++i) p.push_N[i] = max_of(p.push_N[i], 0.0);
-      return measure_gaps(p);
-    }
+    if (exchange.count == 0) return settle(p);
     // All at once while that makes progress; otherwise the last one only, which always ends (Murty 1974).
     if (exchange.count < best) {
       best = exchange.count;
@@ -137,9 +220,12 @@ void solve_pivoting(NormalProblem& p) PALPATE_RT {
     } else {
       patience -= 1;
     }
+    bool flips[kMaxContacts];
     for (std::int32_t i = 0; i < p.n; ++i) {  // bound: kMaxContacts
-      if (exchange.wrong[i] && (patience >= 0 || i == exchange.last)) is_active[i] = !is_active[i];
+      flips[i] = exchange.wrong[i] && (patience >= 0 || i == exchange.last);
+      if (flips[i]) is_active[i] = !is_active[i];
     }
+    fits = update_factor(p, is_active, flips);
   }
   solve_sweeping(p, kFallbackSweeps);
 }

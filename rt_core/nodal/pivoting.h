@@ -19,10 +19,10 @@ struct NormalProblem {
                                                                 // active set); out: f
   alignas(32) double gap_m[kContactStride];                     // out: w
   ContactFactor factor;                                         // out: of M over the active set, when `factored`
-  std::int32_t active[kMaxContacts];                            // out: contacts of the factor, in order
+  std::int32_t active[kMaxContacts];                            // out: contacts of the factor, in order; -1: taken out
   std::int32_t n = 0;
   std::int32_t factored = 0;
-  std::int32_t pivots = 0;  // factorisations made
+  std::int32_t pivots = 0;  // active sets tried
   double residual_m = 0;    // largest |min(f M_ii, w)|
 };
 
