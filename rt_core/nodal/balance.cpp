@@ -10,8 +10,6 @@ namespace {
 // Above this a problem counts as not solved: a sixth of an encoder's step. The sweeps with friction leave 3e-6 m after
 // a tool is put 5 mm deep in one tick, below 1e-7 m in steady motion (2026-11-21); without friction it is rounding.
 constexpr Real kTolerance_m = 5e-6;
-// Of one visit in a sweep: the next one goes on from there.
-constexpr SlipSearch kSweepSearch{2, 1e-6};
 // Nodes that the sweeps may open before the normal problem is left as they found it.
 constexpr std::int32_t kMostOpened = 8;
 
@@ -111,8 +109,9 @@ class Balance {
       const Vec3 force = tangential_part(state_.nodal.contact[node.memory].force_w, node.normal_w);
       node.push.tangent_N[0] = dot(force, node.tangent_w[0]);
       node.push.tangent_N[1] = dot(force, node.tangent_w[1]);
-      set_force(i);
+      node.push.slips = state_.nodal.contact[node.memory].friction == FrictionMode::kSlip;
     }
+    set_forces();
   }
 
   // Carries node.push over to the forces and displacements.
@@ -122,6 +121,21 @@ class Balance {
     const Vec3 step = force - node.force_w;
     node.force_w = force;
     if (squared_norm(step) > 0) add_push(p_, i, step);
+  }
+  // The same for all nodes at once.
+  void set_forces() PALPATE_RT {
+    float steps[3 * kMaxContacts];
+    for (std::int32_t i = 0; i < p_.count; ++i) {  // bound: kMaxContacts
+      ContactNode& node = p_.node[i];
+      const Vec3 force = push_w(node), step = force - node.force_w;
+      node.force_w = force;
+      p_.force_N += step;
+      p_.torque_Nm += cross(node.arm_w, step);
+      steps[3 * i] = static_cast<float>(step.x);
+      steps[3 * i + 1] = static_cast<float>(step.y);
+      steps[3 * i + 2] = static_cast<float>(step.z);
+    }
+    add_pushes(p_, steps);
   }
 
   Real normal_gap(std::int32_t i) const PALPATE_RT {
@@ -143,10 +157,8 @@ class Balance {
       normal.pivots = 0;
       solve_sweeping(normal, model_.params.nodal_sweeps);
     }
-    for (std::int32_t i = 0; i < p_.count; ++i) {  // bound: kMaxContacts
-      p_.node[i].push.normal_N = normal.push_N[i];
-      set_force(i);
-    }
+    for (std::int32_t i = 0; i < p_.count; ++i) p_.node[i].push.normal_N = normal.push_N[i];  // bound: kMaxContacts
+    set_forces();
   }
 
   void solve_node(std::int32_t i) PALPATE_RT {
@@ -159,7 +171,7 @@ class Balance {
     }
     const Real now_m[3] = {normal_m, node.offset_m[1] + dot(u, node.tangent_w[0]),
                            node.offset_m[2] + dot(u, node.tangent_w[1])};
-    node.push = improve_friction(node.block, mu_, node.push, now_m, kSweepSearch);
+    node.push = improve_friction(node.block, mu_, node.push, now_m);
     set_force(i);
   }
 
@@ -194,8 +206,8 @@ class Balance {
       Push& push = p_.node[normal.active[k]].push;
       push.normal_N = max_of(push.normal_N + step[k], 0.0);
       cut_to_cone(push);
-      set_force(normal.active[k]);
     }
+    set_forces();
   }
 
   // Normal gap with the softening that the regularisation stands for.

@@ -60,5 +60,8 @@ inline Vec3 relative_motion(const ContactProblem& p, std::int32_t i) PALPATE_RT 
 
 // Adds a push (N, world axes, on the body) at node j: its displacements and the sum of forces. Bound: kMaxContacts.
 void add_push(ContactProblem& problem, std::int32_t j, Vec3 force_N) PALPATE_RT;
+// Adds the displacements by many pushes (x, y, z of every node); the sum of forces is left to the caller. Bound:
+// kMaxContacts^2.
+void add_pushes(ContactProblem& problem, const float (&force_N)[3 * kMaxContacts]) PALPATE_RT;
 
 }  // namespace palpate

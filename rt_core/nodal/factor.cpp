@@ -116,13 +116,19 @@ void solve_upper(const ContactFactor& factor, double* x) PALPATE_RT {
 void solve_lower(const ContactFactor& factor, FactorRow* x) PALPATE_RT {
   for (std::int32_t i = 0; i < factor.n; ++i) {  // bound: kMaxContacts
     Double4 low = load4(x[i].entry), high = load4(x[i].entry + 4);
-    const double* scale = factor.column[0] + i;
-    for (std::int32_t k = 0; k < i; ++k) {  // bound: kMaxContacts
-      const Double4 s = splat4(*scale);
+    const auto reduce = [&](std::int32_t k) PALPATE_RT {
+      const Double4 s = splat4(factor.column[k][i]);
       low -= load4(x[k].entry) * s;
       high -= load4(x[k].entry + 4) * s;
-      scale += kContactStride;
+    };
+    std::int32_t k = 0;
+    for (; k + 4 <= i; k += 4) {  // bound: kMaxContacts / 4; unrolled, or half of it would be counting
+      reduce(k);
+      reduce(k + 1);
+      reduce(k + 2);
+      reduce(k + 3);
     }
+    for (; k < i; ++k) reduce(k);  // bound: 3
     const Double4 inverse = splat4(factor.inverse_pivot[i]);
     store(x[i].entry, low * inverse);
     store(x[i].entry + 4, high * inverse);

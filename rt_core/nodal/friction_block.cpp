@@ -6,6 +6,8 @@ namespace palpate {
 
 namespace {
 
+constexpr int kSlipSteps = 8;
+
 Push with_tangent(const FrictionBlock& block, Real free_normal_m, Real t0, Real t1) PALPATE_RT {
   Push push;
   push.normal_N = -(free_normal_m + block.lean[0] * t0 + block.lean[1] * t1) * block.per_normal;
@@ -27,21 +29,16 @@ Push along(const FrictionBlock& block, Real mu, Real free_normal_m, Real t0, Rea
 }
 
 // Slipping: tangent(s)_k = -c_k / (slide_k + s) with the s > 0 at which its length is mu times the normal push. Newton
-// on the inverse of their ratio, which is nearly linear in s (Hebden 1973; More & Sorensen 1983), inside a bracket. It
-// starts where equal slides and a push of `guess_N` would have it end.
-Push slip(const FrictionBlock& block, Real mu, Real free_normal_m, const Real (&c)[2], Real guess_N,
-          SlipSearch search) PALPATE_RT {
-  const Real slides = block.slide[0] + block.slide[1];
-  const Real sought = square_root(c[0] * c[0] + c[1] * c[1]) / (mu * guess_N) - 0.5 * slides;
-  Real s = sought > 0 && sought < kHuge ? sought : 0, low = 0, high = kHuge;
-  Real t0 = 0, t1 = 0;
-  for (int step = 0; step < search.steps; ++step) {  // bound: 8
+// on the inverse of their ratio, which is nearly linear in s (Hebden 1973; More & Sorensen 1983), inside a bracket.
+Push slip(const FrictionBlock& block, Real mu, Real free_normal_m, const Real (&c)[2]) PALPATE_RT {
+  Real s = 0, low = 0, high = kHuge, t0 = 0, t1 = 0;
+  for (int step = 0; step < kSlipSteps; ++step) {  // bound: kSlipSteps
     const Real d0 = 1.0 / (block.slide[0] + s), d1 = 1.0 / (block.slide[1] + s);
     t0 = -c[0] * d0;
     t1 = -c[1] * d1;
     const Real normal_N = -(free_normal_m + block.lean[0] * t0 + block.lean[1] * t1) * block.per_normal;
     const Real size2 = t0 * t0 + t1 * t1, size = square_root(size2), limit = mu * normal_N;
-    if (abs_of(size - limit) <= search.tolerance * size) break;
+    if (abs_of(size - limit) <= 1e-12 * size) break;
     (size > limit ? low : high) = s;
     Real next = -1;
     if (limit > 0 && size > 0) {
@@ -50,13 +47,20 @@ Push slip(const FrictionBlock& block, Real mu, Real free_normal_m, const Real (&
       const Real slope = size_slope - normal_slope;
       if (slope < 0) next = s - (size / limit - 1) / slope;
     }
-    const Real middle = high < kHuge ? 0.5 * (low + high) : 4 * s + slides;
+    const Real middle = high < kHuge ? 0.5 * (low + high) : 4 * s + block.slide[0] + block.slide[1];
     s = next > low && next < high ? next : middle;
   }
   return along(block, mu, free_normal_m, t0, t1);
 }
 
-Push solve(const FrictionBlock& block, Real mu, const Real (&v)[3], Real guess_N, SlipSearch search) PALPATE_RT {
+// Rayleigh's quotient of the last friction t gives s: (slide + s) t = -c where t is the answer. Negative: no answer.
+Real slip_like(const FrictionBlock& block, const Push& last, const Real (&c)[2]) PALPATE_RT {
+  const Real t0 = last.tangent_N[0], t1 = last.tangent_N[1], size2 = t0 * t0 + t1 * t1;
+  if (!last.slips || !(size2 > 0)) return -1;
+  return -((c[0] + block.slide[0] * t0) * t0 + (c[1] + block.slide[1] * t1) * t1) / size2;
+}
+
+Push solve(const FrictionBlock& block, Real mu, const Real (&v)[3], const Push& last) PALPATE_RT {
   if (!(v[0] < 0)) return {};
   if (!(mu > 0)) return with_tangent(block, v[0], 0, 0);
   const Real frictionless_N = -v[0] * block.per_normal;
@@ -65,7 +69,10 @@ Push solve(const FrictionBlock& block, Real mu, const Real (&v)[3], Real guess_N
   const Real limit = mu * stick.normal_N;
   const Real size2 = stick.tangent_N[0] * stick.tangent_N[0] + stick.tangent_N[1] * stick.tangent_N[1];
   if (stick.normal_N >= 0 && size2 <= limit * limit) return stick;
-  return slip(block, mu, v[0], c, guess_N > 0 ? guess_N : frictionless_N, search);
+  const Real s = slip_like(block, last, c);
+  if (!(s > 0)) return slip(block, mu, v[0], c);
+  const Real d0 = block.slide[0] + s, d1 = block.slide[1] + s;
+  return along(block, mu, v[0], -c[0] * d1, -c[1] * d0);  // only the direction counts
 }
 
 }  // namespace
@@ -96,16 +103,14 @@ FrictionBlock make_friction_block(const Real (&w)[3][3], Real mu) PALPATE_RT {
   return block;
 }
 
-Push solve_friction(const FrictionBlock& block, Real mu, const Real (&free_m)[3], SlipSearch search) PALPATE_RT {
-  return solve(block, mu, free_m, 0, search);
+Push solve_friction(const FrictionBlock& block, Real mu, const Real (&free_m)[3]) PALPATE_RT {
+  return solve(block, mu, free_m, {});
 }
 
-Push improve_friction(const FrictionBlock& block, Real mu, const Push& now, const Real (&now_m)[3],
-                      SlipSearch search) PALPATE_RT {
+Push improve_friction(const FrictionBlock& block, Real mu, const Push& now, const Real (&now_m)[3]) PALPATE_RT {
   Real own[3];
   own_displacement(block, now, own);
-  const Real free_m[3] = {now_m[0] - own[0], now_m[1] - own[1], now_m[2] - own[2]};
-  return solve(block, mu, free_m, now.normal_N, search);
+  return solve(block, mu, {now_m[0] - own[0], now_m[1] - own[1], now_m[2] - own[2]}, now);
 }
 
 }  // namespace palpate

@@ -33,16 +33,11 @@ inline void own_displacement(const FrictionBlock& block, const Push& push, Real 
   u[1] = block.lean[0] * along + block.slide[0] * push.tangent_N[0];
   u[2] = block.lean[1] * along + block.slide[1] * push.tangent_N[1];
 }
-// How closely a slipping push is sought: Newton steps, at most, and the error of |tangent| = mu normal that ends them.
-struct SlipSearch {
-  int steps = 8;
-  Real tolerance = 1e-12;
-};
 // The push under which the contact, displaced by `free_m` (normal gap, tangents) without it, is open, sticks (no
-// tangential displacement) or slips against its displacement with |tangent| = mu normal.
-Push solve_friction(const FrictionBlock& block, Real mu, const Real (&free_m)[3], SlipSearch search = {}) PALPATE_RT;
-// The same for a contact displaced by `now_m` under the push `now`.
-Push improve_friction(const FrictionBlock& block, Real mu, const Push& now, const Real (&now_m)[3],
-                      SlipSearch search) PALPATE_RT;
+// tangential displacement) or slips against its displacement with |tangent| = mu normal. Bound: 8 Newton steps.
+Push solve_friction(const FrictionBlock& block, Real mu, const Real (&free_m)[3]) PALPATE_RT;
+// The same for a contact displaced by `now_m` under the push `now`; where that slips already, its friction's direction
+// improved by one step of an iteration that ends at solve_friction()'s. For sweeps, which come back.
+Push improve_friction(const FrictionBlock& block, Real mu, const Push& now, const Real (&now_m)[3]) PALPATE_RT;
 
 }  // namespace palpate

@@ -103,10 +103,13 @@ void mirror(NormalProblem& p) PALPATE_RT {
     for (std::int32_t a = 1; a < 4; ++a)
       for (std::int32_t b = 0; b < a; ++b) p.compliance[j + a][j + b] = p.compliance[j + b][j + a];
     for (std::int32_t i = j + 4; i < p.n; i += 4) {
-      Double4 block[4];
-      for (int k = 0; k < 4; ++k) block[k] = load4(p.compliance[j + k] + i);
+      Double4 block[4] = {load4(p.compliance[j] + i), load4(p.compliance[j + 1] + i), load4(p.compliance[j + 2] + i),
+                          load4(p.compliance[j + 3] + i)};
       transpose(block);
-      for (int k = 0; k < 4; ++k) store(p.compliance[i + k] + j, block[k]);
+      store(p.compliance[i] + j, block[0]);
+      store(p.compliance[i + 1] + j, block[1]);
+      store(p.compliance[i + 2] + j, block[2]);
+      store(p.compliance[i + 3] + j, block[3]);
     }
   }
 }
@@ -131,6 +134,22 @@ void add_push(ContactProblem& p, std::int32_t j, Vec3 force) PALPATE_RT {
   }
   p.force_N += force;
   p.torque_Nm += cross(p.node[j].arm_w, force);
+}
+
+// One pass over all influences, with the sums in registers: half the instructions of as many add_push().
+void add_pushes(ContactProblem& p, const float (&force)[3 * kMaxContacts]) PALPATE_RT {
+  for (std::int32_t i = 0; i < p.count; i += 8) {  // bound: kMaxContacts / 8
+    Float8 u[3] = {load8(p.motion_m[0] + i), load8(p.motion_m[1] + i), load8(p.motion_m[2] + i)};
+    const float* from = p.influence[0][0][0] + i;
+    const float* f = force;
+    for (std::int32_t j = 0; j < p.count; ++j, from += 9 * kContactStride, f += 3) {  // bound: kMaxContacts
+      for (int a = 0; a < 3; ++a) {                                                   // bound: 3 x 3
+        const Float8 s = splat8(f[a]);
+        for (int b = 0; b < 3; ++b) u[b] += load8(from + (3 * a + b) * kContactStride) * s;
+      }
+    }
+    for (int b = 0; b < 3; ++b) store(p.motion_m[b] + i, u[b]);
+  }
 }
 
 void gather_influence(const Model& model, ContactProblem& p) PALPATE_RT {

@@ -20,7 +20,11 @@ inline Double4 load4(const double* from) PALPATE_RT {
 inline Double4 widen4(const float* from) PALPATE_RT {
   Float4v v;
   __builtin_memcpy(&v, from, sizeof v);
+#if defined(__AVX__) && !defined(__clang__)
+  return __builtin_ia32_cvtps2pd256(v);  // gcc 12 converts halves and joins them, at four instructions
+#else
   return __builtin_convertvector(v, Double4);
+#endif
 }
 inline Float8 load8(const float* from) PALPATE_RT {
   Float8 v;

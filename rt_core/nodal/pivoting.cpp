@@ -8,6 +8,13 @@ namespace {
 
 // to[i] = from[at[i]] for n entries of rising indices: whole vectors where four of them follow one another.
 void pick(const double* from, const std::int32_t* at, std::int32_t n, double* to) PALPATE_RT {
+  if (n > 0 && at[n - 1] - at[0] == n - 1) {  // all do
+    const std::int32_t whole = n / 4 * 4;
+    from += at[0];
+    for (std::int32_t i = 0; i < whole; i += 4) store(to + i, load4(from + i));  // bound: kMaxContacts / 4
+    for (std::int32_t i = whole; i < n; ++i) to[i] = from[i];                    // bound: 3
+    return;
+  }
   std::int32_t i = 0;
   while (i < n) {  // bound: kMaxContacts
     if (i + 4 <= n && at[i + 3] == at[i] + 3) {
@@ -49,11 +56,21 @@ void close_active(NormalProblem& p) PALPATE_RT {
 
 void add_gaps(NormalProblem& p) PALPATE_RT {
   const std::int32_t rows = whole_lanes(p.n, 4);
-  for (std::int32_t i = 0; i < rows; i += 4) store(p.gap_m + i, load4(p.free_gap_m + i));
-  for (std::int32_t j = 0; j < p.n; ++j) {  // bound: kMaxContacts^2 / 4
-    if (p.push_N[j] == 0) continue;
-    const Double4 s = splat4(p.push_N[j]);
-    for (std::int32_t i = 0; i < rows; i += 4) store(p.gap_m + i, load4(p.gap_m + i) + load4(p.compliance[j] + i) * s);
+  std::int32_t pushing[kMaxContacts], count = 0;
+  for (std::int32_t j = 0; j < p.n; ++j) {  // bound: kMaxContacts
+    if (p.push_N[j] != 0) pushing[count++] = j;
+  }
+  for (std::int32_t i = 0; i < rows; i += 8) {  // bound: kMaxContacts / 8; the stride is whole eights
+    Double4 low = load4(p.free_gap_m + i), high = load4(p.free_gap_m + i + 4);
+    const double* from = p.compliance[0] + i;
+    for (std::int32_t k = 0; k < count; ++k) {  // bound: kMaxContacts
+      const std::int32_t j = pushing[k];
+      const Double4 s = splat4(p.push_N[j]);
+      low += load4(from + j * kContactStride) * s;
+      high += load4(from + j * kContactStride + 4) * s;
+    }
+    store(p.gap_m + i, low);
+    store(p.gap_m + i + 4, high);
   }
 }
 
