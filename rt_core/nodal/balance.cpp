@@ -36,8 +36,8 @@ class Balance {
 
   void run() PALPATE_RT {
     gather_influence(model_, p_);
-    for (std::int32_t i = 0; i < p_.count; ++i) set_frame(p_.node[i]);  // bound: kMaxContacts
     gather_normal(model_, p_);
+    if (mu_ > 0) make_frames(model_, p_, mu_);
     clear_motion();
     if (mu_ > 0) add_remembered_friction();
     solve_normal();
@@ -50,18 +50,12 @@ class Balance {
     return model_.params.nodal_solver == static_cast<std::int32_t>(NodalSolver::kPivoting);
   }
 
-  // Any two tangents (Duff et al. 2017); with friction they are turned later.
-  static void set_frame(ContactNode& node) PALPATE_RT {
-    const Vec3 n = node.normal_w;
-    const Real sign = n.z < 0 ? -1.0 : 1.0, a = -1.0 / (sign + n.z), b = n.x * n.y * a;
-    node.tangent_w[0] = {1 + sign * n.x * n.x * a, sign * b, -sign * n.x};
-    node.tangent_w[1] = {b, sign + n.y * n.y * a, -n.y};
-    node.push = {};
-    node.force_w = {};
-    node.block.normal = 0;  // not made yet
-  }
-
   void clear_motion() PALPATE_RT {
+    for (std::int32_t i = 0; i < p_.count; ++i) {  // bound: kMaxContacts
+      p_.node[i].push = {};
+      p_.node[i].force_w = {};
+      p_.node[i].has_offset = false;
+    }
     for (auto& row : p_.motion_m) {
       for (std::int32_t i = 0; i < whole_lanes(p_.count, 8); ++i) row[i] = 0;  // bound: kMaxContacts
     }
@@ -86,18 +80,12 @@ class Balance {
     return drift_.translation_m + cross(drift_.rotation_rad, node.arm_w);
   }
 
-  // Turns the tangents to those of the node's own compliance, once the node is known to push.
-  void prepare_friction(std::int32_t i) PALPATE_RT {
-    ContactNode& node = p_.node[i];
-    Real w[3][3];
-    own_compliance(model_, p_, i, w);
-    node.block = make_friction_block(w, mu_);
-    const Vec3 t0 = node.tangent_w[0], t1 = node.tangent_w[1];
-    node.tangent_w[0] = node.block.cosine * t0 + node.block.sine * t1;
-    node.tangent_w[1] = node.block.cosine * t1 - node.block.sine * t0;
+  // Tangential displacement without any push, once the node is known to push.
+  void set_offset(ContactNode& node) PALPATE_RT {
     const Vec3 offset = free_offset(node);
     node.offset_m[1] = dot(offset, node.tangent_w[0]);
     node.offset_m[2] = dot(offset, node.tangent_w[1]);
+    node.has_offset = true;
   }
 
   // Starts from last tick's friction.
@@ -105,7 +93,7 @@ class Balance {
     for (std::int32_t i = 0; i < p_.count; ++i) {  // bound: kMaxContacts
       ContactNode& node = p_.node[i];
       if (node.memory < 0) continue;
-      prepare_friction(i);
+      set_offset(node);
       const Vec3 force = tangential_part(state_.nodal.contact[node.memory].force_w, node.normal_w);
       node.push.tangent_N[0] = dot(force, node.tangent_w[0]);
       node.push.tangent_N[1] = dot(force, node.tangent_w[1]);
@@ -161,23 +149,26 @@ class Balance {
     set_forces();
   }
 
-  void solve_node(std::int32_t i) PALPATE_RT {
+  // False: the node is open and was.
+  bool solve_node(std::int32_t i) PALPATE_RT {
     ContactNode& node = p_.node[i];
     const Vec3 u = relative_motion(p_, i);
     const Real normal_m = node.offset_m[0] + dot(u, node.normal_w);
-    if (!(node.block.normal > 0)) {
-      if (node.push.normal_N == 0 && normal_m >= 0) return;  // open, and stays so
-      prepare_friction(i);
+    if (!node.has_offset) {
+      if (node.push.normal_N == 0 && normal_m >= 0) return false;  // open, and stays so
+      set_offset(node);
     }
     const Real now_m[3] = {normal_m, node.offset_m[1] + dot(u, node.tangent_w[0]),
                            node.offset_m[2] + dot(u, node.tangent_w[1])};
     node.push = improve_friction(node.block, mu_, node.push, now_m);
     set_force(i);
+    return true;
   }
 
   void solve_with_friction() PALPATE_RT {
-    for (std::int32_t sweep = 0; sweep < model_.params.friction_sweeps; ++sweep) {  // bound: 20, from the image
-      for (std::int32_t i = 0; i < p_.count; ++i) solve_node(i);                    // bound: kMaxContacts
+    std::int32_t left = kMaxFrictionVisits;
+    for (std::int32_t sweep = 0; sweep < model_.params.friction_sweeps && left >= p_.count; ++sweep) {  // bound: 20
+      for (std::int32_t i = 0; i < p_.count; ++i) left -= solve_node(i) ? 1 : 0;  // bound: kMaxContacts
     }
     if (pivots()) close_normal_gaps();
   }

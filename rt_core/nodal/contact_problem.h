@@ -22,6 +22,7 @@ struct ContactNode {
   double gap_m;  // of the carried position
   FrictionBlock block;
   double offset_m[3];  // displacement relative to the tool without any push, in the node's frame
+  bool has_offset;     // of the tangents
   Push push;
   Vec3 force_w;  // of the push, on the body: push_w() once it has been carried over to motion_m
 };

@@ -48,10 +48,11 @@ void gather_rows(std::span<const Number> compliance, std::size_t row_length, Con
 struct Directions {
   alignas(32) double normal[3][kContactStride];
   alignas(32) double turn[3][kContactStride];
+  alignas(32) float narrow[3][kContactStride];  // the normals
 };
 
 void list_directions(const ContactProblem& p, Directions& d) PALPATE_RT {
-  const std::int32_t lanes = whole_lanes(p.count, 4);
+  const std::int32_t lanes = whole_lanes(p.count, 8);
   for (std::int32_t i = 0; i < lanes; ++i) {  // bound: kMaxContacts
     const Vec3 n = i < p.count ? p.node[i].normal_w : Vec3{};
     const Vec3 m = i < p.count ? cross(p.node[i].arm_w, n) : Vec3{};
@@ -61,24 +62,41 @@ void list_directions(const ContactProblem& p, Directions& d) PALPATE_RT {
     d.turn[0][i] = m.x;
     d.turn[1][i] = m.y;
     d.turn[2][i] = m.z;
+    d.narrow[0][i] = static_cast<float>(n.x);
+    d.narrow[1][i] = static_cast<float>(n.y);
+    d.narrow[2][i] = static_cast<float>(n.z);
   }
 }
 
-// Row j of the normal compliance, from the lane of its diagonal on.
+// Row j of the normal compliance, from the vector of its diagonal on. The body's part in single precision, as the
+// table is; that of the coupling, which a stiff body's may be lost in, in double.
 void normal_row(ContactProblem& p, const Directions& d, std::int32_t j) PALPATE_RT {
   const Vec3 n = p.node[j].normal_w, turn = p.per_Nm * cross(p.node[j].arm_w, n), shift = p.per_N * n;
-  const Double4 nx = splat4(n.x), ny = splat4(n.y), nz = splat4(n.z);
-  const Double4 own[3] = {splat4(shift.x), splat4(shift.y), splat4(shift.z)};
+  const Float8 nx = splat8(static_cast<float>(n.x)), ny = splat8(static_cast<float>(n.y)),
+               nz = splat8(static_cast<float>(n.z));
+  const bool coupled = p.per_N > 0;
+  const Double4 sx = splat4(shift.x), sy = splat4(shift.y), sz = splat4(shift.z);
   const Double4 tx = splat4(turn.x), ty = splat4(turn.y), tz = splat4(turn.z);
+  const auto coupling = [&](std::int32_t i) PALPATE_RT {
+    return load4(d.normal[0] + i) * sx + load4(d.normal[1] + i) * sy + load4(d.normal[2] + i) * sz +
+           load4(d.turn[0] + i) * tx + load4(d.turn[1] + i) * ty + load4(d.turn[2] + i) * tz;
+  };
   const auto& from = p.influence[j];
-  for (std::int32_t i = j / 4 * 4; i < p.count; i += 4) {  // bound: kMaxContacts / 4
-    Double4 row = load4(d.turn[0] + i) * tx + load4(d.turn[1] + i) * ty + load4(d.turn[2] + i) * tz;
+  for (std::int32_t i = j / 8 * 8; i < p.count; i += 8) {  // bound: kMaxContacts / 8
+    Float8 row{};
     for (int b = 0; b < 3; ++b) {
-      const Double4 u =
-          widen4(from[0][b] + i) * nx + widen4(from[1][b] + i) * ny + widen4(from[2][b] + i) * nz + own[b];
-      row += u * load4(d.normal[b] + i);
+      const Float8 u = load8(from[0][b] + i) * nx + load8(from[1][b] + i) * ny + load8(from[2][b] + i) * nz;
+      row = b == 0 ? u * load8(d.narrow[b] + i) : row + u * load8(d.narrow[b] + i);
     }
-    store(p.normal.compliance[j] + i, row);
+    float narrow[8];
+    store(narrow, row);
+    Double4 low = widen4(narrow), high = widen4(narrow + 4);
+    if (coupled) {
+      low += coupling(i);
+      high += coupling(i + 4);
+    }
+    store(p.normal.compliance[j] + i, low);
+    store(p.normal.compliance[j] + i + 4, high);
   }
 }
 
@@ -178,22 +196,88 @@ void gather_normal(const Model& model, ContactProblem& p) PALPATE_RT {
   mirror(p.normal);
 }
 
-void own_compliance(const Model& model, const ContactProblem& p, std::int32_t i, Real (&w)[3][3]) PALPATE_RT {
-  const ContactNode& node = p.node[i];
-  const auto& c = p.influence[i];
-  const Vec3 r = node.arm_w, turn = p.per_Nm * r;
-  const Real stretch = p.per_N + dot(turn, r);  // (r x f) x r = r.r f - r.f r
-  const auto entry = [&](int a, int b) PALPATE_RT { return static_cast<Real>(c[a][b][i]); };
-  const Real xx = entry(0, 0) + stretch - turn.x * r.x, xy = entry(0, 1) - turn.x * r.y,
-             xz = entry(0, 2) - turn.x * r.z, yy = entry(1, 1) + stretch - turn.y * r.y,
-             yz = entry(1, 2) - turn.y * r.z, zz = entry(2, 2) + stretch - turn.z * r.z;
-  const Vec3 frame[3] = {node.normal_w, node.tangent_w[0], node.tangent_w[1]};
-  for (int a = 0; a < 3; ++a) {  // bound: 3 x 3
-    const Vec3 f = frame[a];
-    const Vec3 u{xx * f.x + xy * f.y + xz * f.z, xy * f.x + yy * f.y + yz * f.z, xz * f.x + yz * f.y + zz * f.z};
-    for (int b = 0; b <= a; ++b) w[a][b] = w[b][a] = dot(u, frame[b]);
-    w[a][a] *= 1.0 + model.params.regularisation;
-    if (is_held(model, node)) w[a][a] += 1.0 / model.params.wall_N_per_m;
+namespace {
+
+// A number of four nodes; past the last one, of the last.
+template <class Get>
+Double4 of_four(const ContactProblem& p, std::int32_t i, Get&& get) PALPATE_RT {
+  const std::int32_t last = p.count - 1;
+  const auto at = [&](std::int32_t k) PALPATE_RT { return get(i + k < last ? i + k : last); };
+  return Double4{at(0), at(1), at(2), at(3)};
+}
+
+struct Vec3x4 {
+  Double4 x, y, z;
+};
+Double4 dot4(const Vec3x4& a, const Vec3x4& b) PALPATE_RT { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+// Compliance of four nodes to their own push, in world axes.
+struct OwnCompliance {
+  Double4 xx, xy, xz, yy, yz, zz;
+  Vec3x4 times(const Vec3x4& f) const PALPATE_RT {
+    return {xx * f.x + xy * f.y + xz * f.z, xy * f.x + yy * f.y + yz * f.z, xz * f.x + yz * f.y + zz * f.z};
+  }
+};
+OwnCompliance own_compliance(const ContactProblem& p, std::int32_t i) PALPATE_RT {
+  const auto entry = [&](int a, int b) PALPATE_RT {
+    return of_four(p, i, [&](std::int32_t k) PALPATE_RT { return static_cast<Real>(p.influence[k][a][b][k]); });
+  };
+  const Vec3x4 r{of_four(p, i, [&](std::int32_t k) PALPATE_RT { return p.node[k].arm_w.x; }),
+                 of_four(p, i, [&](std::int32_t k) PALPATE_RT { return p.node[k].arm_w.y; }),
+                 of_four(p, i, [&](std::int32_t k) PALPATE_RT { return p.node[k].arm_w.z; })};
+  const Vec3x4 turn{p.per_Nm * r.x, p.per_Nm * r.y, p.per_Nm * r.z};
+  const Double4 stretch = p.per_N + dot4(turn, r);  // (r x f) x r = r.r f - r.f r
+  return {entry(0, 0) + stretch - turn.x * r.x, entry(0, 1) - turn.x * r.y, entry(0, 2) - turn.x * r.z,
+          entry(1, 1) + stretch - turn.y * r.y, entry(1, 2) - turn.y * r.z, entry(2, 2) + stretch - turn.z * r.z};
+}
+
+// Any two tangents (Duff et al. 2017).
+void any_tangents(const Vec3x4& n, Vec3x4 (&t)[2]) PALPATE_RT {
+  const Double4 zero{}, one = zero + 1, sign = n.z < 0 ? -one : one;
+  const Double4 a = -1 / (sign + n.z), b = n.x * n.y * a;
+  t[0] = {1 + sign * n.x * n.x * a, sign * b, -sign * n.x};
+  t[1] = {b, sign + n.y * n.y * a, -n.y};
+}
+
+}  // namespace
+
+void make_frames(const Model& model, ContactProblem& p, Real mu) PALPATE_RT {
+  for (std::int32_t i = 0; i < p.count; i += 4) {  // bound: kMaxContacts / 4
+    Vec3x4 frame[3];
+    frame[0] = {of_four(p, i, [&](std::int32_t k) PALPATE_RT { return p.node[k].normal_w.x; }),
+                of_four(p, i, [&](std::int32_t k) PALPATE_RT { return p.node[k].normal_w.y; }),
+                of_four(p, i, [&](std::int32_t k) PALPATE_RT { return p.node[k].normal_w.z; })};
+    Vec3x4 tangent[2];
+    any_tangents(frame[0], tangent);
+    frame[1] = tangent[0];
+    frame[2] = tangent[1];
+    const OwnCompliance own = own_compliance(p, i);
+    const Double4 wall = of_four(p, i, [&](std::int32_t k) PALPATE_RT {
+      return is_held(model, p.node[k]) ? 1.0 / model.params.wall_N_per_m : 0.0;
+    });
+    Double4 w[3][3];
+    for (int a = 0; a < 3; ++a) {  // bound: 3 x 3
+      const Vec3x4 u = own.times(frame[a]);
+      for (int b = 0; b <= a; ++b) w[a][b] = w[b][a] = dot4(u, frame[b]);
+      w[a][a] = w[a][a] * (1.0 + model.params.regularisation) + wall;
+    }
+    const FrictionBlockOf<Double4> block = make_friction_block(w, mu);
+    const Double4 c = block.cosine, s = block.sine;
+    const Vec3x4 turned[2] = {{c * frame[1].x + s * frame[2].x, c * frame[1].y + s * frame[2].y,
+                               c * frame[1].z + s * frame[2].z},
+                              {c * frame[2].x - s * frame[1].x, c * frame[2].y - s * frame[1].y,
+                               c * frame[2].z - s * frame[1].z}};
+    for (std::int32_t k = 0; k < 4 && i + k < p.count; ++k) {  // bound: 4
+      ContactNode& node = p.node[i + k];
+      for (int t = 0; t < 2; ++t) {
+        node.tangent_w[t] = {turned[t].x[k], turned[t].y[k], turned[t].z[k]};
+        node.block.lean[t] = block.lean[t][k];
+        node.block.slide[t] = block.slide[t][k];
+        node.block.per_slide[t] = block.per_slide[t][k];
+      }
+      node.block.normal = block.normal[k];
+      node.block.per_normal = block.per_normal[k];
+    }
   }
 }
 

@@ -49,6 +49,10 @@ inline void transpose(Double4 (&row)[4]) PALPATE_RT {
 // In this order on every machine.
 inline double sum(const Double4& v) PALPATE_RT { return (v[0] + v[1]) + (v[2] + v[3]); }
 
+inline Double4 square_root(const Double4& v) PALPATE_RT {
+  return Double4{__builtin_sqrt(v[0]), __builtin_sqrt(v[1]), __builtin_sqrt(v[2]), __builtin_sqrt(v[3])};
+}
+inline Double4 abs_of(const Double4& v) PALPATE_RT { return v < 0 ? -v : v; }
 // n rounded up to whole lanes.
 constexpr std::int32_t whole_lanes(std::int32_t n, std::int32_t lanes) { return (n + lanes - 1) / lanes * lanes; }
 

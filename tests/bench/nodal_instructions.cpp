@@ -64,7 +64,7 @@ void play() {
   for (const double e : place_strain_gauges(solver, mesh, body, kMaxStrainGauges).strain_1pN)
     options.strain_gauge.push_back(static_cast<float>(e));
   NodalScene scene(body, {plate()}, options);
-  scene.params().friction_sweeps = 4;  // what the scenes use
+  scene.params().friction_sweeps = std::getenv("SW") ? std::atoi(std::getenv("SW")) : 4;  // what the scenes use
   scene.reopen();
   int most = 0;
   for (int k = 0; k < kTicks; ++k) {
