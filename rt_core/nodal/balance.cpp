@@ -83,8 +83,8 @@ class Balance {
   // Tangential displacement without any push, once the node is known to push.
   void set_offset(ContactNode& node) PALPATE_RT {
     const Vec3 offset = free_offset(node);
-    node.offset_m[1] = dot(offset, node.tangent_w[0]);
-    node.offset_m[2] = dot(offset, node.tangent_w[1]);
+    node.offset_m[0] = dot(offset, node.tangent_w[0]);
+    node.offset_m[1] = dot(offset, node.tangent_w[1]);
     node.has_offset = true;
   }
 
@@ -126,19 +126,16 @@ class Balance {
     add_pushes(p_, steps);
   }
 
-  Real normal_gap(std::int32_t i) const PALPATE_RT {
-    return p_.node[i].offset_m[0] + dot(relative_motion(p_, i), p_.node[i].normal_w);
-  }
-
   void solve_normal() PALPATE_RT {
     NormalProblem& normal = p_.normal;
     for (std::int32_t i = 0; i < p_.count; ++i) {  // bound: kMaxContacts
-      ContactNode& node = p_.node[i];
-      node.offset_m[0] = node.gap_m - dot(node.carry_w + tool_motion(node), node.normal_w);
-      normal.free_gap_m[i] = normal_gap(i);
+      const ContactNode& node = p_.node[i];
+      p_.offset_m[i] = node.gap_m - dot(node.carry_w + tool_motion(node), node.normal_w);
       normal.push_N[i] =
           node.memory >= 0 ? max_of(dot(state_.nodal.contact[node.memory].force_w, node.normal_w), 0.0) : 0.0;
     }
+    for (std::int32_t i = p_.count; i < whole_lanes(p_.count, 4); ++i) p_.offset_m[i] = 0;  // bound: 3
+    find_normal_gaps(p_, normal.free_gap_m);
     if (pivots()) {
       solve_pivoting(normal);
     } else {
@@ -153,13 +150,13 @@ class Balance {
   bool solve_node(std::int32_t i) PALPATE_RT {
     ContactNode& node = p_.node[i];
     const Vec3 u = relative_motion(p_, i);
-    const Real normal_m = node.offset_m[0] + dot(u, node.normal_w);
+    const Real normal_m = p_.offset_m[i] + dot(u, node.normal_w);
     if (!node.has_offset) {
       if (node.push.normal_N == 0 && normal_m >= 0) return false;  // open, and stays so
       set_offset(node);
     }
-    const Real now_m[3] = {normal_m, node.offset_m[1] + dot(u, node.tangent_w[0]),
-                           node.offset_m[2] + dot(u, node.tangent_w[1])};
+    const Real now_m[3] = {normal_m, node.offset_m[0] + dot(u, node.tangent_w[0]),
+                           node.offset_m[1] + dot(u, node.tangent_w[1])};
     node.push = improve_friction(node.block, mu_, node.push, now_m);
     set_force(i);
     return true;
@@ -186,9 +183,10 @@ class Balance {
       remove_unknown(normal.factor, k);
       normal.active[k] = -1;
     }
-    alignas(32) double step[kContactStride] = {};
+    alignas(32) double gap[kContactStride], step[kContactStride] = {};
+    find_normal_residuals(gap);
     for (std::int32_t k = 0; k < normal.factor.n; ++k) {  // bound: kMaxContacts
-      if (normal.active[k] >= 0) step[k] = -normal_residual(normal.active[k]);
+      if (normal.active[k] >= 0) step[k] = -gap[normal.active[k]];
     }
     solve_lower(normal.factor, step);
     solve_upper(normal.factor, step);
@@ -201,12 +199,15 @@ class Balance {
     set_forces();
   }
 
-  // Normal gap with the softening that the regularisation stands for.
-  Real normal_residual(std::int32_t i) const PALPATE_RT {
-    const Real m = p_.normal.compliance[i][i], rho = model_.params.regularisation;
-    const bool held = model_.nodal_vertex[static_cast<std::size_t>(p_.node[i].vertex)].is_free == 0;
-    const Real wall = held ? 1.0 / model_.params.wall_N_per_m : 0.0;
-    return normal_gap(i) + ((m - wall) * rho / (1 + rho) + wall) * p_.node[i].push.normal_N;
+  // Normal gaps with the softening that the regularisation and a wall stand for.
+  void find_normal_residuals(double (&gap)[kContactStride]) const PALPATE_RT {
+    find_normal_gaps(p_, gap);
+    const Real rho = model_.params.regularisation, softening = rho / (1 + rho);
+    for (std::int32_t i = 0; i < p_.count; ++i) {  // bound: kMaxContacts
+      Real own = softening * p_.normal.compliance[i][i];
+      if (is_held(model_, p_.node[i])) own += (1 - softening) / model_.params.wall_N_per_m;
+      gap[i] += own * p_.node[i].push.normal_N;
+    }
   }
 
   // The last step changed normal pushes only: friction beyond their limit is cut.
@@ -222,10 +223,12 @@ class Balance {
   void measure() PALPATE_RT {
     scratch_.residual_m = p_.normal.residual_m;
     if (mu_ > 0) {
+      alignas(32) double gap[kContactStride];
+      find_normal_residuals(gap);
       scratch_.residual_m = 0;
       for (std::int32_t i = 0; i < p_.count; ++i) {  // bound: kMaxContacts
-        const Real push_m = p_.node[i].push.normal_N * p_.normal.compliance[i][i], gap = normal_residual(i);
-        scratch_.residual_m = max_of(scratch_.residual_m, abs_of(push_m < gap ? push_m : gap));
+        const Real push_m = p_.node[i].push.normal_N * p_.normal.compliance[i][i];
+        scratch_.residual_m = max_of(scratch_.residual_m, abs_of(push_m < gap[i] ? push_m : gap[i]));
       }
     }
     if (!(scratch_.residual_m <= kTolerance_m)) scratch_.status |= Status::kNotConverged;

@@ -21,15 +21,24 @@ struct ContactNode {
   Vec3 arm_w;    // carried position minus the tool's origin
   double gap_m;  // of the carried position
   FrictionBlock block;
-  double offset_m[3];  // displacement relative to the tool without any push, in the node's frame
-  bool has_offset;     // of the tangents
+  double offset_m[2];  // tangential displacement relative to the tool without any push
+  bool has_offset;
   Push push;
   Vec3 force_w;  // of the push, on the body: push_w() once it has been carried over to motion_m
+};
+
+// Normals of the nodes and their turns, arm x normal, as rows: for several nodes at a time. Zero past the last one.
+struct Directions {
+  alignas(32) double normal[3][kContactStride];
+  alignas(32) double turn[3][kContactStride];
+  alignas(32) float narrow[3][kContactStride];  // the normals
 };
 
 struct ContactProblem {
   std::int32_t count = 0;
   ContactNode node[kMaxContacts];
+  Directions directions;
+  alignas(32) double offset_m[kContactStride];  // normal gaps without any push; zero past the last node
   NormalProblem normal;
   // influence[j][a][b][i]: displacement component b of node i per newton along a on node j. Single precision: half of
   // the sweeps' cost, and what the image usually holds.
@@ -59,6 +68,8 @@ inline Vec3 relative_motion(const ContactProblem& p, std::int32_t i) PALPATE_RT 
   return motion_of(p, i) + p.per_N * p.force_N + p.per_Nm * cross(p.torque_Nm, p.node[i].arm_w);
 }
 
+// Normal gaps of all nodes with the pushes so far. Bound: kMaxContacts.
+void find_normal_gaps(const ContactProblem& problem, double (&gap_m)[kContactStride]) PALPATE_RT;
 // Adds a push (N, world axes, on the body) at node j: its displacements and the sum of forces. Bound: kMaxContacts.
 void add_push(ContactProblem& problem, std::int32_t j, Vec3 force_N) PALPATE_RT;
 // Adds the displacements by many pushes (x, y, z of every node); the sum of forces is left to the caller. Bound:

@@ -1,5 +1,7 @@
 #include "rt_core/nodal/factor.h"
 
+#include <utility>
+
 #include "rt_core/vec.h"
 
 namespace palpate {
@@ -9,50 +11,59 @@ namespace {
 // Vectors of four rows that fit into the registers at once, with a factor and a product beside them.
 constexpr int kMostRows = 12;
 
-// Rows [row, row + 4 B) of column j minus what the columns before it explain.
-template <int B>
-void reduce_rows(ContactFactor& factor, std::int32_t j, std::int32_t row) PALPATE_RT {
-  Double4 rest[B];
+// Rows [row, row + 4 B) of column j minus what the columns before it explain. Written out by `b` = 0 .. B - 1, because a
+// loop over them keeps the sums in memory.
+template <int... b>
+void reduce_rows(ContactFactor& factor, std::int32_t j, std::int32_t row,
+                 std::integer_sequence<int, b...>) PALPATE_RT {
   double* column = factor.column[j] + row;
-  for (int b = 0; b < B; ++b) rest[b] = load4(column + 4 * b);  // bound: B
+  Double4 rest[] = {load4(column + 4 * b)...};
   const double* before = factor.column[0] + row;
   const double* scale = factor.column[0] + j;
-  for (std::int32_t k = 0; k < j; ++k) {  // bound: kMaxContacts
+  std::int32_t k = j % 2;
+  if (k == 1) {
     const Double4 s = splat4(*scale);
-    for (int b = 0; b < B; ++b) rest[b] -= load4(before + 4 * b) * s;
+    ((rest[b] -= load4(before + 4 * b) * s), ...);
     before += kContactStride;
     scale += kContactStride;
   }
-  for (int b = 0; b < B; ++b) store(column + 4 * b, rest[b]);
+  for (; k < j; k += 2) {  // bound: kMaxContacts / 2; two at a time, or a third of it would be counting
+    const Double4 s = splat4(scale[0]), t = splat4(scale[kContactStride]);
+    ((rest[b] -= load4(before + 4 * b) * s), ...);
+    ((rest[b] -= load4(before + kContactStride + 4 * b) * t), ...);
+    before += 2 * kContactStride;
+    scale += 2 * kContactStride;
+  }
+  (store(column + 4 * b, rest[b]), ...);
 }
 
 // The same for `vectors` vectors of rows, 1 to kMostRows.
 void reduce(ContactFactor& factor, std::int32_t j, std::int32_t row, std::int32_t vectors) PALPATE_RT {
   switch (vectors) {
     case 1:
-      return reduce_rows<1>(factor, j, row);
+      return reduce_rows(factor, j, row, std::make_integer_sequence<int, 1>());
     case 2:
-      return reduce_rows<2>(factor, j, row);
+      return reduce_rows(factor, j, row, std::make_integer_sequence<int, 2>());
     case 3:
-      return reduce_rows<3>(factor, j, row);
+      return reduce_rows(factor, j, row, std::make_integer_sequence<int, 3>());
     case 4:
-      return reduce_rows<4>(factor, j, row);
+      return reduce_rows(factor, j, row, std::make_integer_sequence<int, 4>());
     case 5:
-      return reduce_rows<5>(factor, j, row);
+      return reduce_rows(factor, j, row, std::make_integer_sequence<int, 5>());
     case 6:
-      return reduce_rows<6>(factor, j, row);
+      return reduce_rows(factor, j, row, std::make_integer_sequence<int, 6>());
     case 7:
-      return reduce_rows<7>(factor, j, row);
+      return reduce_rows(factor, j, row, std::make_integer_sequence<int, 7>());
     case 8:
-      return reduce_rows<8>(factor, j, row);
+      return reduce_rows(factor, j, row, std::make_integer_sequence<int, 8>());
     case 9:
-      return reduce_rows<9>(factor, j, row);
+      return reduce_rows(factor, j, row, std::make_integer_sequence<int, 9>());
     case 10:
-      return reduce_rows<10>(factor, j, row);
+      return reduce_rows(factor, j, row, std::make_integer_sequence<int, 10>());
     case 11:
-      return reduce_rows<11>(factor, j, row);
+      return reduce_rows(factor, j, row, std::make_integer_sequence<int, 11>());
     default:
-      return reduce_rows<kMostRows>(factor, j, row);
+      return reduce_rows(factor, j, row, std::make_integer_sequence<int, kMostRows>());
   }
 }
 
@@ -94,8 +105,12 @@ void solve_lower(const ContactFactor& factor, double* x) PALPATE_RT {
     const double value = x[k] * factor.inverse_pivot[k];
     const Double4 s = splat4(value);
     const double* column = factor.column[k];
-    for (std::int32_t row = k / 4 * 4; row < rows; row += 4)  // bound: kMaxContacts / 4; zeros above the diagonal
+    std::int32_t row = k / 4 * 4;  // zeros above the diagonal
+    for (; row + 8 <= rows; row += 8) {  // bound: kMaxContacts / 8
       store(x + row, load4(x + row) - load4(column + row) * s);
+      store(x + row + 4, load4(x + row + 4) - load4(column + row + 4) * s);
+    }
+    if (row < rows) store(x + row, load4(x + row) - load4(column + row) * s);
     x[k] = value;
   }
 }
@@ -105,11 +120,15 @@ void solve_upper(const ContactFactor& factor, double* x) PALPATE_RT {
   for (std::int32_t k = factor.n - 1; k >= 0; --k) {  // bound: kMaxContacts
     const double rest = x[k];
     x[k] = 0;
-    Double4 along{};
+    Double4 even{}, odd{};
     const double* column = factor.column[k];
-    for (std::int32_t row = k / 4 * 4; row < rows; row += 4)  // bound: kMaxContacts / 4; rows from n on are zero
-      along += load4(column + row) * load4(x + row);
-    x[k] = (rest - sum(along)) * factor.inverse_pivot[k];
+    std::int32_t row = k / 4 * 4;  // rows from n on are zero
+    for (; row + 8 <= rows; row += 8) {  // bound: kMaxContacts / 8
+      even += load4(column + row) * load4(x + row);
+      odd += load4(column + row + 4) * load4(x + row + 4);
+    }
+    if (row < rows) even += load4(column + row) * load4(x + row);
+    x[k] = (rest - sum(even + odd)) * factor.inverse_pivot[k];
   }
 }
 

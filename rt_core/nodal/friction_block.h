@@ -85,10 +85,20 @@ inline Push improve_friction(const FrictionBlock& block, Real mu, const Push& no
   Real own[3];
   own_displacement(block, now, own);
   const Real v[3] = {now_m[0] - own[0], now_m[1] - own[1], now_m[2] - own[2]};
-  const Real t0 = now.tangent_N[0], t1 = now.tangent_N[1], size2 = t0 * t0 + t1 * t1;
-  if (!(v[0] < 0) || !now.slips || !(size2 > 0)) return solve_friction(block, mu, v);
+  if (!(v[0] < 0)) return {};
   const Real frictionless_N = -v[0] * block.per_normal;
   const Real c0 = v[1] + block.lean[0] * frictionless_N, c1 = v[2] + block.lean[1] * frictionless_N;
+  if (!now.slips) {
+    Push stick;
+    stick.tangent_N[0] = -c0 * block.per_slide[0];
+    stick.tangent_N[1] = -c1 * block.per_slide[1];
+    stick.normal_N = frictionless_N - (block.lean[0] * stick.tangent_N[0] + block.lean[1] * stick.tangent_N[1]) * block.per_normal;
+    const Real limit = mu * stick.normal_N;
+    const Real size2 = stick.tangent_N[0] * stick.tangent_N[0] + stick.tangent_N[1] * stick.tangent_N[1];
+    if (stick.normal_N >= 0 && size2 <= limit * limit) return stick;
+  }
+  const Real t0 = now.tangent_N[0], t1 = now.tangent_N[1], size2 = t0 * t0 + t1 * t1;
+  if (!now.slips || !(size2 > 0)) return solve_friction(block, mu, v);
   const Real s = -((c0 + block.slide[0] * t0) * t0 + (c1 + block.slide[1] * t1) * t1) / size2;
   if (!(s > 0)) return solve_friction(block, mu, v);  // sticks, or turns round
   return slip_along(block, mu, v[0], -c0 * (block.slide[1] + s), -c1 * (block.slide[0] + s));

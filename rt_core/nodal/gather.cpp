@@ -44,13 +44,6 @@ void gather_rows(std::span<const Number> compliance, std::size_t row_length, Con
   }
 }
 
-// Normals and their turns as rows, for four nodes at a time.
-struct Directions {
-  alignas(32) double normal[3][kContactStride];
-  alignas(32) double turn[3][kContactStride];
-  alignas(32) float narrow[3][kContactStride];  // the normals
-};
-
 void list_directions(const ContactProblem& p, Directions& d) PALPATE_RT {
   const std::int32_t lanes = whole_lanes(p.count, 8);
   for (std::int32_t i = 0; i < lanes; ++i) {  // bound: kMaxContacts
@@ -70,7 +63,8 @@ void list_directions(const ContactProblem& p, Directions& d) PALPATE_RT {
 
 // Row j of the normal compliance, from the vector of its diagonal on. The body's part in single precision, as the
 // table is; that of the coupling, which a stiff body's may be lost in, in double.
-void normal_row(ContactProblem& p, const Directions& d, std::int32_t j) PALPATE_RT {
+void normal_row(ContactProblem& p, std::int32_t j) PALPATE_RT {
+  const Directions& d = p.directions;
   const Vec3 n = p.node[j].normal_w, turn = p.per_Nm * cross(p.node[j].arm_w, n), shift = p.per_N * n;
   const Float8 nx = splat8(static_cast<float>(n.x)), ny = splat8(static_cast<float>(n.y)),
                nz = splat8(static_cast<float>(n.z));
@@ -132,10 +126,6 @@ void mirror(NormalProblem& p) PALPATE_RT {
   }
 }
 
-bool is_held(const Model& model, const ContactNode& node) PALPATE_RT {
-  return model.nodal_vertex[static_cast<std::size_t>(node.vertex)].is_free == 0;
-}
-
 }  // namespace
 
 void add_push(ContactProblem& p, std::int32_t j, Vec3 force) PALPATE_RT {
@@ -156,17 +146,41 @@ void add_push(ContactProblem& p, std::int32_t j, Vec3 force) PALPATE_RT {
 
 // One pass over all influences, with the sums in registers: half the instructions of as many add_push().
 void add_pushes(ContactProblem& p, const float (&force)[3 * kMaxContacts]) PALPATE_RT {
-  for (std::int32_t i = 0; i < p.count; i += 8) {  // bound: kMaxContacts / 8
-    Float8 u[3] = {load8(p.motion_m[0] + i), load8(p.motion_m[1] + i), load8(p.motion_m[2] + i)};
+  for (std::int32_t i = 0; i < p.count; i += 16) {  // bound: kMaxContacts / 16; the stride is whole sixteens
+    Float8 u[3][2];
+    for (int b = 0; b < 3; ++b) {
+      u[b][0] = load8(p.motion_m[b] + i);
+      u[b][1] = load8(p.motion_m[b] + i + 8);
+    }
     const float* from = p.influence[0][0][0] + i;
     const float* f = force;
     for (std::int32_t j = 0; j < p.count; ++j, from += 9 * kContactStride, f += 3) {  // bound: kMaxContacts
       for (int a = 0; a < 3; ++a) {                                                   // bound: 3 x 3
         const Float8 s = splat8(f[a]);
-        for (int b = 0; b < 3; ++b) u[b] += load8(from + (3 * a + b) * kContactStride) * s;
+        for (int b = 0; b < 3; ++b) {
+          u[b][0] += load8(from + (3 * a + b) * kContactStride) * s;
+          u[b][1] += load8(from + (3 * a + b) * kContactStride + 8) * s;
+        }
       }
     }
-    for (int b = 0; b < 3; ++b) store(p.motion_m[b] + i, u[b]);
+    for (int b = 0; b < 3; ++b) {
+      store(p.motion_m[b] + i, u[b][0]);
+      store(p.motion_m[b] + i + 8, u[b][1]);
+    }
+  }
+}
+
+// With the tool's own motion F / k + (T x arm) / k_turn: T x arm . n = T . (arm x n).
+void find_normal_gaps(const ContactProblem& p, double (&gap)[kContactStride]) PALPATE_RT {
+  const Directions& d = p.directions;
+  const Vec3 shift = p.per_N * p.force_N, turn = p.per_Nm * p.torque_Nm;
+  for (std::int32_t i = 0; i < p.count; i += 4) {  // bound: kMaxContacts / 4
+    const auto along = [&](const float* u, const double* n, double s, const double* m, double t) PALPATE_RT {
+      return (widen4(u + i) + splat4(s)) * load4(n + i) + load4(m + i) * splat4(t);
+    };
+    store(gap + i, load4(p.offset_m + i) + along(p.motion_m[0], d.normal[0], shift.x, d.turn[0], turn.x) +
+                       along(p.motion_m[1], d.normal[1], shift.y, d.turn[1], turn.y) +
+                       along(p.motion_m[2], d.normal[2], shift.z, d.turn[2], turn.z));
   }
 }
 
@@ -181,11 +195,10 @@ void gather_influence(const Model& model, ContactProblem& p) PALPATE_RT {
 
 void gather_normal(const Model& model, ContactProblem& p) PALPATE_RT {
   p.normal.n = p.count;
-  Directions directions;
-  list_directions(p, directions);
+  list_directions(p, p.directions);
   for (std::int32_t j = 0; j < p.count; ++j) {  // bound: kMaxContacts
     if (model.compliance_f64.empty()) {
-      normal_row(p, directions, j);
+      normal_row(p, j);
     } else {
       normal_row_exact(model, p, j);
     }

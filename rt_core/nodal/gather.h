@@ -6,6 +6,9 @@
 
 namespace palpate {
 
+inline bool is_held(const Model& model, const ContactNode& node) PALPATE_RT {
+  return model.nodal_vertex[static_cast<std::size_t>(node.vertex)].is_free == 0;
+}
 // Rows and columns of the compliance at the candidates: problem.influence. Bound: 9 kMaxContacts^2 numbers.
 void gather_influence(const Model& model, ContactProblem& problem) PALPATE_RT;
 // Normal compliances problem.normal.compliance = N (C + G K_coupling^-1 G^T) N^T, in double precision, with the

@@ -6,36 +6,23 @@ namespace palpate {
 
 namespace {
 
-// to[i] = from[at[i]] for n entries of rising indices: whole vectors where four of them follow one another.
-void pick(const double* from, const std::int32_t* at, std::int32_t n, double* to) PALPATE_RT {
-  if (n > 0 && at[n - 1] - at[0] == n - 1) {  // all do
-    const std::int32_t whole = n / 4 * 4;
-    from += at[0];
-    for (std::int32_t i = 0; i < whole; i += 4) store(to + i, load4(from + i));  // bound: kMaxContacts / 4
-    for (std::int32_t i = whole; i < n; ++i) to[i] = from[i];                    // bound: 3
-    return;
-  }
-  std::int32_t i = 0;
-  while (i < n) {  // bound: kMaxContacts
-    if (i + 4 <= n && at[i + 3] == at[i] + 3) {
-      store(to + i, load4(from + at[i]));
-      i += 4;
-    } else {
-      to[i] = from[at[i]];
-      i += 1;
-    }
-  }
-}
-
-// M over the active contacts, as the lower triangle of the factor. Rows past the last are zero.
+// M over the active contacts, as the lower triangle of the factor. Rows past the last are zero. Where four of the
+// contacts follow one another they are copied as one.
 void gather_active(NormalProblem& p) PALPATE_RT {
   ContactFactor& factor = p.factor;
-  const std::int32_t rows = whole_lanes(factor.n, 4);
-  for (std::int32_t j = 0; j < factor.n; ++j) {  // bound: kMaxContacts^2 / 2
-    const std::int32_t first = j / 4 * 4;
+  const std::int32_t n = factor.n, rows = whole_lanes(n, 4);
+  bool joined[kMaxContacts / 4];
+  for (std::int32_t i = 0; i < rows; i += 4) joined[i / 4] = i + 4 <= n && p.active[i + 3] == p.active[i] + 3;
+  for (std::int32_t j = 0; j < n; ++j) {  // bound: kMaxContacts^2 / 8 vectors
+    const double* from = p.compliance[p.active[j]];
     double* to = factor.column[j];
-    pick(p.compliance[p.active[j]], p.active + first, factor.n - first, to + first);
-    for (std::int32_t i = factor.n; i < rows; ++i) to[i] = 0;  // bound: 3
+    for (std::int32_t i = j / 4 * 4; i < rows; i += 4) {
+      if (joined[i / 4]) {
+        store(to + i, load4(from + p.active[i]));
+        continue;
+      }
+      for (std::int32_t k = i; k < i + 4; ++k) to[k] = k < n ? from[p.active[k]] : 0;  // bound: 4
+    }
   }
 }
 

@@ -46,8 +46,7 @@ Place place_at(int k) {
   const double phase = 2 * 3.14159265358979 * (k - 40) / 120;
   const double slide = k < 40 ? 0 : 4e-3 * std::sin(phase);
   const double tilt = k < 200 || k >= 320 ? 0 : 0.02 * std::sin(2 * phase);
-  const double away = k >= 340 && k < 342 ? 0.05 : 0;  // and back in one tick
-  return {{slide, kTop_m + 0.005 - press + away, 0.5 * slide}, small_rotation({0.0, 0.0, tilt})};
+  return {{slide, kTop_m + 0.005 - press, 0.5 * slide}, small_rotation({0.0, 0.0, tilt})};
 }
 
 void play() {
