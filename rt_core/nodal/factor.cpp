@@ -99,36 +99,46 @@ bool factorise(ContactFactor& factor) PALPATE_RT {
   return true;
 }
 
+// Four columns at a time: their own triangle one by one, and the rows below (before, for the transpose) by vectors.
 void solve_lower(const ContactFactor& factor, double* x) PALPATE_RT {
   const std::int32_t rows = whole_lanes(factor.n, 4);
-  for (std::int32_t k = 0; k < factor.n; ++k) {  // bound: kMaxContacts
-    const double value = x[k] * factor.inverse_pivot[k];
-    const Double4 s = splat4(value);
-    const double* column = factor.column[k];
-    std::int32_t row = k / 4 * 4;  // zeros above the diagonal
-    for (; row + 8 <= rows; row += 8) {  // bound: kMaxContacts / 8
-      store(x + row, load4(x + row) - load4(column + row) * s);
-      store(x + row + 4, load4(x + row + 4) - load4(column + row + 4) * s);
+  for (std::int32_t k = 0; k < factor.n; k += 4) {  // bound: kMaxContacts / 4
+    const std::int32_t columns = factor.n - k < 4 ? factor.n - k : 4;
+    double v[4] = {};
+    for (std::int32_t a = 0; a < columns; ++a) {  // bound: 4
+      v[a] = x[k + a];
+      for (std::int32_t b = 0; b < a; ++b) v[a] -= factor.column[k + b][k + a] * v[b];
+      v[a] *= factor.inverse_pivot[k + a];
     }
-    if (row < rows) store(x + row, load4(x + row) - load4(column + row) * s);
-    x[k] = value;
+    store(x + k, Double4{v[0], v[1], v[2], v[3]});
+    const Double4 s0 = splat4(v[0]), s1 = splat4(v[1]), s2 = splat4(v[2]), s3 = splat4(v[3]);
+    const double* column = factor.column[k];
+    for (std::int32_t row = k + 4; row < rows; row += 4) {  // bound: kMaxContacts / 4
+      store(x + row, load4(x + row) - load4(column + row) * s0 - load4(column + kContactStride + row) * s1 -
+                         load4(column + 2 * kContactStride + row) * s2 - load4(column + 3 * kContactStride + row) * s3);
+    }
   }
 }
 
 void solve_upper(const ContactFactor& factor, double* x) PALPATE_RT {
   const std::int32_t rows = whole_lanes(factor.n, 4);
-  for (std::int32_t k = factor.n - 1; k >= 0; --k) {  // bound: kMaxContacts
-    const double rest = x[k];
-    x[k] = 0;
-    Double4 even{}, odd{};
+  for (std::int32_t k = rows - 4; k >= 0; k -= 4) {  // bound: kMaxContacts / 4
     const double* column = factor.column[k];
-    std::int32_t row = k / 4 * 4;  // rows from n on are zero
-    for (; row + 8 <= rows; row += 8) {  // bound: kMaxContacts / 8
-      even += load4(column + row) * load4(x + row);
-      odd += load4(column + row + 4) * load4(x + row + 4);
+    Double4 along[4] = {};
+    for (std::int32_t row = k + 4; row < rows; row += 4) {  // bound: kMaxContacts / 4; rows from n on are zero
+      const Double4 v = load4(x + row);
+      along[0] += load4(column + row) * v;
+      along[1] += load4(column + kContactStride + row) * v;
+      along[2] += load4(column + 2 * kContactStride + row) * v;
+      along[3] += load4(column + 3 * kContactStride + row) * v;
     }
-    if (row < rows) even += load4(column + row) * load4(x + row);
-    x[k] = (rest - sum(even + odd)) * factor.inverse_pivot[k];
+    transpose(along);
+    const Double4 below = (along[0] + along[1]) + (along[2] + along[3]);
+    for (std::int32_t a = (factor.n - k < 4 ? factor.n - k : 4) - 1; a >= 0; --a) {  // bound: 4
+      double rest = x[k + a] - below[a];
+      for (std::int32_t b = a + 1; b < 4; ++b) rest -= factor.column[k + a][k + b] * x[k + b];
+      x[k + a] = rest * factor.inverse_pivot[k + a];
+    }
   }
 }
 

@@ -8,7 +8,7 @@ namespace palpate {
 
 // Rows and columns of every matrix of the contact problem: whole lanes, and the same stride for all sizes.
 inline constexpr std::int32_t kContactStride = kMaxContacts;
-static_assert(kContactStride % 8 == 0, "rows are handled four and eight at a time");
+static_assert(kContactStride % 16 == 0, "rows are handled four, eight and sixteen at a time");
 
 // Lower triangle, column-major with stride kContactStride. Before factorise(): entries above the diagonal, and from row
 // n to the end of its vector, are finite. After it those above the diagonal are zero as far as its vector reaches.

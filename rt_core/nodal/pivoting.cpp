@@ -47,17 +47,21 @@ void add_gaps(NormalProblem& p) PALPATE_RT {
   for (std::int32_t j = 0; j < p.n; ++j) {  // bound: kMaxContacts
     if (p.push_N[j] != 0) pushing[count++] = j;
   }
-  for (std::int32_t i = 0; i < rows; i += 8) {  // bound: kMaxContacts / 8; the stride is whole eights
-    Double4 low = load4(p.free_gap_m + i), high = load4(p.free_gap_m + i + 4);
-    const double* from = p.compliance[0] + i;
+  for (std::int32_t i = 0; i < rows; i += 16) {  // bound: kMaxContacts / 16; the stride is whole sixteens
+    Double4 g0 = load4(p.free_gap_m + i), g1 = load4(p.free_gap_m + i + 4), g2 = load4(p.free_gap_m + i + 8),
+            g3 = load4(p.free_gap_m + i + 12);
     for (std::int32_t k = 0; k < count; ++k) {  // bound: kMaxContacts
-      const std::int32_t j = pushing[k];
-      const Double4 s = splat4(p.push_N[j]);
-      low += load4(from + j * kContactStride) * s;
-      high += load4(from + j * kContactStride + 4) * s;
+      const double* from = p.compliance[pushing[k]] + i;
+      const Double4 s = splat4(p.push_N[pushing[k]]);
+      g0 += load4(from) * s;
+      g1 += load4(from + 4) * s;
+      g2 += load4(from + 8) * s;
+      g3 += load4(from + 12) * s;
     }
-    store(p.gap_m + i, low);
-    store(p.gap_m + i + 4, high);
+    store(p.gap_m + i, g0);
+    store(p.gap_m + i + 4, g1);
+    store(p.gap_m + i + 8, g2);
+    store(p.gap_m + i + 12, g3);
   }
 }
 
