@@ -17,10 +17,9 @@ inline constexpr std::int32_t kMaxFingers = 5;
 inline constexpr std::int32_t kMaxToolPoints = 2048;
 // Tool points in contact at once. Overflow: the deepest are kept (ties by index), Status::kContactsDropped.
 inline constexpr std::int32_t kMaxContacts = 64;
-// Contacts solved in a tick's friction sweeps, all sweeps together: two sweeps of sixty. Sixty nodes that stick and slip
-// at 0.2 m/s are then 2.1 % of the force from the answer at most, 0.7 % in the mean (four sweeps: 0.6 %, 0.2 %). Past it
-// no further sweep is begun; the next tick goes on from there.
-inline constexpr std::int32_t kMaxFrictionVisits = 128;
+// Contacts solved in a tick's friction sweeps, all sweeps together: one sweep of sixty, four of sixteen. Past it no
+// further sweep is begun; the next tick goes on from there. docs/models_contact_lcp.md has what that costs in accuracy.
+inline constexpr std::int32_t kMaxFrictionVisits = 64;
 // Surface nodes of a finite-element body: at 5461 nodes the compliance in single precision is 1 GiB, locked in memory.
 // Refused when the scene is baked.
 inline constexpr std::int32_t kMaxNodalVertices = 5461;

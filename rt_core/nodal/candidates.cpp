@@ -44,9 +44,10 @@ class NodeSearch {
     stack[top++] = 0;
     while (top > 0) {  // bound: every hierarchy node once
       const BvhNode& node = model_.bvh[static_cast<std::size_t>(stack[--top])];
+      const Balls balls = balls_around(node);
       for (int k = 3; k >= 0; --k) {  // bound: 4
         if (node.count[k] == 0 && node.child[k] < 0) continue;
-        if (!may_touch(shape, frame, node, k)) continue;
+        if (!may_touch(shape, frame, {balls.x[k], balls.y[k], balls.z[k]}, balls.radius[k])) continue;
         if (node.count[k] > 0) {
           visit_leaf(shape, frame, ~node.child[k], node.count[k]);
         } else if (top < kMaxTraversalStack) {
@@ -70,16 +71,23 @@ class NodeSearch {
     }
   }
 
-  // Whether a node in the box can come within reach of the piece, at rest or carried by a region that reaches the box.
-  bool may_touch(const ToolPiece& shape, const PieceFrame& frame, const BvhNode& node, int k) const PALPATE_RT {
+  // Balls around the four boxes of a node.
+  struct Balls {
+    Double4 x, y, z, radius;
+  };
+  static Balls balls_around(const BvhNode& node) PALPATE_RT {
     const auto middle = [&](int axis) PALPATE_RT {
-      return 0.5 * (static_cast<Real>(node.lower_m[axis][k]) + static_cast<Real>(node.upper_m[axis][k]));
+      return 0.5 * (widen4(node.lower_m[axis]) + widen4(node.upper_m[axis]));
     };
     const auto half = [&](int axis) PALPATE_RT {
-      return 0.5 * (static_cast<Real>(node.upper_m[axis][k]) - static_cast<Real>(node.lower_m[axis][k]));
+      return 0.5 * (widen4(node.upper_m[axis]) - widen4(node.lower_m[axis]));
     };
-    const Vec3 centre{middle(0), middle(1), middle(2)};
-    const Real radius = norm({half(0), half(1), half(2)});
+    const Double4 x = half(0), y = half(1), z = half(2);
+    return {middle(0), middle(1), middle(2), square_root(x * x + y * y + z * z)};
+  }
+
+  // Whether a node in the ball can come within reach of the piece, at rest or carried by a region that reaches the ball.
+  bool may_touch(const ToolPiece& shape, const PieceFrame& frame, Vec3 centre, Real radius) const PALPATE_RT {
     const Real gap = piece_gap(shape, frame.into(centre)).gap_m - radius - margin_m_;
     if (!(gap > 0)) return true;
     if (gap > (1 + kCarryShare) * carry_max_m_) return false;
@@ -93,9 +101,11 @@ class NodeSearch {
   }
 
   void visit_leaf(const ToolPiece& shape, const PieceFrame& frame, std::int32_t first, std::int32_t count) PALPATE_RT {
-    for (std::int32_t t = first; t < first + count; ++t) {  // bound: 4
-      for (const std::int32_t v : model_.triangle[static_cast<std::size_t>(t)].vertex) {
-        if (model_.nodal_vertex[static_cast<std::size_t>(v)].owner == t) visit_vertex(shape, frame, v);
+    const Triangle* triangle = model_.triangle.data() + first;
+    const NodalVertex* node = model_.nodal_vertex.data();
+    for (std::int32_t t = first; t < first + count; ++t, ++triangle) {  // bound: 4
+      for (int k = 0; k < 3; ++k) {                                     // bound: 3
+        if (node[triangle->vertex[k]].owner == t) visit_vertex(shape, frame, triangle->vertex[k]);
       }
     }
   }

@@ -31,7 +31,8 @@ struct ContactNode {
 struct Directions {
   alignas(32) double normal[3][kContactStride];
   alignas(32) double turn[3][kContactStride];
-  alignas(32) float narrow[3][kContactStride];  // the normals
+  alignas(32) float narrow[3][kContactStride];  // both in single precision
+  alignas(32) float narrow_turn[3][kContactStride];
 };
 
 struct ContactProblem {

@@ -4,33 +4,41 @@ namespace palpate {
 
 namespace {
 
-// to[b][i] = row[3 vertex(i) + b] for whole lanes of nodes (the rest of the index is 0). One instruction fetches eight
-// numbers where there is one; left to itself gcc 12 loads them one by one, at four times the instructions.
-void pick(const float* row, const std::int32_t* index, std::int32_t n, float (*to)[kContactStride]) PALPATE_RT {
+// to[a][b][i] = row a [index[i] + b] of three rows, for whole lanes of nodes (the rest of the index is 0). One
+// instruction fetches eight numbers where there is one; left to itself gcc 12 loads them one by one, at four times the
+// instructions.
+void pick(const float* row, std::size_t row_length, const std::int32_t* index, std::int32_t n,
+          float (*to)[3][kContactStride]) PALPATE_RT {
 #if defined(__AVX2__)
   using Int8 [[gnu::vector_size(32)]] = std::int32_t;
   const Float8 all = __builtin_bit_cast(Float8, Int8{-1, -1, -1, -1, -1, -1, -1, -1});
+  const float* rows[3] = {row, row + row_length, row + 2 * row_length};
   Float8 v{};
   for (std::int32_t i = 0; i < n; i += 8) {  // bound: kMaxContacts / 8
     Int8 at;
     __builtin_memcpy(&at, index + i, sizeof at);
-    for (int b = 0; b < 3; ++b) {  // bound: 3
+    for (int a = 0; a < 3; ++a) {  // bound: 3 x 3
+      for (int b = 0; b < 3; ++b) {
 #if defined(__clang__)
-      v = __builtin_ia32_gatherd_ps256(v, row + b, at, all, 4);
+        v = __builtin_ia32_gatherd_ps256(v, rows[a] + b, at, all, 4);
 #else
-      v = __builtin_ia32_gathersiv8sf(v, row + b, at, all, 4);
+        v = __builtin_ia32_gathersiv8sf(v, rows[a] + b, at, all, 4);
 #endif
-      store(to[b] + i, v);
+        store(to[a][b] + i, v);
+      }
     }
   }
 #else
-  for (int b = 0; b < 3; ++b)
-    for (std::int32_t i = 0; i < n; ++i) to[b][i] = row[index[i] + b];  // bound: 3 kMaxContacts
+  for (int a = 0; a < 3; ++a, row += row_length)
+    for (int b = 0; b < 3; ++b)
+      for (std::int32_t i = 0; i < n; ++i) to[a][b][i] = row[index[i] + b];  // bound: 9 kMaxContacts
 #endif
 }
-void pick(const double* row, const std::int32_t* index, std::int32_t n, float (*to)[kContactStride]) PALPATE_RT {
-  for (int b = 0; b < 3; ++b)
-    for (std::int32_t i = 0; i < n; ++i) to[b][i] = static_cast<float>(row[index[i] + b]);  // bound: 3 kMaxContacts
+void pick(const double* row, std::size_t row_length, const std::int32_t* index, std::int32_t n,
+          float (*to)[3][kContactStride]) PALPATE_RT {
+  for (int a = 0; a < 3; ++a, row += row_length)
+    for (int b = 0; b < 3; ++b)
+      for (std::int32_t i = 0; i < n; ++i) to[a][b][i] = static_cast<float>(row[index[i] + b]);  // 9 kMaxContacts
 }
 
 template <class Number>
@@ -40,7 +48,7 @@ void gather_rows(std::span<const Number> compliance, std::size_t row_length, Con
   for (std::int32_t i = 0; i < lanes; ++i) index[i] = i < p.count ? 3 * p.node[i].vertex : 0;
   for (std::int32_t j = 0; j < p.count; ++j) {  // bound: kMaxContacts
     const Number* row = compliance.data() + static_cast<std::size_t>(index[j]) * row_length;
-    for (std::int32_t a = 0; a < 3; ++a) pick(row + static_cast<std::size_t>(a) * row_length, index, lanes, p.influence[j][a]);
+    pick(row, row_length, index, lanes, p.influence[j]);
   }
 }
 
@@ -58,39 +66,31 @@ void list_directions(const ContactProblem& p, Directions& d) PALPATE_RT {
     d.narrow[0][i] = static_cast<float>(n.x);
     d.narrow[1][i] = static_cast<float>(n.y);
     d.narrow[2][i] = static_cast<float>(n.z);
+    d.narrow_turn[0][i] = static_cast<float>(m.x);
+    d.narrow_turn[1][i] = static_cast<float>(m.y);
+    d.narrow_turn[2][i] = static_cast<float>(m.z);
   }
 }
 
-// Row j of the normal compliance, from the vector of its diagonal on. The body's part in single precision, as the
-// table is; that of the coupling, which a stiff body's may be lost in, in double.
+// Row j of the normal compliance, from the vector of its diagonal on, in single precision as the table is: its rounding
+// is a hundredth of the regularisation.
 void normal_row(ContactProblem& p, std::int32_t j) PALPATE_RT {
-  const Directions& d = p.directions;
-  const Vec3 n = p.node[j].normal_w, turn = p.per_Nm * cross(p.node[j].arm_w, n), shift = p.per_N * n;
-  const Float8 nx = splat8(static_cast<float>(n.x)), ny = splat8(static_cast<float>(n.y)),
-               nz = splat8(static_cast<float>(n.z));
-  const bool coupled = p.per_N > 0;
-  const Double4 sx = splat4(shift.x), sy = splat4(shift.y), sz = splat4(shift.z);
-  const Double4 tx = splat4(turn.x), ty = splat4(turn.y), tz = splat4(turn.z);
-  const auto coupling = [&](std::int32_t i) PALPATE_RT {
-    return load4(d.normal[0] + i) * sx + load4(d.normal[1] + i) * sy + load4(d.normal[2] + i) * sz +
-           load4(d.turn[0] + i) * tx + load4(d.turn[1] + i) * ty + load4(d.turn[2] + i) * tz;
-  };
+  const Vec3 n = p.node[j].normal_w, turn = p.per_Nm * cross(p.node[j].arm_w, n);
+  const float own[3] = {static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z)};
+  const float own_turn[3] = {static_cast<float>(turn.x), static_cast<float>(turn.y), static_cast<float>(turn.z)};
+  const float per_N = static_cast<float>(p.per_N);
   const auto& from = p.influence[j];
   for (std::int32_t i = j / 8 * 8; i < p.count; i += 8) {  // bound: kMaxContacts / 8
     Float8 row{};
     for (int b = 0; b < 3; ++b) {
-      const Float8 u = load8(from[0][b] + i) * nx + load8(from[1][b] + i) * ny + load8(from[2][b] + i) * nz;
-      row = b == 0 ? u * load8(d.narrow[b] + i) : row + u * load8(d.narrow[b] + i);
+      const Float8 u = load8(from[0][b] + i) * splat8(own[0]) + load8(from[1][b] + i) * splat8(own[1]) +
+                       load8(from[2][b] + i) * splat8(own[2]) + splat8(per_N * own[b]);
+      row += u * load8(p.directions.narrow[b] + i) + load8(p.directions.narrow_turn[b] + i) * splat8(own_turn[b]);
     }
     float narrow[8];
     store(narrow, row);
-    Double4 low = widen4(narrow), high = widen4(narrow + 4);
-    if (coupled) {
-      low += coupling(i);
-      high += coupling(i + 4);
-    }
-    store(p.normal.compliance[j] + i, low);
-    store(p.normal.compliance[j] + i + 4, high);
+    store(p.normal.compliance[j] + i, widen4(narrow));
+    store(p.normal.compliance[j] + i + 4, widen4(narrow + 4));
   }
 }
 

@@ -21,7 +21,16 @@ inline Vec3 carry_at(const RegionMotion& motion, Vec3 rest_w) PALPATE_RT {
 // than `blur_m` say nothing about rotation: it is left zero there.
 class MotionFit {
  public:
-  void add(Vec3 rest_w, Vec3 displacement_m) PALPATE_RT;
+  void add(Vec3 rest_w, Vec3 displacement_m) PALPATE_RT {
+    if (count_ == 0) origin_ = rest_w;
+    const Vec3 x = rest_w - origin_;
+    count_ += 1;
+    position_ += x;
+    displacement_ += displacement_m;
+    moment_ += cross(x, displacement_m);
+    const double products[6] = {x.x * x.x, x.x * x.y, x.x * x.z, x.y * x.y, x.y * x.z, x.z * x.z};
+    for (int k = 0; k < 6; ++k) square_[k] += products[k];  // bound: 6
+  }
   // Scaled by `share`. Bound: constant.
   RegionMotion result(double blur_m, double share) const PALPATE_RT;
   double count() const PALPATE_RT { return count_; }

@@ -1,23 +1,26 @@
 #include "rt_core/nodal/strain.h"
 
+#include <utility>
+
 namespace palpate {
 
 namespace {
 
 // Components of one pass over the pushing nodes: what the registers hold.
-constexpr std::int32_t kPass = 48;
+constexpr std::int32_t kPass = 96;
 static_assert(6 * kMaxStrainGauges % kPass == 0, "passes are whole");
 
-// Adds strain components [first, first + kPass) of all pushes. Single precision, as the gauges are.
-void add_pass(const float* gauges, const std::int32_t* row, const float* force, std::int32_t rows,
-              float* strain) PALPATE_RT {
-  Float8 sum[kPass / 8];
-  for (int k = 0; k < kPass / 8; ++k) sum[k] = load8(strain + 8 * k);
+// Adds kPass strain components of all pushes, eight of them for each k. Single precision, as the gauges are.
+template <int... k>
+void add_pass(const float* gauges, const std::int32_t* row, const float* force, std::int32_t rows, float* strain,
+              std::integer_sequence<int, k...>) PALPATE_RT {
+  Float8 sum[] = {load8(strain + 8 * k)...};
   for (std::int32_t r = 0; r < rows; ++r) {  // bound: 3 kMaxContacts
     const Float8 f = splat8(force[r]);
-    for (int k = 0; k < kPass / 8; ++k) sum[k] += load8(gauges + row[r] + 8 * k) * f;
+    const float* from = gauges + row[r];
+    ((sum[k] += load8(from + 8 * k) * f), ...);
   }
-  for (int k = 0; k < kPass / 8; ++k) store(strain + 8 * k, sum[k]);
+  (store(strain + 8 * k, sum[k]), ...);
 }
 
 }  // namespace
@@ -38,8 +41,9 @@ Real largest_strain(const Model& model, const ContactProblem& p) PALPATE_RT {
   }
   alignas(32) float strain[6 * kMaxStrainGauges] = {};
   std::int32_t done = 0;
-  for (; done + kPass <= components; done += kPass)  // bound: 2
-    add_pass(model.strain_gauge.data() + done, row, force, rows, strain + done);
+  for (; done + kPass <= components; done += kPass)  // bound: 1
+    add_pass(model.strain_gauge.data() + done, row, force, rows, strain + done,
+             std::make_integer_sequence<int, kPass / 8>());
   for (std::int32_t r = 0; r < rows && done < components; ++r) {  // bound: 3 kMaxContacts, kPass components each
     const float* from = model.strain_gauge.data() + row[r];
     for (std::int32_t c = done; c < components; ++c) strain[c] += from[c] * force[r];

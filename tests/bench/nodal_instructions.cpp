@@ -69,7 +69,7 @@ void play() {
   for (int k = 0; k < kTicks; ++k) {
     const Place place = place_at(k);
     CALLGRIND_TOGGLE_COLLECT;
-    const Output& output = scene.tick_at(place.position_m, Drive::kTool, place.orientation);
+    const Output& output = scene.tick_at(place.position_m, Drive::kDevice, place.orientation);
     CALLGRIND_TOGGLE_COLLECT;
     int slips = 0;
     for (int i = 0; i < scene.scratch().nodal.count; ++i) slips += scene.scratch().nodal.node[i].push.slips ? 1 : 0;
