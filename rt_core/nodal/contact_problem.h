@@ -15,7 +15,8 @@ struct ContactNode {
   std::int32_t memory;  // its entry in State::nodal, or -1: not a candidate last tick
   std::int32_t region;  // slot of the last tick, or -1
   Vec3 rest_w;
-  Vec3 carry_w;   // carried position minus rest
+  Vec3 carry_w;   // linear part of carried position minus rest
+  Vec3 bend_w;    // the rest of it
   Vec3 normal_w;  // out of the tool, into the body
   Vec3 tangent_w[2];
   Vec3 arm_w;    // carried position minus the tool's origin

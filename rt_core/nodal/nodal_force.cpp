@@ -64,7 +64,7 @@ void remember(const Model& model, State& state, const Scratch& scratch) PALPATE_
     }
     const Pose carrier = is_articulated(model) ? scratch.tool_corrected_w * state.articulation.motion_tool[node.piece]
                                                : scratch.tool_corrected_w;
-    contact.anchor_tool_m = inverse_transform(carrier, node.rest_w + motion_of(p, i));
+    contact.anchor_tool_m = inverse_transform(carrier, node.rest_w + node.bend_w + motion_of(p, i));
   }
 }
 

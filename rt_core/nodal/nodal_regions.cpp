@@ -128,6 +128,7 @@ void fit_motions(const Model& model, State& state, const Scratch& scratch) PALPA
   }
   for (std::int32_t s = 0; s < kMaxRegions; ++s) {  // bound: kMaxRegions
     state.nodal.motion[s] = fit[s].result(kBlur * model.params.cluster_distance_m, state.nodal.far_share);
+    state.nodal.motion[s].growth = growth_under(state.nodal.motion[s], -state.region[s].wrench_w.force_N);
     state.nodal.motion[s].reach_m = square_root(reach2[s]) + 2 * model.params.cluster_distance_m;
   }
 }

@@ -11,10 +11,26 @@ struct RegionMotion {
   Vec3 translation_m;
   Vec3 rotation_rad;
   double reach_m = 0;  // rest points farther from the centre are not carried
+  double growth = 0;   // of the motion by finite rotation, see bend_of()
 };
 
 inline Vec3 carry_at(const RegionMotion& motion, Vec3 rest_w) PALPATE_RT {
   return motion.translation_m + cross(motion.rotation_rad, rest_w - motion.centre_w);
+}
+
+// What finite rotation adds to the linear motion, to second order. A body that turns by r about a root at -d under a
+// force f, held by a spring k: its end moves by t = r x d and, because it turns, by r x t / 2; and the force's lever
+// changes with the turn, which makes k into k + f . d and all the motion grow by -f . d / k = f . (r x t) / (f . t). Both
+// follow from the complementary energy f . t / 2 + f . (r x t) / 2. An arm that bends instead has 0.8 of the first for a
+// load at its end, 2/3 when bent evenly.
+inline Vec3 bend_of(const RegionMotion& motion, Vec3 carry) PALPATE_RT {
+  return 0.5 * cross(motion.rotation_rad, carry) + motion.growth * carry;
+}
+// The growth under a force on the body. Beyond half of the motion no linear body is meant.
+inline double growth_under(const RegionMotion& motion, Vec3 force_N) PALPATE_RT {
+  const double work = dot(force_N, motion.translation_m);
+  const double turned = dot(force_N, cross(motion.rotation_rad, motion.translation_m));
+  return work > 0 ? clamp_to(turned / work, -0.5, 0.5) : 0;
 }
 
 // Least-squares rigid motion of displaced points, small rotations. Directions in which the points lie closer together
