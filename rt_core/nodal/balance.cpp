@@ -7,11 +7,10 @@ namespace palpate {
 
 namespace {
 
-// Above this a problem counts as not solved: half an encoder's step. One friction sweep over sixty nodes leaves 1e-5 m
-// where a tool turns back at 0.2 m/s, below 1e-6 m in steady motion (2026-11-21); without friction it is rounding.
-constexpr Real kTolerance_m = 15e-6;
-// Nodes that the sweeps may open before the normal problem is left as they found it.
-constexpr std::int32_t kMostOpened = 8;
+// Above this a problem counts as not solved: an encoder's step. Friction that its cone cuts at the end leaves up to 1e-5 m
+// under sixty nodes that turn back at 0.2 m/s and 2.5e-5 m in a pinch that is torn off, below 1e-6 m in steady motion
+// (2026-11-21); without friction it is rounding.
+constexpr Real kTolerance_m = 30e-6;
 
 Real friction_coefficient(const Model& model) PALPATE_RT {
   const bool coulomb = model.params.friction_law == static_cast<std::int32_t>(FrictionLaw::kCoulomb);
@@ -171,32 +170,43 @@ class Balance {
   }
 
   // The sweeps leave the normal gaps of the nodes visited first slightly wrong. With the friction they found, the
-  // normal problem is solved once more through the factor at hand, over its nodes that still push.
+  // normal problem is solved once more, from the factor at hand.
   void close_normal_gaps() PALPATE_RT {
     NormalProblem& normal = p_.normal;
     if (normal.factored == 0) return;
-    std::int32_t opened = 0;
-    for (std::int32_t k = 0; k < normal.factor.n; ++k) {  // bound: kMaxContacts, kMostOpened updates
-      const std::int32_t i = normal.active[k];
-      if (i < 0 || p_.node[i].push.normal_N > 0) continue;
-      if (++opened > kMostOpened) return;
-      remove_unknown(normal.factor, k);
-      normal.active[k] = -1;
-    }
-    alignas(32) double gap[kContactStride], step[kContactStride] = {};
+    alignas(32) double gap[kContactStride];
     find_normal_residuals(gap);
-    for (std::int32_t k = 0; k < normal.factor.n; ++k) {  // bound: kMaxContacts
-      if (normal.active[k] >= 0) step[k] = -gap[normal.active[k]];
+    if (!close_all(gap)) {
+      for (std::int32_t i = 0; i < p_.count; ++i) normal.push_N[i] = p_.node[i].push.normal_N;  // bound: kMaxContacts
+      measure_gaps(normal);
+      for (std::int32_t i = 0; i < p_.count; ++i) normal.free_gap_m[i] += gap[i] - normal.gap_m[i];
+      resolve_pivoting(normal);
+    }
+    for (std::int32_t i = 0; i < p_.count; ++i) {  // bound: kMaxContacts
+      p_.node[i].push.normal_N = normal.push_N[i];
+      cut_to_cone(p_.node[i].push);
+    }
+    set_forces();
+  }
+
+  // Where all nodes push, and still do without the gaps, one solution suffices. Writes normal.push_N.
+  bool close_all(const double (&gap)[kContactStride]) PALPATE_RT {
+    NormalProblem& normal = p_.normal;
+    if (normal.factor.n != p_.count) return false;
+    alignas(32) double step[kContactStride] = {};
+    for (std::int32_t k = 0; k < p_.count; ++k) {  // bound: kMaxContacts
+      if (normal.active[k] < 0) return false;
+      step[k] = -gap[normal.active[k]];
     }
     solve_lower(normal.factor, step);
     solve_upper(normal.factor, step);
-    for (std::int32_t k = 0; k < normal.factor.n; ++k) {  // bound: kMaxContacts
-      if (normal.active[k] < 0) continue;
-      Push& push = p_.node[normal.active[k]].push;
-      push.normal_N = max_of(push.normal_N + step[k], 0.0);
-      cut_to_cone(push);
+    bool pushes = true;
+    for (std::int32_t k = 0; k < p_.count; ++k) {  // bound: kMaxContacts
+      const std::int32_t i = normal.active[k];
+      normal.push_N[i] = p_.node[i].push.normal_N + step[k];
+      pushes = pushes && normal.push_N[i] >= 0;
     }
-    set_forces();
+    return pushes;
   }
 
   // Normal gaps with the softening that the regularisation and a wall stand for.

@@ -47,7 +47,7 @@ class NodeSearch {
       const Balls balls = balls_around(node);
       for (int k = 3; k >= 0; --k) {  // bound: 4
         if (node.count[k] == 0 && node.child[k] < 0) continue;
-        if (node.count[k] == 0 && !may_touch(shape, frame, {balls.x[k], balls.y[k], balls.z[k]}, balls.radius[k])) continue;
+        if (!may_touch(shape, frame, {balls.x[k], balls.y[k], balls.z[k]}, balls.radius[k])) continue;
         if (node.count[k] > 0) {
           visit_leaf(shape, frame, ~node.child[k], node.count[k]);
         } else if (top < kMaxTraversalStack) {

@@ -202,19 +202,15 @@ void solve_sweeping(NormalProblem& p, std::int32_t sweeps) PALPATE_RT {
   measure_gaps(p);
 }
 
-void solve_pivoting(NormalProblem& p) PALPATE_RT {
-  pad(p);
-  bool is_active[kMaxContacts];
+namespace {
+
+// Exchanges until every contact is on its right side, from an active set whose factor may be at hand.
+void pivot(NormalProblem& p, bool (&is_active)[kMaxContacts], bool fits, std::int32_t most) PALPATE_RT {
   double largest_m = 0;
-  for (std::int32_t i = 0; i < p.n; ++i) {  // bound: kMaxContacts
-    is_active[i] = p.push_N[i] > 0;
-    largest_m = max_of(largest_m, abs_of(p.free_gap_m[i]));
-  }
+  for (std::int32_t i = 0; i < p.n; ++i) largest_m = max_of(largest_m, abs_of(p.free_gap_m[i]));  // bound: kMaxContacts
   const double tolerance_m = 1e-10 * largest_m;
   std::int32_t best = p.n + 1, patience = 3;
-  p.pivots = 0;
-  bool fits = false;  // the factor is that of the active set
-  for (std::int32_t pivot = 0; pivot < kMaxPivots; ++pivot) {  // bound: kMaxPivots
+  for (std::int32_t round = 0; round < most; ++round) {  // bound: kMaxPivots
     p.pivots += 1;
     if (!fits && !factorise_active(p, is_active)) break;
     close_active(p);
@@ -236,6 +232,24 @@ void solve_pivoting(NormalProblem& p) PALPATE_RT {
     fits = update_factor(p, is_active, flips);
   }
   solve_sweeping(p, kFallbackSweeps);
+}
+
+}  // namespace
+
+void solve_pivoting(NormalProblem& p) PALPATE_RT {
+  pad(p);
+  bool is_active[kMaxContacts];
+  for (std::int32_t i = 0; i < p.n; ++i) is_active[i] = p.push_N[i] > 0;  // bound: kMaxContacts
+  p.pivots = 0;
+  pivot(p, is_active, false, kMaxPivots);
+}
+
+void resolve_pivoting(NormalProblem& p) PALPATE_RT {
+  bool is_active[kMaxContacts] = {};
+  for (std::int32_t k = 0; k < p.factor.n; ++k) {  // bound: kMaxContacts
+    if (p.active[k] >= 0) is_active[p.active[k]] = true;
+  }
+  pivot(p, is_active, true, kMaxPivots);
 }
 
 }  // namespace palpate

@@ -28,6 +28,8 @@ struct NormalProblem {
 
 // Solves by pivoting. Bound: kMaxPivots factorisations, then kFallbackSweeps sweeps.
 void solve_pivoting(NormalProblem& problem) PALPATE_RT;
+// Solves again for other free gaps, from the factor at hand (`factored`) and its active set.
+void resolve_pivoting(NormalProblem& problem) PALPATE_RT;
 // Sweeps from the guess, f_i <- max(0, f_i - w_i / M_ii).
 void solve_sweeping(NormalProblem& problem, std::int32_t sweeps) PALPATE_RT;
 // w = q + M f and the residual.

@@ -26,11 +26,12 @@ inline Vec3 carry_at(const RegionMotion& motion, Vec3 rest_w) PALPATE_RT {
 inline Vec3 bend_of(const RegionMotion& motion, Vec3 carry) PALPATE_RT {
   return 0.5 * cross(motion.rotation_rad, carry) + motion.growth * carry;
 }
-// The growth under a force on the body. Beyond half of the motion no linear body is meant.
+// The growth under a force on the body. Beyond this no linear body is meant: a clip on its tube needs 0.2.
+inline constexpr double kMostGrowth = 0.25;
 inline double growth_under(const RegionMotion& motion, Vec3 force_N) PALPATE_RT {
   const double work = dot(force_N, motion.translation_m);
   const double turned = dot(force_N, cross(motion.rotation_rad, motion.translation_m));
-  return work > 0 ? clamp_to(turned / work, -0.5, 0.5) : 0;
+  return work > 0 ? clamp_to(turned / work, -kMostGrowth, kMostGrowth) : 0;
 }
 
 // Least-squares rigid motion of displaced points, small rotations. Directions in which the points lie closer together

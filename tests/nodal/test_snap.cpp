@@ -9,7 +9,9 @@
 #include <cmath>
 #include <cstdio>
 
+#include "config/scene.h"
 #include "tests/nodal/nodal_scene.h"
+#include "tests/support/baked_scene.h"
 
 namespace palpate::test {
 namespace {
@@ -69,30 +71,48 @@ double zero_crossing_mm(const std::vector<double>& force) {
   return kNan;
 }
 
-// Linear elasticity itself is 6 % too stiff at the peak; 8 % leaves 2 % for the meshes. The coarsest gets 10 %.
+double worst_error(const std::vector<double>& force) {
+  double worst = 0;
+  for (const Sample& s : kReference)
+    worst = std::max(worst, std::abs(force[static_cast<std::size_t>(std::lround(10 * s.insertion_mm))] - s.force_N));
+  return worst / kPeak_N;
+}
+
+// Without the finite rotation of the arms linear elasticity is 8 % off; with it the meshes decide: 4.6, 4.2 and 3.0 %
+// (2026-11-21).
 TEST(Snap, FollowsTheReferenceOnThreeMeshes) {
   for (std::int32_t level = 1; level <= 3; ++level) {
     Clip clip(level);
     const std::vector<double> force = clip.insert();
     const auto highest = std::max_element(force.begin(), force.end());
     const auto lowest = std::min_element(force.begin(), force.end());
-    double worst = 0;
-    for (const Sample& s : kReference) {
-      const double error = force[static_cast<std::size_t>(std::lround(10 * s.insertion_mm))] - s.force_N;
-      worst = std::max(worst, std::abs(error) / kPeak_N);
-    }
     std::printf(
         "level %d, %zu nodes: peak %.3f N at %.1f mm, zero at %.2f mm, lowest %.3f N at %.1f mm, worst error "
         "%.1f %% of the peak\n",
         level, clip.nodes(), *highest, 0.1 * static_cast<double>(highest - force.begin()), zero_crossing_mm(force),
-        *lowest, 0.1 * static_cast<double>(lowest - force.begin()), 100 * worst);
-    EXPECT_LT(worst, level == 3 ? 0.08 : 0.10) << "level " << level;
-    EXPECT_NEAR(*highest, kPeak_N, 0.10 * kPeak_N);
-    EXPECT_NEAR(*lowest, -7.351, 0.08 * kPeak_N);
+        *lowest, 0.1 * static_cast<double>(lowest - force.begin()), 100 * worst_error(force));
+    EXPECT_LT(worst_error(force), 0.06) << "level " << level;
+    EXPECT_NEAR(*highest, kPeak_N, 0.06 * kPeak_N);
+    EXPECT_NEAR(*lowest, -7.351, 0.06 * kPeak_N);
     EXPECT_NEAR(0.1 * static_cast<double>(highest - force.begin()), 3.0, 0.5);
     EXPECT_NEAR(0.1 * static_cast<double>(lowest - force.begin()), 11.5, 0.5);
-    EXPECT_NEAR(zero_crossing_mm(force), 7.35, 0.3);
+    EXPECT_NEAR(zero_crossing_mm(force), 7.35, 0.15);
   }
+}
+
+// The scene as it is shipped, but for its friction, which the reference does not have.
+TEST(Snap, TheShippedSceneFollowsTheReference) {
+  BakedScene scene(load_scene(PALPATE_SOURCE_DIR "/config/scenes/snap_in.toml"));
+  scene.model().params.friction_law = static_cast<std::int32_t>(FrictionLaw::kNone);
+  Bench bench(scene.model());
+  std::vector<double> force;
+  for (int k = 0; k <= 560; ++k) {
+    bench.tick_at({{0, kFirstContact_m - 2.5e-5 * k, 0}, {}}, {});
+    if (k % 4 == 0) force.push_back(bench.output.contact_w.force_N.y);
+  }
+  EXPECT_LT(worst_error(force), 0.06);
+  EXPECT_NEAR(*std::max_element(force.begin(), force.end()), kPeak_N, 0.06 * kPeak_N);
+  EXPECT_EQ(bench.output.fault, 0u);
 }
 
 // Why normals follow the far field: at rest they make the peak a third too high.
