@@ -7,9 +7,9 @@ namespace palpate {
 
 namespace {
 
-// Above this a problem counts as not solved: an encoder's step. Friction that its cone cuts at the end leaves up to 1e-5 m
-// under sixty nodes that turn back at 0.2 m/s and 2.5e-5 m in a pinch that is torn off, below 1e-6 m in steady motion
-// (2026-11-21); without friction it is rounding.
+// Above this a problem counts as not solved: an encoder's step. Friction that its cone cuts at the end leaves up to
+// 1e-5 m under sixty nodes that turn back at 0.2 m/s and 2.5e-5 m in a pinch that is torn off, below 1e-6 m in steady
+// motion (2026-11-21); without friction it is rounding.
 constexpr Real kTolerance_m = 30e-6;
 
 Real friction_coefficient(const Model& model) PALPATE_RT {
@@ -67,7 +67,8 @@ class Balance {
     if (node.memory >= 0 && state_.nodal.contact[node.memory].piece == node.piece) {
       anchor_tool = state_.nodal.contact[node.memory].anchor_tool_m;
     } else {
-      anchor_tool = inverse_transform(carried_before(model_, state_, before_, node.piece), node.rest_w + node.carry_w + node.bend_w);
+      anchor_tool = inverse_transform(carried_before(model_, state_, before_, node.piece),
+                                      node.rest_w + node.carry_w + node.bend_w);
     }
     if (node.piece != carried_piece_) {
       carried_piece_ = node.piece;

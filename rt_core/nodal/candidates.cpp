@@ -47,7 +47,8 @@ class NodeSearch {
       const Balls balls = balls_around(node);
       for (int k = 3; k >= 0; --k) {  // bound: 4
         if (node.count[k] == 0 && node.child[k] < 0) continue;
-        if (!may_touch(shape, frame, {balls.x[k], balls.y[k], balls.z[k]}, balls.radius[k])) continue;
+        if (node.count[k] == 0 && !may_touch(shape, frame, {balls.x[k], balls.y[k], balls.z[k]}, balls.radius[k]))
+          continue;
         if (node.count[k] > 0) {
           visit_leaf(shape, frame, ~node.child[k], node.count[k]);
         } else if (top < kMaxTraversalStack) {
@@ -67,7 +68,7 @@ class NodeSearch {
       const RegionMotion& motion = state_.nodal.motion[s];
       region_[regions_++] = motion;
       const Real turn = norm(motion.rotation_rad), carry = norm(motion.translation_m) + turn * motion.reach_m;
-      carry_max_m_ = max_of(carry_max_m_, (1 + 0.5 * turn + abs_of(motion.growth)) * carry);
+      carry_max_m_ = max_of(carry_max_m_, (1 + motion.finite * (0.5 * turn + abs_of(motion.growth))) * carry);
     }
   }
 
@@ -76,17 +77,16 @@ class NodeSearch {
     Double4 x, y, z, radius;
   };
   static Balls balls_around(const BvhNode& node) PALPATE_RT {
-    const auto middle = [&](int axis) PALPATE_RT {
-      return 0.5 * (widen4(node.lower_m[axis]) + widen4(node.upper_m[axis]));
-    };
-    const auto half = [&](int axis) PALPATE_RT {
-      return 0.5 * (widen4(node.upper_m[axis]) - widen4(node.lower_m[axis]));
-    };
+    const auto middle = [&](int axis)
+                            PALPATE_RT { return 0.5 * (widen4(node.lower_m[axis]) + widen4(node.upper_m[axis])); };
+    const auto half = [&](int axis)
+                          PALPATE_RT { return 0.5 * (widen4(node.upper_m[axis]) - widen4(node.lower_m[axis])); };
     const Double4 x = half(0), y = half(1), z = half(2);
     return {middle(0), middle(1), middle(2), square_root(x * x + y * y + z * z)};
   }
 
-  // Whether a node in the ball can come within reach of the piece, at rest or carried by a region that reaches the ball.
+  // Whether a node in the ball can come within reach of the piece, at rest or carried by a region that reaches the
+  // ball.
   bool may_touch(const ToolPiece& shape, const PieceFrame& frame, Vec3 centre, Real radius) const PALPATE_RT {
     const Real gap = piece_gap(shape, frame.into(centre)).gap_m - radius - margin_m_;
     if (!(gap > 0)) return true;

@@ -11,11 +11,10 @@ namespace {
 // Vectors of four rows that fit into the registers at once, with a factor and a product beside them.
 constexpr int kMostRows = 12;
 
-// Rows [row, row + 4 B) of column j minus what the columns before it explain. Written out by `b` = 0 .. B - 1, because a
-// loop over them keeps the sums in memory.
+// Rows [row, row + 4 B) of column j minus what the columns before it explain. Written out by `b` = 0 .. B - 1, because
+// a loop over them keeps the sums in memory.
 template <int... b>
-void reduce_rows(ContactFactor& factor, std::int32_t j, std::int32_t row,
-                 std::integer_sequence<int, b...>) PALPATE_RT {
+void reduce_rows(ContactFactor& factor, std::int32_t j, std::int32_t row, std::integer_sequence<int, b...>) PALPATE_RT {
   double* column = factor.column[j] + row;
   Double4 rest[] = {load4(column + 4 * b)...};
   const double* before = factor.column[0] + row;
@@ -168,8 +167,8 @@ void remove_unknown(ContactFactor& factor, std::int32_t gone) PALPATE_RT {
   const std::int32_t rows = whole_lanes(factor.n, 4);
   alignas(32) double v[kContactStride];
   for (std::int32_t row = gone / 4 * 4; row < rows; row += 4) store(v + row, load4(factor.column[gone] + row));
-  for (std::int32_t i = gone / 4 * 4; i <= gone; ++i) v[i] = 0;                        // bound: 4
-  for (std::int32_t k = 0; k < gone; ++k) factor.column[k][gone] = 0;                  // bound: kMaxContacts
+  for (std::int32_t i = gone / 4 * 4; i <= gone; ++i) v[i] = 0;                           // bound: 4
+  for (std::int32_t k = 0; k < gone; ++k) factor.column[k][gone] = 0;                     // bound: kMaxContacts
   for (std::int32_t i = gone; i < rows; ++i) factor.column[gone][i] = i == gone ? 1 : 0;  // bound: kMaxContacts
   factor.inverse_pivot[gone] = 1;
   for (std::int32_t k = gone + 1; k < factor.n; ++k) {  // bound: kMaxContacts

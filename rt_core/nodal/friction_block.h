@@ -12,9 +12,9 @@ namespace palpate {
 // Number: Real, or Double4 for four contacts at once.
 template <class Number>
 struct FrictionBlockOf {
-  Number normal{};     // W_nn
-  Number lean[2] = {};   // W_nt
-  Number slide[2] = {};  // diagonal of W_tt - W_tn W_nt / W_nn, positive
+  Number normal{};                         // W_nn
+  Number lean[2] = {};                     // W_nt
+  Number slide[2] = {};                    // diagonal of W_tt - W_tn W_nt / W_nn, positive
   Number per_normal{}, per_slide[2] = {};  // 1 / normal, 1 / slide
   Number cosine{}, sine{};
 };
@@ -92,7 +92,8 @@ inline Push improve_friction(const FrictionBlock& block, Real mu, const Push& no
     Push stick;
     stick.tangent_N[0] = -c0 * block.per_slide[0];
     stick.tangent_N[1] = -c1 * block.per_slide[1];
-    stick.normal_N = frictionless_N - (block.lean[0] * stick.tangent_N[0] + block.lean[1] * stick.tangent_N[1]) * block.per_normal;
+    stick.normal_N =
+        frictionless_N - (block.lean[0] * stick.tangent_N[0] + block.lean[1] * stick.tangent_N[1]) * block.per_normal;
     const Real limit = mu * stick.normal_N;
     const Real size2 = stick.tangent_N[0] * stick.tangent_N[0] + stick.tangent_N[1] * stick.tangent_N[1];
     if (stick.normal_N >= 0 && size2 <= limit * limit) return stick;

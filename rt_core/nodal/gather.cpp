@@ -175,9 +175,8 @@ void find_normal_gaps(const ContactProblem& p, double (&gap)[kContactStride]) PA
   const Directions& d = p.directions;
   const Vec3 shift = p.per_N * p.force_N, turn = p.per_Nm * p.torque_Nm;
   for (std::int32_t i = 0; i < p.count; i += 4) {  // bound: kMaxContacts / 4
-    const auto along = [&](const float* u, const double* n, double s, const double* m, double t) PALPATE_RT {
-      return (widen4(u + i) + splat4(s)) * load4(n + i) + load4(m + i) * splat4(t);
-    };
+    const auto along = [&](const float* u, const double* n, double s, const double* m, double t)
+                           PALPATE_RT { return (widen4(u + i) + splat4(s)) * load4(n + i) + load4(m + i) * splat4(t); };
     store(gap + i, load4(p.offset_m + i) + along(p.motion_m[0], d.normal[0], shift.x, d.turn[0], turn.x) +
                        along(p.motion_m[1], d.normal[1], shift.y, d.turn[1], turn.y) +
                        along(p.motion_m[2], d.normal[2], shift.z, d.turn[2], turn.z));
@@ -276,10 +275,9 @@ void make_frames(const Model& model, ContactProblem& p, Real mu) PALPATE_RT {
     }
     const FrictionBlockOf<Double4> block = make_friction_block(w, mu);
     const Double4 c = block.cosine, s = block.sine;
-    const Vec3x4 turned[2] = {{c * frame[1].x + s * frame[2].x, c * frame[1].y + s * frame[2].y,
-                               c * frame[1].z + s * frame[2].z},
-                              {c * frame[2].x - s * frame[1].x, c * frame[2].y - s * frame[1].y,
-                               c * frame[2].z - s * frame[1].z}};
+    const Vec3x4 turned[2] = {
+        {c * frame[1].x + s * frame[2].x, c * frame[1].y + s * frame[2].y, c * frame[1].z + s * frame[2].z},
+        {c * frame[2].x - s * frame[1].x, c * frame[2].y - s * frame[1].y, c * frame[2].z - s * frame[1].z}};
     for (std::int32_t k = 0; k < 4 && i + k < p.count; ++k) {  // bound: 4
       ContactNode& node = p.node[i + k];
       for (int t = 0; t < 2; ++t) {

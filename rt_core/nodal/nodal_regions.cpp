@@ -80,6 +80,7 @@ Real far_share(const Model& model, Real local_J, Real energy_J) PALPATE_RT {
     case NodalCarry::kRest:
       return 0;
     case NodalCarry::kFarField:
+    case NodalCarry::kTurned:
       break;
   }
   return energy_J > 0 ? 1 - min_of(local_J / energy_J, 1.0) : 0;
@@ -128,6 +129,8 @@ void fit_motions(const Model& model, State& state, const Scratch& scratch) PALPA
   }
   for (std::int32_t s = 0; s < kMaxRegions; ++s) {  // bound: kMaxRegions
     state.nodal.motion[s] = fit[s].result(kBlur * model.params.cluster_distance_m, state.nodal.far_share);
+    const bool turned = model.params.nodal_carry == static_cast<std::int32_t>(NodalCarry::kTurned);
+    state.nodal.motion[s].finite = turned ? 1 : 0;
     state.nodal.motion[s].growth = growth_under(state.nodal.motion[s], -state.region[s].wrench_w.force_N);
     state.nodal.motion[s].reach_m = square_root(reach2[s]) + 2 * model.params.cluster_distance_m;
   }

@@ -12,6 +12,7 @@ struct RegionMotion {
   Vec3 rotation_rad;
   double reach_m = 0;  // rest points farther from the centre are not carried
   double growth = 0;   // of the motion by finite rotation, see bend_of()
+  double finite = 0;   // 1: finite rotation counts, 0: it does not
 };
 
 inline Vec3 carry_at(const RegionMotion& motion, Vec3 rest_w) PALPATE_RT {
@@ -20,11 +21,11 @@ inline Vec3 carry_at(const RegionMotion& motion, Vec3 rest_w) PALPATE_RT {
 
 // What finite rotation adds to the linear motion, to second order. A body that turns by r about a root at -d under a
 // force f, held by a spring k: its end moves by t = r x d and, because it turns, by r x t / 2; and the force's lever
-// changes with the turn, which makes k into k + f . d and all the motion grow by -f . d / k = f . (r x t) / (f . t). Both
-// follow from the complementary energy f . t / 2 + f . (r x t) / 2. An arm that bends instead has 0.8 of the first for a
-// load at its end, 2/3 when bent evenly.
+// changes with the turn, which makes k into k + f . d and all the motion grow by -f . d / k = f . (r x t) / (f . t).
+// Both follow from the complementary energy f . t / 2 + f . (r x t) / 2. An arm that bends instead has 0.8 of the first
+// for a load at its end, 2/3 when bent evenly.
 inline Vec3 bend_of(const RegionMotion& motion, Vec3 carry) PALPATE_RT {
-  return 0.5 * cross(motion.rotation_rad, carry) + motion.growth * carry;
+  return motion.finite * (0.5 * cross(motion.rotation_rad, carry) + motion.growth * carry);
 }
 // The growth under a force on the body. Beyond this no linear body is meant: a clip on its tube needs 0.2.
 inline constexpr double kMostGrowth = 0.25;

@@ -59,7 +59,7 @@ void find_clusters(const Model& model, const State& state, const Scratch& scratc
   sort_by_point(scratch, out);
   Kinship kin;
   find_kinship(model, scratch, out, kin);
-  std::int32_t set[kMaxContacts];                    // rank of the lowest contact of each contact's set
+  std::int32_t set[kMaxContacts];  // rank of the lowest contact of each contact's set
   std::int32_t sets = 0;
   for (std::int32_t i = 0; i < out.contacts; ++i) {  // bound: kMaxContacts
     set[i] = i;

@@ -57,11 +57,10 @@ const Mistake kMistakes[] = {
     {"precision", "[body.fem]\nprecision = \"half\"\n", "s.toml:14: body.fem.precision", "single"},
     {"gauges", "[body.fem]\nstrain_gauges = 17\n", "s.toml:14: body.fem.strain_gauges", "0 to 16"},
     {"law", "[friction]\nlaw = \"return_map\"\n", "s.toml:14: friction.law", "coulomb"},
-    {"mu_dynamic", "[friction]\nlaw = \"coulomb\"\nmu_dynamic = 0.3\n", "s.toml:15: friction.mu_dynamic",
-     "no effect"},
+    {"mu_dynamic", "[friction]\nlaw = \"coulomb\"\nmu_dynamic = 0.3\n", "s.toml:15: friction.mu_dynamic", "no effect"},
     {"skeleton", "[skeleton]\nanchors_max = 4\n", "s.toml:13: skeleton", "remove the table"},
-    {"hull", "[[tool.piece]]\nshape = \"hull\"\nvertices_mm = [[0,0,0],[9,0,0],[0,9,0],[0,0,9]]\n", "tool.piece[1].shape",
-     "boxes"},
+    {"hull", "[[tool.piece]]\nshape = \"hull\"\nvertices_mm = [[0,0,0],[9,0,0],[0,9,0],[0,0,9]]\n",
+     "tool.piece[1].shape", "boxes"},
     // The mesh and its solution.
     {"linear_nearly_incompressible", "[body.fem]\norder = \"linear\"\n", "body.shape", "0.49"},
     {"too_many_nodes", "[body.fem]\nedge_mm = 0.5\n", "body.shape", "coarse"},
@@ -70,8 +69,7 @@ const Mistake kMistakes[] = {
 TEST(NodalScene, EveryMistakeNamesPlaceRangeAndRemedy) {
   for (const Mistake& mistake : kMistakes) {
     std::string text = kBlock + std::string(mistake.lines);
-    if (std::string(mistake.name) == "linear_nearly_incompressible")
-      text.replace(text.find("0.45"), 4, "0.495");
+    if (std::string(mistake.name) == "linear_nearly_incompressible") text.replace(text.find("0.45"), 4, "0.495");
     const std::string error = error_of(text);
     EXPECT_NE(error.find(mistake.where), std::string::npos) << mistake.name << ": " << error;
     EXPECT_NE(error.find(mistake.says), std::string::npos) << mistake.name << ": " << error;
@@ -97,10 +95,12 @@ TEST(NodalScene, FiniteElementsNeedTheirBackEnd) {
 // A mesh of one flat tetrahedron, and a file that is none.
 TEST(NodalScene, BadMeshFilesAreNamed) {
   const std::string file = testing::TempDir() + "/flat.msh";
-  std::ofstream(file) << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 1 1 0\n$EndNodes\n"
-                         "$Elements\n1\n1 4 2 0 1 1 2 3 4\n$EndElements\n";
+  std::ofstream(file)
+      << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 1 1 0\n$EndNodes\n"
+         "$Elements\n1\n1 4 2 0 1 1 2 3 4\n$EndElements\n";
   std::string text = kBlock;
-  text.replace(text.find("shape = \"box\"\nsize_mm = [20, 20, 20]\n"), 37, "shape = \"tets\"\nmesh = \"" + file + "\"\n");
+  text.replace(text.find("shape = \"box\"\nsize_mm = [20, 20, 20]\n"), 37,
+               "shape = \"tets\"\nmesh = \"" + file + "\"\n");
   EXPECT_NE(error_of(text).find("body."), std::string::npos) << error_of(text);
   std::ofstream(file) << "no mesh\n";
   EXPECT_NE(error_of(text).find(file), std::string::npos) << error_of(text);

@@ -14,7 +14,7 @@ namespace {
 SceneDesc pinch_scene() { return load_scene(PALPATE_SOURCE_DIR "/config/scenes/pinch_block.toml"); }
 
 struct Seen {
-  int both = 0, single = 0;   // ticks with two regions, with one
+  int both = 0, single = 0;  // ticks with two regions, with one
   double lift_N = 0, sideways_N = 0, squeeze_N = 0;
   double residual_m = 0;
   std::uint64_t status = 0, hash = 0;
@@ -52,8 +52,8 @@ TEST(Pinch, TheScenesPathPinchesLiftsAndLetsGo) {
   const SceneDesc desc = pinch_scene();
   const BakedScene scene(desc);
   const Seen seen = play(scene, desc);
-  std::printf("pinch: %d ticks with both jaws, squeeze %.2f N, lift %.2f N, sideways %.2f N, residual %.1e m\n", seen.both,
-              seen.squeeze_N, seen.lift_N, seen.sideways_N, seen.residual_m);
+  std::printf("pinch: %d ticks with both jaws, squeeze %.2f N, lift %.2f N, sideways %.2f N, residual %.1e m\n",
+              seen.both, seen.squeeze_N, seen.lift_N, seen.sideways_N, seen.residual_m);
   EXPECT_GT(seen.both, 3000);
   EXPECT_LT(seen.single, 100);  // both jaws arrive and leave together
   EXPECT_GT(seen.squeeze_N, 3);
