@@ -235,6 +235,9 @@ class Compiler {
     for (std::size_t i = 0; i < image_.piece.size(); ++i) {
       image_.piece[i].joint = hand_.piece_joint[i];
       image_.piece[i].group = hand_.piece_finger[i];
+      const std::int32_t part = image_.piece[i].part;
+      if (part <= kHandParts && !scene_.source.has("shape.radius_mm"))
+        image_.piece[i].neighbourhood_m = hand_parts()[static_cast<std::size_t>(part - 1)].neighbourhood_radius_m;
     }
     image_.joint = hand_.joint;
     image_.grasp_w.push_back({desc.grasp_position_m, rotation_of(desc.grasp_rotation_rad)});

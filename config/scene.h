@@ -80,10 +80,13 @@ struct SkeletonDesc {
 };
 
 enum class ContactLaw : std::int32_t { kDuffing, kCubic, kHertz, kTool, kTable };
+// What a tool point touches. Laws of a whole tip (kTool, kTable) always have the smooth surface.
+enum class ContactSurface : std::int32_t { kFacets, kSmooth };
 enum class DuffingCoefficient : std::int32_t { kStatic, kPaper };
 struct ContactDesc {
   ContactLaw law = ContactLaw::kDuffing;
   ContactWeight weight = ContactWeight::kWinkler;
+  ContactSurface surface = ContactSurface::kFacets;
   double reference_area_m2 = kAuto;
   double max_depth_m = 0.006;
   double cluster_distance_m = kAuto;
@@ -137,7 +140,10 @@ struct PairDesc {
   double c_m_per_N = 0;
   double h_ab_m_per_N2 = 0, h_ba_m_per_N2 = 0;
 };
+// Where the curves of contact.law = "table" come from: a CSV of measured presses, or presses the baker makes.
+enum class TableSource : std::int32_t { kFile, kFem };
 struct TableDesc {
+  TableSource source = TableSource::kFile;
   std::string file;
   bool smooth = false;
 };
@@ -182,8 +188,10 @@ struct PieceDesc {
 
 // Which fingers a hand's grasp uses: thumb and index; with the middle finger; all.
 enum class GraspFingers : std::int32_t { kTwo, kThree, kFive };
+enum class HandSide : std::int32_t { kRight, kLeft };
 struct HandDesc {
   GraspFingers fingers = GraspFingers::kFive;
+  HandSide side = HandSide::kRight;
   Vec3 grasp_position_m;  // palm's middle, when the hand holds the body
   Vec3 grasp_rotation_rad;
   double squeeze_m = 0.003;

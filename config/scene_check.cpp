@@ -1,5 +1,6 @@
 // Rules between keys: what one key's value allows or forbids for another.
 #include <algorithm>
+#include <cmath>
 
 #include "config/config_error.h"
 #include "config/scene.h"
@@ -130,6 +131,24 @@ void check_body(const SceneDesc& scene) {
              " is larger than skeleton.anchors_max = " + std::to_string(scene.skeleton.anchors_max) + "; lower it");
 }
 
+// Tables that the baker presses itself: the layer, if the scene states one, is the body's own height.
+void check_presses(const SceneDesc& scene) {
+  for (const char* key : {"file", "smooth"})
+    if (scene.source.has(std::string("contact.table.") + key))
+      fail(scene, std::string("contact.table.") + key,
+           "has no effect with contact.table.source = \"fem\"; remove it or set source = \"file\"");
+  const double stated = scene.layer.thickness_m;
+  const double height = scene.body.shape == BodyShape::kBox ? scene.body.size_m.y : scene.body.height_m;
+  if (stated > 0 && scene.body.shape != BodyShape::kBox && scene.body.shape != BodyShape::kCylinder)
+    fail(scene, "contact.layer.thickness_mm",
+         "has no effect on this body with contact.table.source = \"fem\"; remove it");
+  const auto in_mm = [](double length_m) { return number_text(std::round(1e9 * length_m) / 1e6) + " mm"; };
+  if (stated > 0 && !(std::abs(stated - height) <= 1e-9))
+    fail(scene, "contact.layer.thickness_mm",
+         in_mm(stated) + ", but the body that contact.table.source = \"fem\" presses is " + in_mm(height) +
+             " high; make them equal");
+}
+
 void check_contact(const SceneDesc& scene) {
   const auto unused_table = [&](const char* name, ContactLaw law, const char* law_name) {
     if (scene.contact.law != law && scene.source.has(std::string("contact.") + name))
@@ -139,11 +158,15 @@ void check_contact(const SceneDesc& scene) {
   unused_table("duffing", ContactLaw::kDuffing, "duffing");
   unused_table("cubic", ContactLaw::kCubic, "cubic");
   unused_table("hertz", ContactLaw::kHertz, "hertz");
+  const bool pressed = scene.contact.law == ContactLaw::kTable && scene.table.source == TableSource::kFem;
   for (const char* table : {"tip", "layer", "series", "pair", "pair[0]"})
-    unused_table(table, ContactLaw::kTool, "tool");
+    if (!(pressed && std::string(table) == "layer")) unused_table(table, ContactLaw::kTool, "tool");
   unused_table("table", ContactLaw::kTable, "table");
-  if (scene.contact.law == ContactLaw::kTable && scene.table.file.empty())
-    fail(scene, "contact.table.file", "missing; law = \"table\" needs the path of a CSV file");
+  if (pressed)
+    check_presses(scene);
+  else if (scene.contact.law == ContactLaw::kTable && scene.table.file.empty())
+    fail(scene, "contact.table.file",
+         "missing; law = \"table\" needs the path of a CSV file, or contact.table.source = \"fem\"");
   if (scene.contact.law == ContactLaw::kCubic && !(scene.cubic.k1_N_per_m > 0 || scene.cubic.k3_N_per_m3 > 0))
     fail(scene, "contact.cubic", "k1_N_per_m and k3_N_per_m3 are both 0: no force; set at least one");
   if (scene.contact.law == ContactLaw::kDuffing && !(scene.duffing.omega0 > 0 || scene.duffing.beta0sq_eps > 0))
@@ -155,6 +178,7 @@ void check_contact(const SceneDesc& scene) {
 // Laws of whole tips: what friction, coupling and the pieces must be.
 void check_tips(const SceneDesc& scene) {
   if (scene.contact.law != ContactLaw::kTool && scene.contact.law != ContactLaw::kTable) return;
+  check_effect(scene, "contact", {"surface"}, {}, "with laws of whole tips, which always have the smooth surface");
   const FrictionLaw friction = scene.friction.law;
   if (friction == FrictionLaw::kReturnMap || friction == FrictionLaw::kPaper)
     fail(scene, "friction.law",
@@ -216,7 +240,7 @@ void check_backend(const SceneDesc& scene) {
   }
   for (const char* table : {"skeleton", "shape", "coupling", "contact.duffing", "contact.cubic", "contact.hertz"})
     no_table(table, "with contact.backend = \"nodal\"");
-  check_effect(scene, "contact", {"law", "weight", "reference_area_mm2", "max_depth_mm"}, {},
+  check_effect(scene, "contact", {"law", "weight", "surface", "reference_area_mm2", "max_depth_mm"}, {},
                "with contact.backend = \"nodal\"");
   if (scene.friction.law != FrictionLaw::kNone && !coulomb)
     fail(scene, "friction.law", "is not available with contact.backend = \"nodal\"; use \"none\" or \"coulomb\"");
@@ -363,8 +387,8 @@ void check_scene(const SceneDesc& scene) {
   check_contact(scene);
   check_friction(scene);
   check_backend(scene);
-  check_tool(scene);
   check_tips(scene);
+  check_tool(scene);
   check_articulation(scene);
   check_device_and_path(scene);
 }

@@ -142,10 +142,14 @@ const KeySpec kContact[] = {
     choice<&ContactDesc::law>("law", "duffing|cubic|hertz|tool|table",
                               "force per unit weight of each tool point, f = k1 D + k3 D^3: from Duffing parameters, "
                               "given directly, or fitted to Hertz' contact; or the response of the whole tip: of the "
-                              "piece's own shape (tool), or measured curves (table)"),
+                              "piece's own shape (tool), or curves of presses (table)"),
     choice<&ContactDesc::weight>("weight", "winkler|area|paper",
                                  "weight of a tool point: area / reference area (force continuous as points enter and "
                                  "leave), share of the area in contact, or 1/n"),
+    choice<&ContactDesc::surface>("surface", "facets|smooth",
+                                  "what a tool point touches: the triangles, whose edges are felt by a tool of few "
+                                  "points; or the smooth surface they stand for, about 1,400 instructions more a "
+                                  "point. laws tool and table: always smooth"),
     number_or_auto<&ContactDesc::reference_area_m2>(
         "reference_area_mm2", 1e-3, 1e8, kMilliSquared,
         "winkler: contact area over which the law holds as stated; auto: mean area of a tool point"),
@@ -215,24 +219,30 @@ const KeySpec kLayer[] = {
 const KeySpec kSeries[] = {
     number_or_auto<&SeriesDesc::c0_m_per_N>(
         "c0_mm_per_N", -1e3, 1e3, kMilli,
-        "far-field compliance c0; auto: from one linear press by finite elements (bodies of revolution)"),
+        "far-field compliance c0; auto: from a large-strain press by finite elements (bodies of revolution)"),
     number_or_auto<&SeriesDesc::c1_m_per_N2>("c1_mm_per_N2", -1e3, 1e3, kMilli,
                                              "its change with the force, c1; auto: from one large-strain press"),
 };
 const KeySpec kPair[] = {
     integer<&PairDesc::piece_a>("piece_a", 0, kMaxPieces - 1, "a tool piece, counted from 0"),
     integer<&PairDesc::piece_b>("piece_b", 0, kMaxPieces - 1, "another"),
-    number<&PairDesc::c_m_per_N>("c_mm_per_N", -1e3, 1e3, kMilli, "travel of one per newton on the other"),
-    number<&PairDesc::h_ab_m_per_N2>("h_ab_mm_per_N2", -1e3, 1e3, kMilli,
-                                     "second order: energy h_ab F_a^2 F_b / 2 + h_ba F_b^2 F_a / 2"),
-    number<&PairDesc::h_ba_m_per_N2>("h_ba_mm_per_N2", -1e3, 1e3, kMilli, "second order, the other way round"),
+    number_or_auto<&PairDesc::c_m_per_N>(
+        "c_mm_per_N", -1e3, 1e3, kMilli,
+        "travel of one per newton on the other; auto: from presses by finite elements (standing cylinders, boxes)"),
+    number_or_auto<&PairDesc::h_ab_m_per_N2>(
+        "h_ab_mm_per_N2", -1e3, 1e3, kMilli,
+        "second order: energy h_ab F_a^2 F_b / 2 + h_ba F_b^2 F_a / 2; auto: likewise"),
+    number_or_auto<&PairDesc::h_ba_m_per_N2>("h_ba_mm_per_N2", -1e3, 1e3, kMilli,
+                                             "second order, the other way round; auto: likewise"),
 };
 const KeySpec kTable[] = {
+    choice<&TableDesc::source>("source", "file|fem",
+                               "a CSV of measured presses, or presses by finite elements when the scene is baked "
+                               "(standing cylinder, box, sphere, ellipsoid of revolution about y)"),
     text<&TableDesc::file>(
         "file", 4096,
         "CSV of presses, relative to the scene file: depth_mm,force_N, or with x_mm,y_mm,z_mm before "
-        "them for presses at several places; each starts at 0,0",
-        true),
+        "them for presses at several places; each starts at 0,0"),
     boolean<&TableDesc::smooth>("smooth", "pool rows whose force falls instead of refusing them"),
 };
 const KeySpec kFriction[] = {
@@ -257,7 +267,9 @@ const KeySpec kShape[] = {
                                       "how anchor displacements spread over the surface"),
     choice<&ShapeDesc::tail>("tail", "constant|linear", "polynomial of the rbf; linear needs 4 anchors not in a plane"),
     choice<&ShapeDesc::neighbourhood>("neighbourhood", "none|log|log_c1|punch", "dent around a contact"),
-    number<&ShapeDesc::radius_m>("radius_mm", 0.001, 1000, kMilli, "radius R of the dent"),
+    number<&ShapeDesc::radius_m>("radius_mm", 0.001, 1000, kMilli,
+                                 "radius R of the dent; a hand whose scene leaves it out takes that of each finger "
+                                 "part from Cui & Xiao 2008, Table I"),
 };
 const KeySpec kCoupling[] = {
     choice<&CouplingDesc::law>("law", "none|coupled|temporal",
@@ -297,6 +309,9 @@ const KeySpec kHand[] = {
     choice<&HandDesc::fingers>("fingers", "two|three|five",
                                "that take part: thumb and index; with the middle finger; all. The others stay "
                                "stretched out"),
+    choice<&HandDesc::side>(
+        "side", "right|left",
+        "left: the mirror image of the right hand in y = 0 of its frame, so the thumb's side is -y"),
     list<&HandDesc::grasp_position_m>(kVec3, "grasp_mm", -1e4, 1e4, kMilli,
                                       "the palm's middle when the hand holds the body; the preshape is made for it"),
     list<&HandDesc::grasp_rotation_rad>(
@@ -401,7 +416,7 @@ const TableSpec kTables[] = {
      open<&SceneDesc::series>},
     {"contact.pair", true, "With law = \"tool\": how two tips lean on one another; other pairs use the far field.",
      kPair, open_pair},
-    {"contact.table", false, "With law = \"table\": measured presses.", kTable, open<&SceneDesc::table>},
+    {"contact.table", false, "With law = \"table\": presses, measured or computed.", kTable, open<&SceneDesc::table>},
     {"contact.nodal", false, "With backend = \"nodal\".", kNodal, open<&SceneDesc::nodal>},
     {"friction", false, "Friction per contact region.", kFriction, open<&SceneDesc::friction>},
     {"shape", false, "How the deformed surface is drawn. No effect on forces.", kShape, open<&SceneDesc::shape>},

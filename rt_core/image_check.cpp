@@ -155,6 +155,7 @@ ImageResult check_piece(const Model& model, std::size_t i) noexcept {
     if (!(extent >= 0 && extent < kHuge)) return not_finite("piece.half_extent_m", i);
   if (!(p.margin_m >= 0 && p.margin_m < kHuge)) return not_finite("piece.margin_m", i);
   if (!(p.bounding_radius_m > 0 && p.bounding_radius_m < kHuge)) return not_finite("piece.bounding_radius_m", i);
+  if (!(p.neighbourhood_m >= 0 && p.neighbourhood_m < kHuge)) return not_finite("piece.neighbourhood_m", i);
   if (p.shape < 0 || p.shape > static_cast<int32_t>(PieceShape::kHull)) return broken("piece.shape", i);
   const int64_t last_point = int64_t{p.first_point} + p.point_count;
   if (p.first_point < 0 || p.point_count < 0 || last_point > model.sizes.n_tool_point)

@@ -142,6 +142,7 @@ struct ToolPiece {
   std::int32_t joint = -1;                // that carries it; -1: fixed to the tool frame
   std::int32_t group = 0;  // articulated tools: contacts of different groups (fingers, jaws) never share a region
   std::int32_t reserved = 0;
+  double neighbourhood_m = 0;  // radius of the dent it makes; 0: the scene's
 };
 // One degree of freedom of an articulated tool. Its link's frame in the tool frame is
 //   link = link(parent) * before * motion(q) * after,   motion = rotation about z or translation along z,
@@ -274,7 +275,7 @@ struct BeamResponse {
     "strain per newton: 3 n_vertex rows of 6 components (xx yy zz xy yz zx) per gauge")                         \
   X(Joint, joint, n_joint, "tool", "joints of an articulated tool, parents first")                              \
   X(Pose, grasp_w, n_grasp, "world", "tool pose for which the closed joint positions were made: 0 or 1")        \
-  X(CornerNormals, corner_normal, n_corner, "world", "smooth normals; empty for ResponseLaw::kPoints")          \
+  X(CornerNormals, corner_normal, n_corner, "world", "smooth normals; empty where the facets are touched")      \
   X(TipLaw, tip_law, n_tip_law, "-", "law of each piece's tip (kTip only)")                                     \
   X(FactorKnot, factor, n_factor, "-", "factor tables of the tip laws, kFactorKnots each")                      \
   X(TipPair, tip_pair, n_tip_pair, "-", "coupling of pairs of pieces; others use the far field")                \

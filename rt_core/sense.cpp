@@ -54,7 +54,7 @@ void sense(const Model& model, State& state, Scratch& scratch, const Input& inpu
   }
   Twist tool;
   const Twist handle = twist_between(state.device_previous_w, state.device_w);
-  if (!follow(model, state.contact_stiffness, handle, tool)) scratch.status |= Status::kCouplingSingular;
+  if (!follow(model, state, handle, tool)) scratch.status |= Status::kCouplingSingular;
   state.tool_w = moved(state.safety.tool_corrected_w, tool);
 }
 

@@ -23,7 +23,7 @@ void visit_region(const Region& r, Visitor&& visit) PALPATE_RT {
   visit("region.energy_J", r.energy_J, r.tangent_N_per_m);
   visit("region.lean_tool_m", r.lean_tool_m, r.lean_normal_tool);
   visit("region.stretch_w", r.stretch_w);
-  visit("region.tangential_k_N_per_m", r.tangential_k_N_per_m);
+  visit("region.tangential_k_N_per_m", r.tangential_k_N_per_m, r.reversal_N_per_m);
   visit("region.friction", static_cast<std::int32_t>(r.friction));
   visit("region.origin_w", r.origin_w);
 }

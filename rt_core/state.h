@@ -50,6 +50,7 @@ struct Region {
   // friction memory
   Vec3 stretch_w;                   // tangential elastic stretch: material point minus origin of deformation
   double tangential_k_N_per_m = 0;  // Mindlin variant: stiffness of the last tick
+  double reversal_N_per_m = 0;      // while it slips: its stiffness against motion back, along -stretch_w; else 0
   FrictionMode friction = FrictionMode::kFree;
   std::int32_t reserved = 0;
   Vec3 origin_w;  // origin of the deformation p_o on the rest surface

@@ -8,6 +8,8 @@ class App;
 
 namespace palpate {
 
+struct JointOptions;
+
 // Exit codes of every command (sysexits style, kept small).
 inline constexpr int kExitOk = 0;
 inline constexpr int kExitFailed = 1;       // it ran, and the answer is "no": replay differs, faults latched
@@ -24,5 +26,8 @@ void add_latency_command(CLI::App& app, int& exit_code);
 void add_picture_command(CLI::App& app, int& exit_code);
 void add_grasp_command(CLI::App& app, int& exit_code);
 void add_doctor_command(CLI::App& app, int& exit_code);
+
+// --close, --joint and --joints, for commands that drive articulated tools. `options` must outlive the parsing.
+void add_joint_options(CLI::App& command, JointOptions& options);
 
 }  // namespace palpate

@@ -11,6 +11,7 @@
 #include "sim_host/anchor_loads.h"
 #include "sim_host/cli.h"
 #include "sim_host/force_csv.h"
+#include "sim_host/joint_script.h"
 #include "sim_host/picture.h"
 #include "sim_host/plot.h"
 #include "sim_host/scene_model.h"
@@ -24,8 +25,10 @@ namespace {
 struct PressOptions {
   std::string scene, path = "demo", out = "forces.csv", vtu, png, plot, anchors, anchor_plot;
   std::vector<int> plotted_anchors;
+  SceneOverlays overlays;
   int every = 1;
   bool resample = false;
+  JointOptions joints;
   double hand_N_per_m = -1;  // -1: the scene's for the demo, otherwise none
 };
 
@@ -129,9 +132,14 @@ void write_pictures(const PressOptions& options, const Model& model, const Colle
 }
 
 int run_press(const PressOptions& options) {
-  const SceneModel scene(options.scene);
+  const SceneModel scene(options.scene, options.overlays);
   const Model& model = scene.model();
-  const std::vector<TimedPose> poses = poses_of(options, scene);
+  std::vector<TimedPose> poses = poses_of(options, scene);
+  std::vector<TimedJoints> scripted;
+  for (const TimedPose& pose : poses) scripted.push_back({pose.time_s, pose.joints});
+  const JointScript joints(options.joints, model, std::move(scripted));
+  for (TimedPose& pose : poses)
+    if (!joints.empty()) pose.joints = joints.at(pose.time_s);
   ForceCsv csv(options.out);
   std::optional<VtuSeries> vtu;
   if (!options.vtu.empty()) vtu.emplace(options.vtu);
@@ -168,6 +176,9 @@ void add_press_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<PressOptions>();
   CLI::App* command = app.add_subcommand("press", "Move the tool through given poses and write the forces, no device");
   command->add_option("SCENE", options->scene, "scene (.toml) or image (.pal)")->required();
+  command->add_option("--with", options->overlays.file,
+                      "lay a file with some of the scene's tables over it; repeatable");
+  command->add_option("--set", options->overlays.setting, "KEY=VALUE: set one key of the scene; repeatable");
   command->add_option("--path", options->path, "tool poses (CSV), or `demo`: the motion the scene scripts for its hand")
       ->capture_default_str();
   command->add_option("--out", options->out, "table to write (CSV)")->capture_default_str();
@@ -189,11 +200,14 @@ void add_press_command(CLI::App& app, int& exit_code) {
                    "default: 0, or the scene's hand with `--path demo`")
       ->check(CLI::Range(0.0, 1e6));
   command->add_flag("--resample", options->resample, "interpolate the poses by their time_s to one per tick period");
+  add_joint_options(*command, options->joints);
   command->footer(
       "One pose is one tick, friction history included. Columns of both tables: docs/press.md.\n"
       "Examples:\n"
       "  palpate press config/scenes/ellipsoid_mallet.toml --path demo --out forces.csv --png press.png\n"
-      "  palpate press mallet.pal --path poses.csv --out forces.csv --vtu surface --every 10");
+      "  palpate press mallet.pal --path poses.csv --out forces.csv --vtu surface --every 10\n"
+      "  palpate press config/scenes/tools_on_layer.toml --with config/scenes/tools/flat_3_2.toml --plot flat.svg\n"
+      "  palpate press config/scenes/grasp_cylinder_5.toml --close 1,0.8,0,0,0 --png pinch.png");
   command->callback([options, &exit_code] { exit_code = run_press(*options); });
 }
 

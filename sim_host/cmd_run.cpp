@@ -86,6 +86,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command->add_option("--path", options->path,
                       "motion of the simulated hand, CSV: time_s,x_mm,y_mm,z_mm[,rx_deg,ry_deg,rz_deg]; default: the "
                       "scene's own");
+  add_joint_options(*command, options->joints);
   command->add_option("--image", options->image,
                       "where to write the image of a .toml scene; default: beside the recording");
   command->add_option("--cpu", options->cpu, "CPU of the real-time thread")->check(CLI::Range(-1, 1023));
@@ -107,7 +108,8 @@ void add_run_command(CLI::App& app, int& exit_code) {
       "Examples:\n"
       "  palpate run config/scenes/ellipsoid_mallet.toml --duration 10 --record run.plr\n"
       "  palpate run mallet.pal --device can:can0 --cpu 3 --priority 80 --no-record\n"
-      "  palpate run mallet.pal --path hand.csv --live --worst 16");
+      "  palpate run mallet.pal --path hand.csv --live --worst 16\n"
+      "  palpate run config/scenes/grasp_cylinder_5.toml --close 0.7 --joint index_tip_flexion=20");
   command->callback([settings, &exit_code] { exit_code = run(*settings); });
 }
 

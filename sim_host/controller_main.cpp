@@ -23,6 +23,7 @@
 #include "hal/shared_memory.h"
 #include "rt_core/image.h"
 #include "sim_host/build_id.h"
+#include "sim_host/heap_count.h"
 #include "sim_host/host_port.h"
 
 namespace palpate {
@@ -192,9 +193,15 @@ constexpr bool kSanitized = true;
 constexpr bool kSanitized = false;
 #endif
 
+// What the loop's thread used while it ran.
+struct LoopUsage {
+  ThreadUsage thread;
+  long heap_calls = 0;  // -1: not counted
+};
+
 // The real-time thread: set-up, system-call filter, loop. Prints only before the filter is in place.
 LoopSummary run_loop(const Arguments& arguments, const Model& model, Core& core, HostConnection& host, DeviceBus& bus,
-                     const std::atomic<bool>& interrupted, ThreadUsage& usage) {
+                     const std::atomic<bool>& interrupted, LoopUsage& usage) {
   std::atomic<bool> stop{false};
   const auto* mailbox = static_cast<const MailboxRegion*>(host.mailbox.data());
   HostPort port(mailbox, static_cast<std::uint32_t>(kHostSilence_s / model.params.period_s), interrupted, stop);
@@ -216,13 +223,23 @@ LoopSummary run_loop(const Arguments& arguments, const Model& model, Core& core,
                           : ("REFUSED  system-call filter: " + reason).c_str());
     drain(bus);
     const ThreadUsage before = thread_usage();
+    const long heap_calls_before = heap_calls();
     Loop loop(device, clock, controller, sink, port, kinematics, loop_options(model, arguments), stop);
     summary = loop.run();
-    usage = thread_usage() - before;
+    const long heap_calls_after = heap_calls();
+    usage.heap_calls = heap_calls_after < 0 ? -1 : heap_calls_after - heap_calls_before;
+    usage.thread = thread_usage() - before;
     summary.faults |= port.faults();
   });
   thread.join();
   return summary;
+}
+
+void print_usage(const LoopUsage& usage) {
+  std::fprintf(stderr, "loop thread: %ld minor and %ld major page faults, %ld waits, %ld preemptions, ",
+               usage.thread.minor_faults, usage.thread.major_faults, usage.thread.waits, usage.thread.preemptions);
+  if (usage.heap_calls >= 0) std::fprintf(stderr, "%ld heap calls\n", usage.heap_calls);
+  if (usage.heap_calls < 0) std::fprintf(stderr, "heap calls not counted\n");
 }
 
 int run(int argc, char** argv) {
@@ -236,7 +253,7 @@ int run(int argc, char** argv) {
   DeviceAddress address;
   const std::unique_ptr<Transport> transport = connect_device(arguments, model.params.period_s, address);
   DeviceBus bus(*transport, address.profile, address.node);
-  ThreadUsage usage;
+  LoopUsage usage;
   const LoopSummary summary = run_loop(arguments, model, *core, host, bus, interrupted, usage);
   if (summary.end == LoopEnd::kSilentAtStart) {
     throw Failure{kSilentAtStart, "the device sent nothing at start: check power, cable, bus and node number"};
@@ -244,8 +261,7 @@ int run(int argc, char** argv) {
   std::fprintf(stderr, "controller: %llu ticks, %llu missed, %llu without a fresh sample, faults 0x%x\n",
                static_cast<unsigned long long>(summary.ticks), static_cast<unsigned long long>(summary.missed_slots),
                static_cast<unsigned long long>(summary.stale_ticks), summary.faults);
-  std::fprintf(stderr, "loop thread: %ld minor and %ld major page faults, %ld waits, %ld preemptions\n",
-               usage.minor_faults, usage.major_faults, usage.waits, usage.preemptions);
+  print_usage(usage);
   return summary.faults != 0 ? kFaulted : kOk;
 }
 

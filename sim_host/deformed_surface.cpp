@@ -7,6 +7,7 @@
 
 #include "rt_core/deform/surface.h"
 #include "rt_core/nodal/nodal.h"
+#include "sim_host/imprint.h"
 
 namespace palpate {
 
@@ -38,12 +39,16 @@ DeformedSurface rest_surface(const Model& model) {
   return surface;
 }
 
-// Fills the rest from rest_m, triangle and displacement_m.
-void finish(DeformedSurface& surface) {
+void finish_positions(DeformedSurface& surface) {
   surface.position_m.clear();
   for (std::size_t i = 0; i < surface.rest_m.size(); ++i) {
     surface.position_m.push_back(surface.rest_m[i] + surface.displacement_m[i]);
   }
+}
+
+// Fills the rest from rest_m, triangle and displacement_m.
+void finish(DeformedSurface& surface) {
+  finish_positions(surface);
   surface.normal = mesh_normals(surface.position_m, surface.triangle);
 }
 
@@ -81,6 +86,11 @@ void displace(const Model& model, const State& state, DeformedSurface& surface) 
     const std::int32_t vertex = i < model.vertex_m.size() ? static_cast<std::int32_t>(i) : -1;
     surface.displacement_m.push_back(displacement_at(model, field, surface.rest_m[i], vertex));
   }
+  if (static_cast<Articulation>(model.params.articulation) != Articulation::kHand) return;
+  finish_positions(surface);
+  imprint(model, state, surface.position_m);
+  for (std::size_t i = 0; i < surface.rest_m.size(); ++i)
+    surface.displacement_m[i] = surface.position_m[i] - surface.rest_m[i];
 }
 
 // Halves every edge; `normal` grows with the vertices.

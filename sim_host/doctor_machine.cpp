@@ -50,6 +50,19 @@ DoctorItem throttling(const DoctorSources& s) {
                 runtime ? fmt::format("{} us", *runtime) : "not readable", "sysctl kernel.sched_rt_runtime_us=-1");
 }
 
+// The soft-lockup detector wakes the kernel's stop thread (priority 99) on every watched processor, once in 4 s by
+// default: seen to preempt the loop in the laboratory, 2026-11-21.
+DoctorItem lockup_watchdog(const DoctorSources& s) {
+  const auto on = number(first_line(s.root / "proc/sys/kernel/watchdog"));
+  const auto cpus = first_line(s.root / "proc/sys/kernel/watchdog_cpumask");
+  const bool elsewhere = s.cpu >= 0 && cpus && !cpu_in_list(*cpus, s.cpu);
+  return judged("lockup watchdog off the real-time CPU", on.has_value(), on == 0 || elsewhere,
+                !on        ? "not readable"
+                : *on == 0 ? "off"
+                           : "on CPU " + cpus.value_or("?"),
+                "sysctl kernel.watchdog=0, or kernel.watchdog_cpumask=<the other CPUs>");
+}
+
 DoctorItem limit(const std::string& name, int resource, rlim_t needed, const std::string& remedy) {
   rlimit found{};
   const bool known = getrlimit(static_cast<__rlimit_resource>(resource), &found) == 0;
@@ -120,6 +133,7 @@ std::vector<DoctorItem> examine_machine(const DoctorSources& s) {
           boot_option(s, "nohz_full"),
           boot_option(s, "rcu_nocbs"),
           throttling(s),
+          lockup_watchdog(s),
           group_scheduling(s),
           limit("real-time priority limit", RLIMIT_RTPRIO, static_cast<rlim_t>(s.loop_priority),
                 "copy hal/system/palpate-limits.conf to /etc/security/limits.d and log in again"),

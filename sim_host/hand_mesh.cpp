@@ -106,8 +106,13 @@ SurfaceMesh palm_mesh() {
 
 }  // namespace
 
-SurfaceMesh hand_piece_mesh(const ToolPiece& piece) {
-  return piece.part == kPalmPart ? palm_mesh() : finger_part_mesh(piece);
+SurfaceMesh hand_piece_mesh(const ToolPiece& piece, bool left) {
+  if (piece.part != kPalmPart) return finger_part_mesh(piece);  // its own mirror image
+  SurfaceMesh palm = palm_mesh();
+  if (!left) return palm;
+  for (Vec3& p : palm.vertex_m) p.y = -p.y;
+  for (Corners& corners : palm.triangle) std::swap(corners[1], corners[2]);
+  return palm;
 }
 
 }  // namespace palpate

@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
+#include "config/hand/hand_model.h"
 #include "rt_core/articulate/carrier.h"
 #include "sim_host/plot.h"
 #include "sim_host/png_file.h"
+#include "sim_host/stroke_font.h"
 
 namespace palpate {
 
@@ -46,13 +49,15 @@ class Renderer {
     draw_anchors();
     for (std::size_t i = 0; i < model_.piece.size(); ++i) {
       const Pose carrier = carrier_w(model_, state_, static_cast<std::int32_t>(i));
-      tool_.draw(is_hand_ ? hand_render_mesh(model_.piece[i], carrier) : piece_mesh(model_, model_.piece[i], carrier),
+      tool_.draw(is_hand_ ? hand_render_mesh(model_.piece[i], carrier, is_left_hand(model_))
+                          : piece_mesh(model_, model_.piece[i], carrier),
                  projection_, kTool);
     }
     draw_arrows();
     make_shadow();
     Canvas canvas = resolve();
-    draw_labels(canvas);
+    draw_force_labels(canvas);
+    draw_title(canvas);
     return canvas;
   }
 
@@ -68,7 +73,8 @@ class Renderer {
   Colour shade(Colour base, const Surfel& surfel, int x, int y, float gloss) const;
   Colour solid_colour(int x, int y) const;
   float outline(int x, int y) const;
-  void draw_labels(Canvas& canvas) const;
+  void draw_force_labels(Canvas& canvas) const;
+  void draw_title(Canvas& canvas) const;
   void draw_legend(Canvas& canvas) const;
 
   const Model& model_;
@@ -310,13 +316,31 @@ void Renderer::draw_legend(Canvas& canvas) const {
   canvas.text(x1, top - 16 * unit, "(mm)", 15 * unit, kInk, Align::kMiddle);
 }
 
-void Renderer::draw_labels(Canvas& canvas) const {
+void Renderer::draw_force_labels(Canvas& canvas) const {
   const double unit = options_.height / 900.0;
-  for (const ForceLabel& label : labels_) {
+  // The largest first; a number that would cover one already there is left out (a hand has up to fifteen).
+  std::vector<ForceLabel> labels = labels_;
+  std::ranges::stable_sort(labels, std::greater{}, &ForceLabel::force_N);
+  struct Box {
+    double x, y, width;
+  };
+  std::vector<Box> placed;
+  const double size = 18 * unit;
+  for (const ForceLabel& label : labels) {
     const Vec3 at = projection_(label.tip_w);
-    canvas.text(at.x / samples_ + 12 * unit, at.y / samples_ + 4 * unit, fmt::format("{:.2f} N", label.force_N),
-                18 * unit, kArrowColour, Align::kStart, false, true);
+    const std::string number = fmt::format("{:.2f} N", label.force_N);
+    const Box box{at.x / samples_ + 12 * unit, at.y / samples_ + 4 * unit, text_width(number, size)};
+    const auto covers = [&](const Box& other) {
+      return std::abs(box.y - other.y) < size && box.x < other.x + other.width && other.x < box.x + box.width;
+    };
+    if (std::ranges::any_of(placed, covers)) continue;
+    placed.push_back(box);
+    canvas.text(box.x, box.y, number, size, kArrowColour, Align::kStart, false, true);
   }
+}
+
+void Renderer::draw_title(Canvas& canvas) const {
+  const double unit = options_.height / 900.0;
   Vec3 force;
   double depth = 0;
   int regions = 0;

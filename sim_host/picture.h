@@ -36,6 +36,6 @@ Colour displacement_colour(double t);
 // Surface of a tool piece in the world; `carrier_w` as rt_core/articulate/carrier.h has it.
 RenderMesh piece_mesh(const Model& model, const ToolPiece& piece, const Pose& carrier_w);
 // The same for a part of the hand, as people draw it.
-RenderMesh hand_render_mesh(const ToolPiece& piece, const Pose& carrier_w);
+RenderMesh hand_render_mesh(const ToolPiece& piece, const Pose& carrier_w, bool left);
 
 }  // namespace palpate

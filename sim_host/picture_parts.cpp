@@ -53,8 +53,8 @@ Colour displacement_colour(double t) {
   return mix(kStops[k], kStops[k + 1], static_cast<float>(place - static_cast<double>(k)));
 }
 
-RenderMesh hand_render_mesh(const ToolPiece& piece, const Pose& carrier_w) {
-  const SurfaceMesh mesh = hand_piece_mesh(piece);
+RenderMesh hand_render_mesh(const ToolPiece& piece, const Pose& carrier_w, bool left) {
+  const SurfaceMesh mesh = hand_piece_mesh(piece, left);
   const Pose pose = carrier_w * piece.pose_tool;
   RenderMesh render;
   render.normal = vertex_normals(mesh);

@@ -13,6 +13,7 @@
 #include <string_view>
 
 #include "hal/hand_path.h"
+#include "sim_host/joint_script.h"
 
 namespace palpate {
 
@@ -143,18 +144,6 @@ JointCommand between(const JointCommand& a, const JointCommand& b, double s) {
   return joints;
 }
 
-// The command at each point of a path.
-std::vector<JointCommand> commands_of(const PathDesc& path) {
-  std::vector<JointCommand> commands;
-  JointCommand now;
-  for (const PathPoint& point : path.point) {
-    for (std::size_t f = 0; !point.closing.empty() && f < kMaxFingers; ++f)
-      now.closing[f] = static_cast<float>(point.closing[point.closing.size() == 1 ? 0 : f]);
-    commands.push_back(now);
-  }
-  return commands;
-}
-
 }  // namespace
 
 std::vector<TimedPose> read_poses(std::istream& text, const std::string& name, double period_s) {
@@ -214,7 +203,7 @@ std::vector<TimedPose> scripted_poses(const PathDesc& path, double period_s) {
   for (const PathPoint& p : path.point) points.push_back({p.time_s, {p.position_m, rotation_by(p.rotation_rad)}});
   const HandPath hand(std::move(points));
   if (!hand.error().empty()) throw std::runtime_error("path: " + hand.error());
-  const std::vector<JointCommand> commands = commands_of(path);
+  const std::vector<TimedJoints> commands = scripted_joints(path);
   std::vector<TimedPose> poses;
   const auto ticks = static_cast<std::int64_t>(std::floor(hand.end_s() / period_s + 1e-6));
   std::size_t k = 0;
@@ -225,7 +214,7 @@ std::vector<TimedPose> scripted_poses(const PathDesc& path, double period_s) {
     const double span_s = path.point[next].time_s - path.point[k].time_s;
     const double u = span_s > 0 ? clamp_to((time_s - path.point[k].time_s) / span_s, 0, 1) : 0;
     const double s = u * u * u * (10 + u * (-15 + 6 * u));  // minimum jerk, as the pose
-    poses.push_back({time_s, hand.at(time_s).pose, between(commands[k], commands[next], s)});
+    poses.push_back({time_s, hand.at(time_s).pose, between(commands[k].joints, commands[next].joints, s)});
   }
   return poses;
 }

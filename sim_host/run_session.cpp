@@ -153,9 +153,10 @@ CandumpOptions candump_options(const DeviceAddress& address) {
 // Watches the controller until the time is over, a signal comes or it ends by itself.
 class Watch {
  public:
-  Watch(ControllerLink& link, const RunOptions& options, SharedSummary& summary)
+  Watch(ControllerLink& link, const RunOptions& options, const JointScript& joints, SharedSummary& summary)
       : link_(link),
         options_(options),
+        joints_(joints),
         summary_(summary),
         reader_(link.telemetry()),
         show_(!options.quiet && !options.progress && isatty(STDERR_FILENO) != 0),
@@ -169,6 +170,7 @@ class Watch {
     const auto elapsed_s = [start] { return std::chrono::duration<double>(Clock::now() - start).count(); };
     while (Clock::now() < end && stop_signal == 0 && !faulted_ && link_.process().running()) {
       link_.mailbox().beat();
+      if (!joints_.empty()) link_.mailbox().set_joints(joints_.at(elapsed_s()));
       look();
       report(elapsed_s(), false);
       std::this_thread::sleep_for(kHeartbeatPeriod);
@@ -202,6 +204,7 @@ class Watch {
 
   ControllerLink& link_;
   const RunOptions& options_;
+  const JointScript& joints_;
   SharedSummary& summary_;
   TelemetryReader reader_;
   StatusLine line_;
@@ -233,7 +236,8 @@ std::unique_ptr<ImageFile> open_if_valid(const std::string& path) {
 }
 
 // Records and watches a controller that has just started, then ends it. `model` may be null.
-RunResult follow(ControllerLink& link, const RunOptions& options, const DeviceAddress& address, const Model* model) {
+RunResult follow(ControllerLink& link, const RunOptions& options, const JointScript& joints,
+                 const DeviceAddress& address, const Model* model) {
   const TelemetryHeader& header = link.telemetry().header;
   std::unique_ptr<RecordingWriter> file;
   if (!options.record.empty()) {
@@ -251,7 +255,7 @@ RunResult follow(ControllerLink& link, const RunOptions& options, const DeviceAd
   });
   recorder.start();
   RunResult result;
-  result.elapsed_s = Watch(link, options, *summary).run();
+  result.elapsed_s = Watch(link, options, joints, *summary).run();
   result.interrupted = stop_signal != 0;
   result.controller_exit = finish(link);
   recorder.stop();  // the controller has ended: the ring holds its last word
@@ -274,6 +278,12 @@ RunResult run_session(const RunOptions& options) {
   SceneImage scene = prepare_scene(options.scene, options.image, options.record);
   const std::unique_ptr<ImageFile> image = open_if_valid(scene.image_path);
   if (image) check_bus(address, image->model().params.period_s);
+  std::vector<TimedJoints> scripted;
+  if (scene.scene && options.path.empty()) scripted = scripted_joints(scene.scene->path);
+  const JointScript joints = image ? JointScript(options.joints, image->model(), scripted) : JointScript();
+  // The commands go through the mailbox; the closing button, which closes every finger, is left alone then.
+  if (!joints.empty() && scene.scene)
+    for (PathPoint& point : scene.scene->path.point) point.closing.clear();
   if (options.repeat_path && scene.scene) repeat_path(scene.scene->path, options.duration_s);
   const std::string& folder = options.program_folder;
   const auto program = [&](const char* name) { return folder.empty() ? sibling_program(name) : folder + "/" + name; };
@@ -287,7 +297,7 @@ RunResult run_session(const RunOptions& options) {
                       controller_arguments(options, scene.image_path, options.device, device.has_value()),
                       device ? device->controller_end() : -1);
   if (device) device->close_controller_end();
-  return follow(link, options, address, image ? &image->model() : nullptr);
+  return follow(link, options, joints, address, image ? &image->model() : nullptr);
 }
 
 }  // namespace palpate

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim_host/black_box.h"
+#include "sim_host/joint_script.h"
 #include "sim_host/live_table.h"
 #include "sim_host/run_summary.h"
 
@@ -18,6 +19,7 @@ struct RunOptions {
   double duration_s = 10;
   std::string record = "run.plr";  // empty: do not record
   std::string path;                // CSV of the simulated hand's motion; empty: the scene's own
+  JointOptions joints;             // told to an articulated tool through the mailbox
   std::string image;               // where to write the image of a .toml scene; empty: beside the recording
   int cpu = -1;                    // of the real-time thread; -1: any
   int priority = 80;               // SCHED_FIFO; 0: ordinary scheduling

@@ -10,12 +10,14 @@
 
 namespace palpate {
 
-SceneModel::SceneModel(const std::string& path) {
+SceneModel::SceneModel(const std::string& path, const SceneOverlays& overlays) {
   if (!path.ends_with(".toml")) {
+    if (!overlays.file.empty() || !overlays.setting.empty())
+      throw std::runtime_error(path + ": --with and --set change a scene (.toml), and this is a baked image");
     file_ = std::make_unique<ImageFile>(path);
     return;
   }
-  scene_ = load_scene(path);
+  scene_ = load_scene(path, overlays);
   compile();
 }
 

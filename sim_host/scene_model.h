@@ -14,8 +14,8 @@ namespace palpate {
 
 class SceneModel {
  public:
-  // Throws ConfigError or std::runtime_error, naming the file and what is wrong with it.
-  explicit SceneModel(const std::string& path);
+  // Throws ConfigError or std::runtime_error, naming the file and what is wrong with it. Overlays are for a .toml only.
+  explicit SceneModel(const std::string& path, const SceneOverlays& overlays = {});
   explicit SceneModel(const SceneDesc& scene);
   const Model& model() const { return file_ ? file_->model() : model_; }
   // The description, known only for a .toml.

@@ -119,8 +119,8 @@ PressMeshing default_meshing(const PressBody& body, const RigidTool& tool, doubl
   return m;
 }
 
-PressCurve press_axisymmetric(const PressBody& body, const RigidTool& tool, StrainLaw law,
-                              const std::vector<double>& depths_m, const PressMeshing& meshing) {
+PressCurve press_as_far_as_possible(const PressBody& body, const RigidTool& tool, StrainLaw law,
+                                    const std::vector<double>& depths_m, const PressMeshing& meshing) {
   check_input(body, tool, depths_m);
   PressSetup s = set_up(body, meshing);
   StrainBody material;
@@ -134,13 +134,20 @@ PressCurve press_axisymmetric(const PressBody& body, const RigidTool& tool, Stra
   curve.mesh = s.mesh;
   for (const double depth : depths_m) {
     PressState<2> state = solver.move_tools({{0, tip - depth}});
-    if (!state.converged)
-      throw ConfigError("press: no equilibrium at depth " + std::to_string(1e3 * depth) + " mm (the last was at " +
-                        std::to_string(curve.points.empty() ? 0.0 : 1e3 * curve.points.back().depth_m) +
-                        " mm): press less deep or refine the mesh");
+    if (!state.converged) break;
     curve.points.push_back({depth, state.force_on_tool_N[0][1], state.energy_J, state.contact_radius_m,
                             state.newton_steps, std::move(state.u_m)});
   }
+  return curve;
+}
+
+PressCurve press_axisymmetric(const PressBody& body, const RigidTool& tool, StrainLaw law,
+                              const std::vector<double>& depths_m, const PressMeshing& meshing) {
+  PressCurve curve = press_as_far_as_possible(body, tool, law, depths_m, meshing);
+  if (const std::size_t done = curve.points.size(); done < depths_m.size())
+    throw ConfigError("press: no equilibrium at depth " + std::to_string(1e3 * depths_m[done]) +
+                      " mm (the last was at " + std::to_string(done == 0 ? 0.0 : 1e3 * depths_m[done - 1]) +
+                      " mm): press less deep or refine the mesh");
   return curve;
 }
 

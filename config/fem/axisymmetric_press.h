@@ -51,5 +51,8 @@ PressMeshing default_meshing(const PressBody& body, const RigidTool& tool, doubl
 // depth finds no equilibrium, naming the last one that did.
 PressCurve press_axisymmetric(const PressBody& body, const RigidTool& tool, StrainLaw law,
                               const std::vector<double>& depths_m, const PressMeshing& meshing);
+// The same, but the curve ends before the first depth without equilibrium.
+PressCurve press_as_far_as_possible(const PressBody& body, const RigidTool& tool, StrainLaw law,
+                                    const std::vector<double>& depths_m, const PressMeshing& meshing);
 
 }  // namespace palpate::fem

@@ -1,6 +1,5 @@
 #include "config/fem/large_strain_solver.h"
 
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -8,6 +7,7 @@
 #include "config/config_error.h"
 #include "config/fem/contact_points.h"
 #include "config/fem/large_strain_assembly.h"
+#include "config/fem/supernodal_factor.h"
 
 namespace palpate::fem {
 
@@ -53,7 +53,7 @@ struct LargeStrainSolver<kDim>::Impl {
     now = {std::vector<Point<kDim>>(tools.size(), Point<kDim>{}), Eigen::VectorXd::Zero(dofs),
            Eigen::VectorXd::Zero(dofs)};
     multiplier.assign(contacts.size() * tools.size(), 0.0);
-    factor.analyzePattern(tangent);
+    factor.analyse(tangent);
     find_penalties();
   }
 
@@ -160,9 +160,7 @@ struct LargeStrainSolver<kDim>::Impl {
   bool direction(const Eigen::VectorXd& reduced, Eigen::VectorXd& step) {
     double shift = 0;
     for (int attempt = 0; attempt < 8; ++attempt) {
-      factor.setShift(shift);
-      factor.factorize(tangent);
-      if (factor.info() == Eigen::Success) {
+      if (factor.factorise(tangent, shift)) {
         step = -factor.solve(reduced);
         if (step.allFinite() && step.dot(reduced) < 0) return true;
       }
@@ -331,7 +329,7 @@ struct LargeStrainSolver<kDim>::Impl {
   std::vector<RigidTool> tools;
   LargeStrainAssembly<kDim> assembly;
   Eigen::SparseMatrix<double> tangent, rest_tangent, linear_stiffness;  // the last: fixed nodes too, linear law only
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> factor;
+  SupernodalFactor factor;
   Eigen::VectorXd u, last_u, last_motion;  // the last step's change of u and of the tools
   Situation now;
   std::vector<double> multiplier, last_multiplier, penalty;

@@ -25,6 +25,22 @@ struct PairCoupling {
 PairCoupling fit_pair(std::optional<double> c_m_per_N, const DepthOfForce& first, const DepthOfForce& second,
                       const std::vector<PairState>& large);
 
+// The same from presses of one contact each. With G = 0 the energy's terms in F^2 G say how far the surface at the
+// other place has sunk, c F + h F^2 / 2: no state with two contacts is needed. Exact where forces are small; in bodies
+// that sway fit_pair's states do better.
+//
+// Nodes of a level top (y = 0 at rest) where `u_m` takes them, by rising rest x.
+std::vector<Point<2>> top_line(const StrainMesh<2>& mesh, const std::vector<double>& u_m);
+// How far a tool must come down at x = `at_m` to touch the line: of a ball the tilt counts too.
+double touch_depth_m(const std::vector<Point<2>>& line, const RigidTool& tool, double at_m);
+// c and h of one press, from travels at which the other tool just touches over the force of the one that presses: a
+// straight line through travel / force. (A linear press's c is 6 % off on a plane block under a patch a fifth as wide
+// as the distance, because it takes the patch's width at that depth for the limit: measured 2026-11-21.)
+struct TouchFit {
+  double c_m_per_N = 0, h_m_per_N2 = 0;
+};
+TouchFit fit_touch(const std::vector<LoadPoint>& touch);
+
 // Forces at given depths, none below zero. The energy must be convex where the answer lies.
 PairState solve_pair(const DepthOfForce& first, const DepthOfForce& second, const PairCoupling& coupling,
                      double first_m, double second_m);

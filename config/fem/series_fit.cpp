@@ -25,6 +25,24 @@ double smallest_slope_share(const DepthOfForce& local, const SeriesCoefficients&
 // A fifth of the local compliance is left: the law then never gets stiffer than five times its tool on a half space.
 constexpr double kSmallestSlopeShare = 0.2;
 
+SeriesCoefficients kept_rising(const DepthOfForce& local, SeriesCoefficients c, double force_max_N) {
+  for (double* coefficient : {&c.c1_m_per_N2, &c.c0_m_per_N}) {
+    if (smallest_slope_share(local, c, force_max_N) >= kSmallestSlopeShare) break;
+    c.clamped = true;
+    if (*coefficient >= 0) continue;
+    double keep = 0, cut = 1;
+    for (const double whole = *coefficient; cut - keep > 1e-6;) {
+      const double middle = 0.5 * (keep + cut);
+      *coefficient = middle * whole;
+      (smallest_slope_share(local, c, force_max_N) >= kSmallestSlopeShare ? keep : cut) = middle;
+    }
+  }
+  return c;
+}
+
+// Where the press is read, as shares of its range: from a quarter on, where half as many elements touch as at the end.
+constexpr double kReadShares[] = {0.25, 0.5, 0.75, 1};
+
 }  // namespace
 
 DepthOfForce inverse_of(const ForceOfDepth& law, double depth_hint_m) {
@@ -48,18 +66,30 @@ SeriesCoefficients fit_series(const DepthOfForce& local, const LoadPoint& linear
   c.c0_m_per_N = (linear.depth_m - local(linear.force_N)) / linear.force_N;
   c.c1_m_per_N2 =
       (large.depth_m - local(large.force_N) - c.c0_m_per_N * large.force_N) / (large.force_N * large.force_N);
-  for (double* coefficient : {&c.c1_m_per_N2, &c.c0_m_per_N}) {
-    if (smallest_slope_share(local, c, force_max_N) >= kSmallestSlopeShare) break;
-    c.clamped = true;
-    if (*coefficient >= 0) continue;
-    double keep = 0, cut = 1;
-    for (const double whole = *coefficient; cut - keep > 1e-6;) {
-      const double middle = 0.5 * (keep + cut);
-      *coefficient = middle * whole;
-      (smallest_slope_share(local, c, force_max_N) >= kSmallestSlopeShare ? keep : cut) = middle;
-    }
+  return kept_rising(local, c, force_max_N);
+}
+
+SeriesCoefficients fit_series(const DepthOfForce& local, const std::vector<LoadPoint>& large, double force_max_N) {
+  // Normal equations of rows (F, F^2) / d = (d - local(F)) / d, with force in units of the largest.
+  double scale = 0;
+  for (const LoadPoint& p : large) scale = std::max(scale, p.force_N);
+  double m00 = 0, m01 = 0, m11 = 0, r0 = 0, r1 = 0;
+  for (const LoadPoint& p : large) {
+    if (!(p.force_N > 0 && p.depth_m > 0))
+      throw ConfigError("series law: every state must be in contact, with positive depth and force");
+    const double f = p.force_N / scale, w = 1 / (p.depth_m * p.depth_m), rest = p.depth_m - local(p.force_N);
+    m00 += w * f * f;
+    m01 += w * f * f * f;
+    m11 += w * f * f * f * f;
+    r0 += w * f * rest;
+    r1 += w * f * f * rest;
   }
-  return c;
+  const double determinant = m00 * m11 - m01 * m01;
+  if (!(determinant > 1e-9 * m00 * m11)) throw ConfigError("series law: needs two or more states of different force");
+  SeriesCoefficients c;
+  c.c0_m_per_N = (r0 * m11 - r1 * m01) / (determinant * scale);
+  c.c1_m_per_N2 = (m00 * r1 - m01 * r0) / (determinant * scale * scale);
+  return kept_rising(local, c, force_max_N);
 }
 
 double series_depth_m(const DepthOfForce& local, const SeriesCoefficients& c, double force_N) {
@@ -77,18 +107,17 @@ double series_force_N(const DepthOfForce& local, const SeriesCoefficients& c, do
 }
 
 SeriesBake bake_series(const PressBody& body, const RigidTool& tool, const DepthOfForce& local, double depth_max_m,
-                       int fine_count, double share) {
-  const double depth = share * depth_max_m;
-  const PressMeshing meshing = default_meshing(body, tool, depth, fine_count);
-  const auto press = [&](StrainLaw law) {
-    const PressPoint p = press_axisymmetric(body, tool, law, {depth}, meshing).points.back();
-    return LoadPoint{p.depth_m, p.force_N};
-  };
+                       const PressMeshing& meshing) {
+  std::vector<double> depths_m;
+  for (const double share : kReadShares) depths_m.push_back(share * depth_max_m);
   SeriesBake bake;
-  bake.linear = press(StrainLaw::kLinear);
-  bake.large = press(StrainLaw::kNeoHookean);
+  for (const PressPoint& p : press_as_far_as_possible(body, tool, StrainLaw::kNeoHookean, depths_m, meshing).points)
+    bake.large.push_back({p.depth_m, p.force_N});
+  if (bake.large.size() < 2)
+    throw ConfigError("press: no equilibrium at depth " + std::to_string(1e3 * depths_m[bake.large.size()]) + " mm");
   // Force grows faster than depth, at most like its square in every law offered.
-  bake.coefficients = fit_series(local, bake.linear, bake.large, bake.large.force_N / (share * share));
+  const double beyond = depth_max_m / bake.large.back().depth_m;
+  bake.coefficients = fit_series(local, bake.large, bake.large.back().force_N * beyond * beyond);
   return bake;
 }
 

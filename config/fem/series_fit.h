@@ -24,21 +24,28 @@ struct SeriesCoefficients {
   double c1_m_per_N2 = 0;
   bool clamped = false;  // the fit had no positive stiffness somewhere on [0, force_max] and was cut back
 };
-// From one linear and one large-strain solve of the same press, at about 0.6 of the range. Both coefficients may be
-// negative (a bonded block is stiffer than the half space of its local law) as long as travel rises with force up to
-// `force_max_N`: c1 is cut back first, then c0.
+// From one linear and one large-strain solve of the same press, at about 0.6 of the range: for bodies whose walls bend,
+// where the local indentation is a small part of the travel. Both coefficients may be negative (a bonded block is
+// stiffer than the half space of its local law) as long as travel rises with force up to `force_max_N`: c1 is cut back
+// first, then c0.
 SeriesCoefficients fit_series(const DepthOfForce& local, const LoadPoint& linear, const LoadPoint& large,
                               double force_max_N);
+// Both from two or more large-strain states of one press, least squares of the travel's relative error. For thick
+// bodies: the strain under a ball grows like sqrt(d), so large strain changes its travel by a share of d^1.5, which is
+// a share of F. That belongs to c0, where no linear solve sees it.
+SeriesCoefficients fit_series(const DepthOfForce& local, const std::vector<LoadPoint>& large, double force_max_N);
 
 double series_depth_m(const DepthOfForce& local, const SeriesCoefficients& c, double force_N);
 double series_force_N(const DepthOfForce& local, const SeriesCoefficients& c, double depth_m);
 
-// The two solves and the fit for a body of revolution. `share` of depth_max_m is where both are made.
+// Large-strain press of a body of revolution to `depth_max_m`, read at quarters of it, and the fit to its states. A
+// press that finds no equilibrium further on is taken as far as it came, if that is half way or more: beyond, the law
+// is then its continuation. Throws ConfigError otherwise.
 struct SeriesBake {
   SeriesCoefficients coefficients;
-  LoadPoint linear, large;
+  std::vector<LoadPoint> large;
 };
 SeriesBake bake_series(const PressBody& body, const RigidTool& tool, const DepthOfForce& local, double depth_max_m,
-                       int fine_count = 12, double share = 0.6);
+                       const PressMeshing& meshing);
 
 }  // namespace palpate::fem

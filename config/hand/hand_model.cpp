@@ -96,6 +96,24 @@ std::array<double, 3> lengths_of(std::int32_t finger) {
   return length;
 }
 
+// The mirror image in the tool's plane y = 0, of places and of turns. A turn by q about a mirrored axis is one by -q.
+Vec3 mirrored(Vec3 p) { return {p.x, -p.y, p.z}; }
+Pose mirrored(const Pose& pose) {
+  const Quat q = pose.orientation;
+  return {mirrored(pose.position_m), {q.w, -q.x, q.y, -q.z}};
+}
+void mirror(HandTool& tool) {
+  for (PieceDesc& piece : tool.piece) {
+    piece.position_m = mirrored(piece.position_m);
+    piece.rotation_rad = -mirrored(piece.rotation_rad);
+  }
+  for (Joint& joint : tool.joint) {
+    joint.before = mirrored(joint.before);
+    joint.after = mirrored(joint.after);
+    joint.sign = -joint.sign;
+  }
+}
+
 }  // namespace
 
 const std::array<HandPart, kHandParts>& hand_parts() {
@@ -118,6 +136,8 @@ const std::array<HandPart, kHandParts>& hand_parts() {
   }};
   return kParts;
 }
+
+bool is_left_hand(const Model& model) { return !model.joint.empty() && model.joint[0].before.position_m.y < 0; }
 
 FingerJoints finger_joints(std::int32_t finger) {
   if (finger == 0) return {0, 5, {1, 3, 4}};
@@ -196,6 +216,7 @@ HandTool make_hand(const HandDesc& hand) {
   for (Joint& joint : tool.joint) joint.open = joint.closed = clamp_to(0, joint.lowest, joint.highest);
   tool.joint[0].open = tool.joint[0].closed =
       clamp_to(hand.thumb_spread_rad, tool.joint[0].lowest, tool.joint[0].highest);
+  if (hand.side == HandSide::kLeft) mirror(tool);
   set_zero_poses(tool.joint);
   return tool;
 }

@@ -1,6 +1,6 @@
 // The human hand as a tool: 21 joints, 15 finger parts that touch and a palm that supports (Cui & Xiao 2008).
-// Tool frame: origin in the palm's middle, x towards the fingertips, y towards the thumb's side, z out of the back of
-// the hand. Lengths in metres, angles in radians.
+// Tool frame: origin in the palm's middle, x towards the fingertips, y towards the thumb's side (of a left hand: away
+// from it), z out of the back of the hand. Lengths in metres, angles in radians.
 #pragma once
 
 #include <array>
@@ -29,6 +29,9 @@ struct HandTool {
   std::vector<std::int32_t> piece_finger;  // 0 thumb, 1 index ... 4 little, 5 palm
   std::vector<Joint> joint;                // 5 of the thumb, then 4 of each finger; open = closed = stretched out
 };
+
+// The thumb's root lies on the side of -y. Of a baked hand.
+bool is_left_hand(const Model& model);
 
 // Joints of finger f (0 thumb) are joint[first] ... joint[first + count - 1]. `flexion` lists those that close it, root
 // first: one for each of its three parts.

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "config/config_error.h"
+#include "config/response/press_table.h"
 #include "config/schema.h"
 
 namespace palpate {
@@ -25,19 +26,6 @@ CubicPoint hermite(const std::vector<double>& x, const std::vector<double>& y, c
   const double h = x[i + 1] - x[i], u = (at - x[i]) / h, rise = y[i + 1] - y[i];
   const double p = h * m[i], q = h * m[i + 1], c2 = 3 * rise - 2 * p - q, c3 = p + q - 2 * rise;
   return {y[i] + u * (p + u * (c2 + u * c3)), (p + u * (2 * c2 + 3 * u * c3)) / h};
-}
-
-// Energies at the knots: exact integrals of the cubics over the depth, which is x, or x^2 in a root table.
-void integrate(const std::vector<double>& knot, bool root, std::vector<ResponseKnot>& row) {
-  row[0].energy_J = 0;
-  for (std::size_t i = 0; i + 1 < row.size(); ++i) {
-    const double h = knot[i + 1] - knot[i], a = row[i].force_N, b = row[i + 1].force_N;
-    const double p = h * row[i].slope, q = h * row[i + 1].slope;
-    const double plain = h * (0.5 * (a + b) + (p - q) / 12);
-    // int f u du over the interval, u from 0 to 1.
-    const double moment = (3 * a + 7 * b) / 20 + p / 30 - q / 20;
-    row[i + 1].energy_J = row[i].energy_J + (root ? 2 * (knot[i] * plain + h * h * moment) : plain);
-  }
 }
 
 // Mean of the curves by inverse squared distance (Shepard 1968): forces stay monotone.
@@ -100,6 +88,18 @@ std::vector<double> pchip_slopes(const std::vector<double>& x, const std::vector
   return m;
 }
 
+void integrate_curve(const std::vector<double>& knot, bool root, std::vector<ResponseKnot>& row) {
+  row[0].energy_J = 0;
+  for (std::size_t i = 0; i + 1 < row.size(); ++i) {
+    const double h = knot[i + 1] - knot[i], a = row[i].force_N, b = row[i + 1].force_N;
+    const double p = h * row[i].slope, q = h * row[i + 1].slope;
+    const double plain = h * (0.5 * (a + b) + (p - q) / 12);
+    // int f u du over the interval, u from 0 to 1.
+    const double moment = (3 * a + 7 * b) / 20 + p / 30 - q / 20;
+    row[i + 1].energy_J = row[i].energy_J + (root ? 2 * (knot[i] * plain + h * h * moment) : plain);
+  }
+}
+
 CurveTable tabulate(const std::vector<ForceCurve>& presses, bool root) {
   std::vector<ForceCurve> curves = presses;
   if (root)
@@ -121,14 +121,15 @@ CurveTable tabulate(const std::vector<ForceCurve>& presses, bool root) {
       const CubicPoint point = hermite(curve.depth_m, curve.force_N, slope, x);
       row.push_back({point.value, point.slope, 0});
     }
-    integrate(table.knot, root, row);
+    integrate_curve(table.knot, root, row);
     table.row.push_back(std::move(row));
   }
   return table;
 }
 
-void bake_table(const SceneDesc& scene, ImageContents& image, ResponseReport& report,
-                std::vector<std::string>& warnings) {
+namespace {
+
+void bake_file(const SceneDesc& scene, ImageContents& image, std::vector<std::string>& warnings) {
   const std::filesystem::path file(scene.table.file);
   const std::string path = file.is_absolute() ? scene.table.file : scene.source.directory + scene.table.file;
   std::vector<ForceCurve> curves;
@@ -139,7 +140,6 @@ void bake_table(const SceneDesc& scene, ImageContents& image, ResponseReport& re
   } catch (const ConfigError& error) {
     throw ConfigError(scene.source.where("contact.table.file") + ": " + error.what());
   }
-  image.params.response_law = static_cast<std::int32_t>(ResponseLaw::kTable);
   image.knot = table.knot;
   image.vertex_response.assign(image.vertex_m.size(), 0);
   for (const std::vector<ResponseKnot>& row : table.row)
@@ -158,16 +158,37 @@ void bake_table(const SceneDesc& scene, ImageContents& image, ResponseReport& re
       image.vertex_response[v] = next++;
     }
   }
+  for (const ForceCurve& curve : curves)
+    if (curve.depth_m.back() < scene.contact.max_depth_m * (1 - 1e-12))
+      warnings.push_back(scene.table.file + ": a press ends at " + number_text(1e3 * curve.depth_m.back()) +
+                         " mm, before contact.max_depth_mm; deeper the force continues by its tangent");
+}
+
+void bake_presses(const SceneDesc& scene, ImageContents& image, ResponseReport& report) {
+  PressTable pressed = press_table(scene, image.vertex_m);
+  image.params.response_root = 1;
+  image.knot = pressed.table.knot;
+  for (const std::vector<ResponseKnot>& row : pressed.table.row)
+    image.response.insert(image.response.end(), row.begin(), row.end());
+  image.vertex_response = pressed.places.of_vertex;
+  for (std::string& line : describe(pressed)) report.tip.push_back(std::move(line));
+}
+
+}  // namespace
+
+void bake_table(const SceneDesc& scene, ImageContents& image, ResponseReport& report,
+                std::vector<std::string>& warnings) {
+  image.params.response_law = static_cast<std::int32_t>(ResponseLaw::kTable);
+  if (scene.table.source == TableSource::kFem)
+    bake_presses(scene, image, report);
+  else
+    bake_file(scene, image, warnings);
   report.knots = static_cast<std::int64_t>(image.knot.size());
   report.curves = static_cast<std::int64_t>(image.response.size() / image.knot.size());
   const double bytes =
       static_cast<double>(sizeof(ResponseKnot) * image.response.size() + sizeof(double) * image.knot.size() +
                           sizeof(std::int32_t) * image.vertex_response.size());
   report.bytes_per_vertex = bytes / static_cast<double>(image.vertex_m.size());
-  for (const ForceCurve& curve : curves)
-    if (curve.depth_m.back() < scene.contact.max_depth_m * (1 - 1e-12))
-      warnings.push_back(scene.table.file + ": a press ends at " + number_text(1e3 * curve.depth_m.back()) +
-                         " mm, before contact.max_depth_mm; deeper the force continues by its tangent");
 }
 
 }  // namespace palpate

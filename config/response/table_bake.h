@@ -26,6 +26,10 @@ std::vector<ForceCurve> read_curves(const std::string& path, bool smooth);
 // limited, at the ends. At least two points.
 std::vector<double> pchip_slopes(const std::vector<double>& x, const std::vector<double>& y);
 
+// Fills the energies at the knots: exact integrals of the cubics over the depth, which is the knots' variable or, in a
+// root table, its square.
+void integrate_curve(const std::vector<double>& knot, bool root, std::vector<ResponseKnot>& row);
+
 // All curves on the union of their depths, on which each is still the same cubic: knots, and one row per curve.
 struct CurveTable {
   std::vector<double> knot;

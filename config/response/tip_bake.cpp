@@ -136,8 +136,9 @@ class TipReader {
     if (tip.indenter.profile == TipProfile::kCone && !is_auto(angle))
       tip.indenter.tan_half_angle = math::sin(angle) / math::cos(angle);
     if (tip.indenter.profile == TipProfile::kSphere && !(tip.depth_max_m <= tip.indenter.radius_m))
-      fail("contact.max_depth_mm", number_text(1e3 * tip.depth_max_m) + " mm is more than the sphere's radius of " +
-                                       number_text(1e3 * tip.indenter.radius_m) +
+      fail("contact.max_depth_mm", number_text(std::round(1e6 * tip.depth_max_m) / 1e3) +
+                                       " mm is more than the sphere's radius of " +
+                                       number_text(std::round(1e6 * tip.indenter.radius_m) / 1e3) +
                                        " mm; lower it, or set contact.tip.sphere = \"parabola\"");
     add_far_field(tip);
     line = describe(tip);
@@ -171,7 +172,7 @@ class TipReader {
 
   void add_far_field(TipDesc& tip) const {
     const SeriesDesc& series = scene_.series;
-    FarFieldFit fit{series.c0_m_per_N, series.c1_m_per_N2, 0, 0, 0};
+    FarFieldFit fit{series.c0_m_per_N, series.c1_m_per_N2};
     if (is_auto(series.c0_m_per_N) || is_auto(series.c1_m_per_N2)) fit = fit_far_field(scene_, index_, tip);
     tip.c0_m_per_N = auto_or(series.c0_m_per_N, fit.c0_m_per_N);
     tip.c1_m_per_N2 = auto_or(series.c1_m_per_N2, fit.c1_m_per_N2);
@@ -191,15 +192,27 @@ class TipReader {
             elliptic_radius_m(a, b), 0};
   }
 
+  // Radii of the body under a sphere, as the report names them.
+  std::string body_text() const {
+    double first = 0, second = 0;
+    body_curvature(first, second);
+    if (first == 0 && second == 0) return " on a flat body";
+    const auto radius = [](double curvature) {
+      return curvature == 0 ? std::string("flat") : number_text(std::round(1e5 / curvature) / 100) + " mm";
+    };
+    return " on a body of radii " + radius(first) + " and " + radius(second);
+  }
+
   std::string describe(const TipDesc& tip) const {
     static const char* const names[] = {"flat punch", "sphere (parabola)", "sphere", "cone"};
-    char text[256];
-    const bool cone = tip.indenter.profile == TipProfile::kCone;
-    std::snprintf(text, sizeof text, "piece %d: %s, %s %.5g, E* = %.5g Pa%s, c0 = %.5g m/N, c1 = %.5g m/N2",
-                  static_cast<int>(index_), names[static_cast<int>(tip.indenter.profile)],
-                  cone ? "tan of half angle" : "effective radius in mm",
-                  cone ? tip.indenter.tan_half_angle : 1e3 * tip.indenter.radius_m, tip.modulus_Pa,
-                  tip.layer.thickness_m > 0 ? ", on a layer" : "", tip.c0_m_per_N, tip.c1_m_per_N2);
+    const bool cone = tip.indenter.profile == TipProfile::kCone, flat = tip.indenter.profile == TipProfile::kFlat;
+    char text[320];
+    std::snprintf(text, sizeof text, "piece %d: %s%s, %s %.5g, E* = %.5g Pa", static_cast<int>(index_),
+                  names[static_cast<int>(tip.indenter.profile)], cone || flat ? "" : body_text().c_str(),
+                  cone   ? "tan of half angle"
+                  : flat ? "radius in mm"
+                         : "effective radius in mm",
+                  cone ? tip.indenter.tan_half_angle : 1e3 * tip.indenter.radius_m, tip.modulus_Pa);
     return text;
   }
 
@@ -208,11 +221,54 @@ class TipReader {
   std::size_t index_;
 };
 
+void bake_pairs(const SceneDesc& scene, const std::vector<TipDesc>& tips, ImageContents& image,
+                ResponseReport& report) {
+  for (std::size_t i = 0; i < scene.pair.size(); ++i) {
+    PairDesc pair = scene.pair[i];
+    if (is_auto(pair.c_m_per_N) || is_auto(pair.h_ab_m_per_N2) || is_auto(pair.h_ba_m_per_N2)) {
+      const auto place = [&](std::int32_t index) {
+        const ToolPiece& piece = image.piece[static_cast<std::size_t>(index)];
+        if (piece.point_count == 0)
+          throw ConfigError(scene.source.where("tool.piece[" + std::to_string(index) + "].points") +
+                            ": 0, so this piece touches nothing and no pair can be computed for it");
+        return image.tool_point[static_cast<std::size_t>(piece.first_point)].position_tool_m;
+      };
+      const PairFit fit = fit_pair_far_field(scene, i, norm(place(pair.piece_a) - place(pair.piece_b)), tips);
+      if (is_auto(pair.c_m_per_N)) pair.c_m_per_N = fit.c_m_per_N;
+      if (is_auto(pair.h_ab_m_per_N2)) pair.h_ab_m_per_N2 = fit.h_ab_m_per_N2;
+      if (is_auto(pair.h_ba_m_per_N2)) pair.h_ba_m_per_N2 = fit.h_ba_m_per_N2;
+      char text[160];
+      std::snprintf(text, sizeof text, "pieces %d and %d: c = %.5g m/N, h_ab = %.5g, h_ba = %.5g m/N2", pair.piece_a,
+                    pair.piece_b, pair.c_m_per_N, pair.h_ab_m_per_N2, pair.h_ba_m_per_N2);
+      report.tip.push_back(text);
+    }
+    image.tip_pair.push_back({pair.piece_a, pair.piece_b, pair.c_m_per_N, pair.h_ab_m_per_N2, pair.h_ba_m_per_N2});
+  }
+}
+
+// What the law comes to at the end of its range, and how much of that is the layer's or the true sphere's doing.
+std::string describe_law(const TipDesc& tip, const TipLaw& law) {
+  const double half_space =
+      tip_coefficient(tip.indenter, tip.modulus_Pa) * math::pow(law.depth_max_m, 0.5 * law.half_power);
+  std::string layer = "half space";
+  if (tip.layer.thickness_m > 0)
+    layer = "layer of " + number_text(std::round(1e6 * tip.layer.thickness_m) / 1e3) +
+            (tip.layer.base == LayerBase::kBonded ? " mm, bonded" : " mm, slipping");
+  char text[256];
+  std::snprintf(
+      text, sizeof text,
+      "         %s: %.4g N at %.4g mm, %.4g times the power law of a half space; c0 = %.4g mm/N, c1 = %.4g mm/N2",
+      layer.c_str(), law.force_max_N, 1e3 * law.depth_max_m, law.force_max_N / half_space, 1e3 * law.c0_m_per_N,
+      1e3 * law.c1_m_per_N2);
+  return text;
+}
+
 }  // namespace
 
 void bake_response(const SceneDesc& scene, ImageContents& image, ResponseReport& report,
                    std::vector<std::string>& warnings) {
-  if (scene.contact.law != ContactLaw::kTool && scene.contact.law != ContactLaw::kTable) return;
+  const bool whole_tip = scene.contact.law == ContactLaw::kTool || scene.contact.law == ContactLaw::kTable;
+  if (!whole_tip && scene.contact.surface == ContactSurface::kFacets) return;
   image.corner_normal = corner_normals(scene.body, image.vertex_m, image.triangle);
   report.slack_m = largest_sag_m(image.corner_normal, image.vertex_m, image.triangle);
   // Half the margin within which the tick measures every point.
@@ -220,6 +276,7 @@ void bake_response(const SceneDesc& scene, ImageContents& image, ResponseReport&
     throw ConfigError(scene.source.where("body.triangles") + ": facets stand off the smooth surface by " +
                       number_text(1e3 * report.slack_m) + " mm; allowed 0.25 mm: use more triangles");
   image.params.smooth_slack_m = 1.5 * report.slack_m;
+  if (!whole_tip) return;
   for (const PieceDesc& piece : scene.piece)
     if (piece.points > 1)
       throw ConfigError(scene.source.where("tool.piece") +
@@ -230,18 +287,19 @@ void bake_response(const SceneDesc& scene, ImageContents& image, ResponseReport&
     return;
   }
   image.params.response_law = static_cast<std::int32_t>(ResponseLaw::kTip);
+  std::vector<TipDesc> tips;
   for (std::size_t i = 0; i < scene.piece.size(); ++i) {
     std::string line;
-    const TipDesc tip = TipReader(scene, i).read(line);
+    tips.push_back(TipReader(scene, i).read(line));
     try {
-      image.tip_law.push_back(make_tip_law(tip, image.factor));
+      image.tip_law.push_back(make_tip_law(tips.back(), image.factor));
     } catch (const ConfigError& error) {
       throw ConfigError(scene.source.where("contact") + ": " + error.what());
     }
     report.tip.push_back(line);
+    report.tip.push_back(describe_law(tips.back(), image.tip_law.back()));
   }
-  for (const PairDesc& pair : scene.pair)
-    image.tip_pair.push_back({pair.piece_a, pair.piece_b, pair.c_m_per_N, pair.h_ab_m_per_N2, pair.h_ba_m_per_N2});
+  bake_pairs(scene, tips, image, report);
 }
 
 }  // namespace palpate

@@ -30,14 +30,15 @@ Indenter tip_indenter(const PieceDesc& piece);
 double tip_coefficient(const Indenter& indenter, double modulus_Pa);
 
 struct ResponseReport {
-  std::vector<std::string> tip;  // one line per piece
+  std::vector<std::string> tip;  // lines: two per piece, or what was pressed
   double slack_m = 0;            // largest distance between facets and smooth surface
   std::int64_t curves = 0;       // distinct force curves
   std::int64_t knots = 0;        // of each
   double bytes_per_vertex = 0;   // of the tables: curves, knots and the index, over the vertices
 };
 
-// Fills what the scene's response law needs in `image`, whose surface and tool are complete. Nothing for point laws.
+// Fills what the scene's response law needs in `image`, whose surface and tool are complete; for point laws on the
+// smooth surface, its normals.
 void bake_response(const SceneDesc& scene, ImageContents& image, ResponseReport& report,
                    std::vector<std::string>& warnings);
 

@@ -19,6 +19,9 @@ constexpr double kSearchMargin_m = 0.5e-3;
 // its points by the same distance, and without turns they would all be due, and cold, in the same tick.
 constexpr double kRefreshMargin_m = 2e-3;
 constexpr std::uint64_t kTurns = 8;
+// Cosine of the largest turn of the normal in one tick that still counts as the same face: a tip at 0.5 m/s turns by
+// less than a degree per tick even on a body of 20 mm.
+constexpr double kSameFace = 0.5;
 
 // A pose as a matrix: half the work of a quaternion per point.
 struct RigidMap {
@@ -152,13 +155,25 @@ class Collider {
     if (point.gap_m < 0) keep(index, point, tool_point);
   }
 
+  // Deep inside, past the middle of a thin body, the nearest surface is another face, whose force would pull the tip
+  // through (seen 2026-11-21: a cone at 5 mm in a layer of 10 mm). A point in contact stays with its own face while
+  // that has a foot for it or has just lost it in the focal surface.
+  SmoothFoot followed(Vec3 p, const SurfacePoint& surface, const PointState& point,
+                      const SmoothFoot& nearest) const PALPATE_RT {
+    if (!(surface.signed_distance_m < 0 && point.gap_m < 0 && point.triangle >= 0)) return nearest;
+    const Vec3 normal = nearest.state == FootState::kFound ? nearest.normal_w : surface.normal_w;
+    if (dot(normal, point.normal_w) > kSameFace) return nearest;
+    const SmoothFoot own = smooth_foot(model_, p, point.triangle);
+    return own.state == FootState::kFound || own.state == FootState::kFocal ? own : nearest;
+  }
+
   // Contact with the smooth surface instead of its facets. Beyond a sharp edge the facet decides; below the focal
   // surface a point in contact keeps its last place (a god-object).
   void touch_smooth(std::int32_t index, Vec3 p, const SurfacePoint& surface, const ToolPoint& tool_point) PALPATE_RT {
     PointState& point = state_.point[index];
     SurfaceFoot& foot = scratch_.foot[tool_point.piece];
     if (surface.truncated) scratch_.status |= Status::kTraversalTruncated;
-    const SmoothFoot smooth = smooth_foot(model_, p, surface.triangle);
+    const SmoothFoot smooth = followed(p, surface, point, smooth_foot(model_, p, surface.triangle));
     foot = {};
     foot.centre_w = p;
     Real height = surface.signed_distance_m;
@@ -172,7 +187,8 @@ class Collider {
         foot.gradient_per_m[k] = smooth.gradient_per_m[k];
       }
     } else {
-      if (smooth.state == FootState::kFocal && point.gap_m < 0 && point.triangle >= 0) {
+      const bool lost = smooth.state == FootState::kFocal || smooth.state == FootState::kFar;
+      if (lost && point.gap_m < 0 && point.triangle >= 0) {
         scratch_.status |= Status::kFootHeld;
         height = dot(p - point.closest_w, point.normal_w);
       } else {

@@ -1,6 +1,7 @@
 #include "rt_core/coupling/virtual_coupling.h"
 
 #include "rt_core/cholesky.h"
+#include "rt_core/force/contact_stiffness.h"
 
 namespace palpate {
 
@@ -21,6 +22,40 @@ bool solve(const Model& model, const double (&contact_stiffness)[36], Real (&b)[
   return true;
 }
 
+// Springs of the slipping regions that `motion` of the tool would turn back. Returns whether there are any.
+bool add_reversals(const State& state, const Twist& motion, ContactStiffness& stiffness) PALPATE_RT {
+  bool any = false;
+  for (const Region& region : state.region) {  // bound: kMaxRegions
+    if (region.id == 0 || region.lost_ticks > 0 || !(region.reversal_N_per_m > 0)) continue;
+    const Vec3 arm = region.centre_w - state.tool_w.position_m;
+    const Vec3 forward = unit_or(region.stretch_w, {});
+    if (!(dot(motion.translation_m + cross(motion.rotation_rad, arm), forward) < 0)) continue;
+    add_spring(stiffness, region.reversal_N_per_m, forward, cross(arm, forward));
+    any = true;
+  }
+  return any;
+}
+
+// Motion of the tool under a wrench: the tangent is right for slipping forwards, so try that first.
+bool answer(const Model& model, const State& state, const Wrench& wrench, Twist& motion) PALPATE_RT {
+  const Vec3 f = wrench.force_N, m = wrench.torque_Nm;
+  Real x[kDof] = {f.x, f.y, f.z, m.x, m.y, m.z};
+  if (!solve(model, state.contact_stiffness, x)) return false;
+  const Twist forwards{{x[0], x[1], x[2]}, {x[3], x[4], x[5]}};
+  ContactStiffness reversals;
+  if (!add_reversals(state, forwards, reversals)) {
+    motion = forwards;
+    return true;
+  }
+  double matrix[36];
+  store(reversals, matrix);
+  for (std::int32_t i = 0; i < 36; ++i) matrix[i] += state.contact_stiffness[i];  // bound: 36
+  Real y[kDof] = {f.x, f.y, f.z, m.x, m.y, m.z};
+  if (!solve(model, matrix, y)) return false;
+  motion = {{y[0], y[1], y[2]}, {y[3], y[4], y[5]}};
+  return true;
+}
+
 }  // namespace
 
 Twist twist_between(const Pose& from, const Pose& to) PALPATE_RT {
@@ -31,25 +66,20 @@ Pose moved(const Pose& pose, const Twist& twist) PALPATE_RT {
   return {pose.position_m + twist.translation_m, normalised(small_rotation(twist.rotation_rad) * pose.orientation)};
 }
 
-bool follow(const Model& model, const double (&contact_stiffness)[36], const Twist& handle, Twist& tool) PALPATE_RT {
-  const Vec3 force = model.params.coupling_N_per_m * handle.translation_m;
-  const Vec3 torque = model.params.coupling_Nm_per_rad * handle.rotation_rad;
-  Real x[kDof] = {force.x, force.y, force.z, torque.x, torque.y, torque.z};
+bool follow(const Model& model, const State& state, const Twist& handle, Twist& tool) PALPATE_RT {
   tool = handle;
-  if (!solve(model, contact_stiffness, x)) return false;
-  tool = {{x[0], x[1], x[2]}, {x[3], x[4], x[5]}};
-  return true;
+  return answer(
+      model, state,
+      {model.params.coupling_N_per_m * handle.translation_m, model.params.coupling_Nm_per_rad * handle.rotation_rad},
+      tool);
 }
 
-bool correct(const Model& model, const double (&contact_stiffness)[36], const Wrench& contact_w,
-             const Wrench& coupling_on_tool_w, Twist& correction) PALPATE_RT {
-  const Vec3 force = contact_w.force_N + coupling_on_tool_w.force_N;
-  const Vec3 torque = contact_w.torque_Nm + coupling_on_tool_w.torque_Nm;
-  Real x[kDof] = {force.x, force.y, force.z, torque.x, torque.y, torque.z};
+bool correct(const Model& model, const State& state, const Wrench& contact_w, const Wrench& coupling_on_tool_w,
+             Twist& correction) PALPATE_RT {
   correction = {};
-  if (!solve(model, contact_stiffness, x)) return false;
-  correction = {{x[0], x[1], x[2]}, {x[3], x[4], x[5]}};
-  return true;
+  return answer(model, state,
+                {contact_w.force_N + coupling_on_tool_w.force_N, contact_w.torque_Nm + coupling_on_tool_w.torque_Nm},
+                correction);
 }
 
 Wrench coupling_wrench(const Model& model, const Pose& device_w, const Pose& tool_w) PALPATE_RT {

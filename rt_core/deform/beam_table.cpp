@@ -80,28 +80,56 @@ bool share_by_ratios(const Model& model, Vec3 force, BeamTableSkeleton& skeleton
   return true;
 }
 
-}  // namespace
+// Barycentric weights, not normalised, of the projection of p onto the triangle's plane.
+void barycentric(const Model& model, Vec3 p, std::int32_t triangle, Real (&weight)[3]) PALPATE_RT {
+  const Triangle& t = model.triangle[static_cast<std::size_t>(triangle)];
+  Vec3 arm[3];
+  for (int k = 0; k < 3; ++k) arm[k] = model.vertex_m[static_cast<std::size_t>(t.vertex[k])] - p;
+  const Vec3 normal = cross(arm[1] - arm[0], arm[2] - arm[0]);
+  for (int k = 0; k < 3; ++k) weight[k] = dot(cross(arm[(k + 1) % 3], arm[(k + 2) % 3]), normal);
+}
 
-SurfaceSpot locate_on_surface(const Model& model, Vec3 point_w, std::int32_t warm_triangle) PALPATE_RT {
+SurfaceSpot spot_of(const Model& model, std::int32_t triangle, const Real (&weight)[3]) PALPATE_RT {
   SurfaceSpot spot;
-  const SurfacePoint at = closest_surface_point(model, point_w, kUnlimited_m, warm_triangle);
-  if (!at.found || at.triangle < 0) return spot;
-  const Triangle& t = model.triangle[static_cast<std::size_t>(at.triangle)];
-  Vec3 corner[3];
-  for (int k = 0; k < 3; ++k) {
-    spot.vertex[k] = t.vertex[k];
-    corner[k] = model.vertex_m[static_cast<std::size_t>(t.vertex[k])];
-  }
-  const Vec3 normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
   Real sum = 0;
   for (int k = 0; k < 3; ++k) {
-    const Vec3 opposite = cross(corner[(k + 1) % 3] - at.closest_w, corner[(k + 2) % 3] - at.closest_w);
-    spot.weight[k] = max_of(dot(opposite, normal), 0.0);  // rounding may leave the triangle
+    spot.vertex[k] = model.triangle[static_cast<std::size_t>(triangle)].vertex[k];
+    spot.weight[k] = max_of(weight[k], 0.0);
     sum += spot.weight[k];
   }
   spot.found = sum > 0;
-  for (Real& weight : spot.weight) weight = spot.found ? weight / sum : 0.0;
+  for (Real& w : spot.weight) w = spot.found ? w / sum : 0.0;
   return spot;
+}
+
+}  // namespace
+
+SurfaceSpot locate_on_surface(const Model& model, Vec3 point_w, std::int32_t warm_triangle) PALPATE_RT {
+  const SurfacePoint at = closest_surface_point(model, point_w, kUnlimited_m, warm_triangle);
+  if (!at.found || at.triangle < 0) return {};
+  Real weight[3];
+  barycentric(model, at.closest_w, at.triangle, weight);
+  return spot_of(model, at.triangle, weight);
+}
+
+SurfaceSpot locate_from(const Model& model, Vec3 point_w, std::int32_t triangle) PALPATE_RT {
+  const auto triangles = static_cast<std::int64_t>(model.triangle.size());
+  if (triangle < 0 || triangle >= triangles || !is_finite(point_w)) return {};
+  Real weight[3];
+  std::int32_t before = -1;
+  for (std::int32_t step = 0; step < kLocateSteps; ++step) {
+    barycentric(model, point_w, triangle, weight);
+    int least = weight[1] < weight[0] ? 1 : 0;
+    if (weight[2] < weight[least]) least = 2;
+    if (weight[least] >= 0) break;
+    // Across the edge opposite to that corner; back again means between the two.
+    const std::int32_t next = model.triangle[static_cast<std::size_t>(triangle)].adjacent[(least + 1) % 3];
+    if (next < 0 || next >= triangles || next == before) break;
+    before = triangle;
+    triangle = next;
+  }
+  barycentric(model, point_w, triangle, weight);
+  return spot_of(model, triangle, weight);
 }
 
 SurfaceSpot locate_contact(const Model& model, const State& state, std::int32_t slot) PALPATE_RT {
@@ -116,7 +144,7 @@ SurfaceSpot locate_contact(const Model& model, const State& state, std::int32_t 
     nearest = distance2;
     warm = state.point[i].triangle;
   }
-  return locate_on_surface(model, centre, warm);
+  return locate_from(model, centre, warm);
 }
 
 bool solve_beam_table(const Model& model, const SurfaceSpot& spot, Vec3 force_on_body_w,

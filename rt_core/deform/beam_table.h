@@ -21,10 +21,15 @@ struct SurfaceSpot {
   Real weight[3] = {0, 0, 0};
   bool found = false;
 };
-// The rest-surface point nearest to `point_w`; `warm_triangle` (or -1) only saves work. Bound: one closest-point query.
+// The rest-surface point nearest to `point_w`. Bound: one closest-point query. Not for the tick: from a cold start it
+// may cost more than the rest of it.
 SurfaceSpot locate_on_surface(const Model& model, Vec3 point_w, std::int32_t warm_triangle) PALPATE_RT;
+// Where `point_w`, which lies on the surface or close to it, is seen from `triangle`: walks over edges towards it.
+// Where it ends between two triangles, or after kLocateSteps, the last triangle's nearest weights. Bound: kLocateSteps.
+inline constexpr std::int32_t kLocateSteps = 24;  // a region's centre lies within a few triangles of its contacts
+SurfaceSpot locate_from(const Model& model, Vec3 point_w, std::int32_t triangle) PALPATE_RT;
 // The same for the equivalent contact point of region `slot`, starting from its tool point nearest to it.
-// Bound: n_tool_point and one closest-point query.
+// Bound: n_tool_point and kLocateSteps.
 SurfaceSpot locate_contact(const Model& model, const State& state, std::int32_t slot) PALPATE_RT;
 
 struct BeamTableSkeleton {

@@ -9,6 +9,7 @@ namespace {
 void clear_forces(Skeleton& skeleton) PALPATE_RT {
   skeleton.degenerate = false;
   skeleton.minimum_norm = false;
+  skeleton.common = false;
   skeleton.alpha_Pa = 0;
   skeleton.beta_Pa = 0;
   skeleton.displacement_w = {};
@@ -60,6 +61,7 @@ bool distribute_by_stiffness(Vec3 force_on_body_w, Skeleton& skeleton) PALPATE_R
   Real d[3] = {force_on_body_w.x, force_on_body_w.y, force_on_body_w.z};
   cholesky_solve(k, d, 3);
   skeleton.displacement_w = {d[0], d[1], d[2]};
+  skeleton.common = true;
   for (std::int32_t i = 0; i < skeleton.count; ++i) {
     skeleton.force_w[i] = beam_force(skeleton.beam[i], skeleton.displacement_w);
   }

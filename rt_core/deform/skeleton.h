@@ -14,6 +14,7 @@ struct Skeleton {
   std::int32_t count = 0;     // beams, = anchors
   bool degenerate = false;    // no usable stiffness: all forces and displacements are zero
   bool minimum_norm = false;  // paper law only: its two columns are parallel, the smallest solution was taken
+  bool common = false;        // stiffness law: every beam's tip moves by displacement_w
   Real alpha_Pa = 0;          // paper law only: scale of the axial ratios (6); E in the stiffness law
   Real beta_Pa = 0;     // paper law only: scale of the bending ratios (7); 3E in the Euler-Bernoulli stiffness law
   Vec3 displacement_w;  // stiffness law: displacement of the contact point, K^-1 F
@@ -72,7 +73,9 @@ inline SkeletonAnchor skeleton_anchor(const Skeleton& skeleton, const Anchor& an
   result.stress = anchor_stress(beam, section_of(anchor), poisson_ratio, force);
   if (anchor.fixed == 0) {
     // K_i^-1 F_i: the skeleton's own displacement in the stiffness law, each beam's own in the paper's.
-    result.displacement_w = released_displacement(beam, beam_tip_displacement(beam, force), anchor.release_length_m);
+    const bool known = skeleton.common && beam.bending_N_per_m > 0;
+    const Vec3 tip = known ? skeleton.displacement_w : beam_tip_displacement(beam, force);
+    result.displacement_w = released_displacement(beam, tip, anchor.release_length_m);
   }
   return result;
 }

@@ -1,5 +1,6 @@
 #include "rt_core/deform/surface.h"
 
+#include "rt_core/articulate/carrier.h"
 #include "rt_core/deform/displacement_angle.h"
 #include "rt_core/deform/temporal_order.h"
 
@@ -49,6 +50,19 @@ void add_contact_node(const Model& model, const Vec3 (&own)[kMaxRbf], ShapeRegio
   for (std::int32_t k = 0; k < n; ++k) field.coefficient_w[k] -= r.node.q[k] * r.node_coefficient_w;
 }
 
+// Radius of a region's dent: the largest of its parts' own, else the scene's.
+Real reach_of(const Model& model, const State& state, std::int32_t slot) PALPATE_RT {
+  Real reach = 0;
+  if (!is_articulated(model)) return model.params.neighbourhood_radius_m;
+  for (std::size_t p = 0; p < model.piece.size(); ++p) {  // bound: kMaxToolPoints over all pieces
+    const ToolPiece& piece = model.piece[p];
+    for (std::int32_t i = piece.first_point; i < piece.first_point + piece.point_count; ++i) {
+      if (state.point[i].region == slot) reach = max_of(reach, piece.neighbourhood_m);
+    }
+  }
+  return reach > 0 ? reach : model.params.neighbourhood_radius_m;
+}
+
 void prepare_region(const Model& model, const State& state, std::int32_t slot, ShapeField& field) PALPATE_RT {
   const Region& region = state.region[slot];
   ShapeRegion& r = field.region[field.count++];
@@ -57,7 +71,7 @@ void prepare_region(const Model& model, const State& state, std::int32_t slot, S
   r.contact_w = region.centre_w;
   r.dent_w = dent_of(model, region);
   r.local_amplitude_w = r.dent_w;
-  const Real reach_m = model.params.neighbourhood_radius_m;
+  const Real reach_m = reach_of(model, state, slot);
   r.local = make_neighbourhood(static_cast<NeighbourhoodLaw>(model.params.neighbourhood_law),
                                contact_radius_m(region.area_m2, reach_m), reach_m);
   const auto anchors = static_cast<std::int32_t>(model.sizes.n_anchor);

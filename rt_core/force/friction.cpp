@@ -115,7 +115,8 @@ FrictionForce presliding_step(const FrictionParameters& parameters, const Fricti
   result.force_w = -stiffness * moved.stretch_w;
   result.energy_J = 0.5 * stiffness * length * length;
   result.direction_w = length > kNoStretch_m ? (1.0 / length) * moved.stretch_w : Vec3{};
-  result.along_N_per_m = moved.sliding ? 0.0 : stiffness;
+  result.along_N_per_m = moved.ends_sliding ? 0.0 : stiffness;
+  result.reversal_N_per_m = moved.ends_sliding ? stiffness : 0.0;
   result.across_N_per_m = stiffness;
   return result;
 }
@@ -185,6 +186,7 @@ FrictionForce friction_step(const FrictionParameters& parameters, const Friction
   const Real kept = norm(memory.stretch_w);
   FrictionForce result = spring_response(spring, load.depth_rate, slip_direction, kept);
   result.force_w = -sliding * slip_direction;
+  result.reversal_N_per_m = result.along_N_per_m;
   result.along_N_per_m = 0.0;
   result.across_N_per_m = min_of(result.across_N_per_m, sliding / max_of(kept, kNoStretch_m));
   return result;

@@ -38,12 +38,13 @@ struct FrictionLoad {
 };
 
 struct FrictionForce {
-  Vec3 force_w;             // on the tool, tangential
-  Real normal_gain_N = 0;   // added to the normal force (radial law: the stretch stiffens the normal direction too)
-  Real energy_J = 0;        // stored by the stretch
-  Real along_N_per_m = 0;   // tangent stiffness along the stretch; zero while slipping
-  Real across_N_per_m = 0;  // and across it, in the tangent plane
-  Vec3 direction_w;         // unit vector of the stretch; zero where it has none
+  Vec3 force_w;               // on the tool, tangential
+  Real normal_gain_N = 0;     // added to the normal force (radial law: the stretch stiffens the normal direction too)
+  Real energy_J = 0;          // stored by the stretch
+  Real along_N_per_m = 0;     // tangent stiffness along the stretch; zero while slipping
+  Real across_N_per_m = 0;    // and across it, in the tangent plane
+  Real reversal_N_per_m = 0;  // while slipping: along the stretch, for motion back; else 0
+  Vec3 direction_w;           // unit vector of the stretch; zero where it has none
 };
 
 // Largest tangential force before slip, K F^beta, and while slipping, min(mu_dynamic F, K F^beta). Zero for F <= 0,

@@ -26,7 +26,7 @@ Vec3 dragged(Vec3 stretch, Vec3 e, Real distance, Real slip) PALPATE_RT {
 }  // namespace
 
 Presliding preslide(Vec3 stretch, Vec3 step, Real slip_m) PALPATE_RT {
-  if (!(slip_m > kNoStep_m)) return {{}, norm(step) > kNoStep_m};
+  if (!(slip_m > kNoStep_m)) return {{}, norm(step) > kNoStep_m, norm(step) > kNoStep_m};
   Presliding result{stretch, false};
   const Real before = norm(stretch);
   if (before > slip_m) {
@@ -43,7 +43,7 @@ Presliding preslide(Vec3 stretch, Vec3 step, Real slip_m) PALPATE_RT {
     return result;
   }
   result.stretch_w = dragged(result.stretch_w + max_of(room, 0.0) * e, e, length - max_of(room, 0.0), slip_m);
-  result.sliding = true;
+  result.sliding = result.ends_sliding = true;
   return result;
 }
 

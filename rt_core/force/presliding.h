@@ -7,8 +7,9 @@
 namespace palpate {
 
 struct Presliding {
-  Vec3 stretch_w;        // elastic displacement, |stretch| <= slip
-  bool sliding = false;  // some of the step slid
+  Vec3 stretch_w;             // elastic displacement, |stretch| <= slip
+  bool sliding = false;       // some of the step slid, or the limit fell below the stretch
+  bool ends_sliding = false;  // the step's end slid: further motion along it meets no stiffness
 };
 
 // Moves the contact by `step` in the tangent plane with the elastic displacement bounded by slip_m >= 0. Exact for a

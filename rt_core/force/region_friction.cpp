@@ -54,6 +54,7 @@ void slide(const Model& model, const State& state, const FrictionParameters& par
   region.stretch_w = memory.stretch_w;
   region.tangential_k_N_per_m = memory.stiffness_N_per_m;
   region.friction = memory.mode;
+  region.reversal_N_per_m = friction.reversal_N_per_m;
   const Vec3 arm = region.centre_w - state.tool_w.position_m;
   const Vec3 force = friction.force_w + friction.normal_gain_N * region.normal_w;
   region.normal_force_N += friction.normal_gain_N;

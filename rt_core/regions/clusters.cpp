@@ -23,16 +23,29 @@ void sort_by_point(const Scratch& scratch, Clusters& out) PALPATE_RT {
 struct Kinship {
   std::int32_t piece[kMaxContacts];
   std::int32_t group[kMaxContacts];
+  std::int32_t previous[kMaxContacts];  // the last contact before, of the same chain of groups; or -1
 };
+// Contacts are compared along their chain only: fifteen parts of five fingers compare 250 pairs instead of 1,300.
+// Groups that share a chain are told apart when compared.
+constexpr std::uint32_t kChains = 32;
 
 void find_kinship(const Model& model, const Scratch& scratch, const Clusters& out, Kinship& kin) PALPATE_RT {
-  const bool articulated = is_articulated(model);
-  for (std::int32_t i = 0; i < out.contacts; ++i) {  // bound: kMaxContacts
-    kin.piece[i] = -1 - i;
-    kin.group[i] = 0;
-    if (!articulated) continue;
+  if (!is_articulated(model)) {
+    for (std::int32_t i = 0; i < out.contacts; ++i) {  // bound: kMaxContacts
+      kin.piece[i] = -1 - i;
+      kin.group[i] = 0;
+      kin.previous[i] = i - 1;
+    }
+    return;
+  }
+  std::int32_t newest[kChains];
+  for (std::int32_t& contact : newest) contact = -1;  // bound: kChains
+  for (std::int32_t i = 0; i < out.contacts; ++i) {   // bound: kMaxContacts
     kin.piece[i] = piece_of(model, scratch.contact[out.order[i]]);
     kin.group[i] = model.piece[static_cast<std::size_t>(kin.piece[i])].group;
+    std::int32_t& last = newest[static_cast<std::uint32_t>(kin.group[i]) % kChains];
+    kin.previous[i] = last;
+    last = i;
   }
 }
 
@@ -65,7 +78,7 @@ void find_clusters(const Model& model, const State& state, const Scratch& scratc
     set[i] = i;
     sets += 1;
     const Contact& contact = scratch.contact[out.order[i]];
-    for (std::int32_t j = i - 1; j >= 0 && sets > 1; --j) {  // bound: kMaxContacts; neighbours are often numbered so
+    for (std::int32_t j = kin.previous[i]; j >= 0 && sets > 1; j = kin.previous[j]) {  // bound: kMaxContacts; j falls
       if (set[i] == set[j] || kin.group[i] != kin.group[j]) continue;
       const bool same = kin.piece[i] == kin.piece[j];
       if (!same && !linked(model, state, contact, scratch.contact[out.order[j]])) continue;

@@ -74,8 +74,8 @@ ImageResult check_response(const Model& model) noexcept {
       if (!is_unit(normal)) return not_finite("corner_normal", i);
   const auto law = static_cast<ResponseLaw>(model.params.response_law);
   if (!model.corner_normal.empty() && model.corner_normal.size() != model.triangle.size()) return broken("n_corner", 0);
-  if ((law == ResponseLaw::kPoints) != model.corner_normal.empty()) return broken("n_corner", 0);
   if (law == ResponseLaw::kPoints) return {};
+  if (model.corner_normal.empty()) return broken("n_corner", 0);
   // One tip per piece: the stages have room for kMaxPieces.
   for (std::size_t i = 0; i < model.piece.size(); ++i)
     if (model.piece[i].point_count > 1) return broken("piece.point_count", i);

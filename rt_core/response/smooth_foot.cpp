@@ -140,7 +140,7 @@ SmoothFoot smooth_foot(const Model& model, Vec3 p, std::int32_t triangle) PALPAT
     const std::int32_t next = walked < kFootWalk ? across(model, triangle, edge, corners) : -1;
     if (next < 0) {
       SmoothFoot lost;
-      lost.state = walked < kFootWalk ? FootState::kEdge : FootState::kFocal;
+      lost.state = walked < kFootWalk ? FootState::kEdge : FootState::kFar;
       return lost;
     }
     const Vec3 foot = flat_foot(corners, at);

@@ -17,6 +17,7 @@ enum class FootState : std::int32_t {
   kFound = 0,
   kFocal = 1,  // below the focal surface, or not converged
   kEdge = 2,   // beyond a sharp edge
+  kFar = 3,    // not within kFootWalk triangles
 };
 
 struct SmoothFoot {

@@ -8,6 +8,9 @@ namespace {
 
 using Regions = std::span<const TipRegion>;
 
+// Lowest shift over depth: see solve_travel.
+constexpr Real kMostSwelling = 20.0;
+
 Real deepest_m(const TipRegion& region) PALPATE_RT {
   Real deepest = 0;
   for (std::int32_t k = 0; k < region.count; ++k) deepest = max_of(region.tip[k].depth_m, deepest);  // bound: tips
@@ -121,9 +124,10 @@ LawPoint region_at(const TipRegion& region, Real shift_m) PALPATE_RT {
 TravelResult solve_travel(const TipRegion& region) PALPATE_RT {
   if (region.far.c0_m_per_N == 0 && region.far.c1_m_per_N2 == 0) return {};
   const Real deepest = deepest_m(region);
-  // At w = deepest every force is zero and the function is positive; below zero it can only be where c0 or c1 is
-  // negative, and then by less than the depth itself.
-  Real low = -deepest, high = deepest;
+  // At w = deepest every force is zero and the function is positive. Below zero it can only be where c0 or c1 is
+  // negative; the baker leaves the whole law a twentieth of the tip's stiffness or more, so e = deepest - w stays below
+  // twenty depths.
+  Real low = -kMostSwelling * deepest, high = deepest;
   TravelResult result;
   for (std::int32_t i = 0; i < kSeriesIterations; ++i) {  // bound: kSeriesIterations
     const LawPoint load = region_at(region, result.shift_m);

@@ -28,7 +28,7 @@ Wrench couple(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   const Wrench on_handle = coupling_wrench(model, state.device_w, state.tool_w);
   const Wrench on_tool{-on_handle.force_N, -on_handle.torque_Nm};
   Twist correction;
-  if (!correct(model, state.contact_stiffness, scratch.contact_wrench_w, on_tool, correction))
+  if (!correct(model, state, scratch.contact_wrench_w, on_tool, correction))
     scratch.status |= Status::kCouplingSingular;
   state.safety.tool_corrected_w = moved(state.tool_w, correction);
   return coupling_wrench(model, state.device_w, state.safety.tool_corrected_w);

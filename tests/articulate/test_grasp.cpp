@@ -1,12 +1,15 @@
 // Whole grasps, from approach to release: regions, stability, order of contact, palm, stresses and hostile commands.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <random>
+#include <set>
 
 #include "config/hand/hand_model.h"
+#include "rt_core/articulate/carrier.h"
 #include "sim_host/grasp_run.h"
 #include "sim_host/scene_model.h"
 #include "tests/support/baked_scene.h"
@@ -54,6 +57,19 @@ TEST(Grasp, OnlyTheFingersThatTakePartTouch) {
 // rounding.
 TEST(Grasp, AHandThatIsStillDoesNotChatter) {
   for (const char* name : kScenes) EXPECT_LT(played(name).chatter, 1e-9) << name;
+}
+
+// The same on an arm of 2 kN/m that is held still, as a device's is: the wrist finds its balance through the virtual
+// coupling while the fingers close, and must stay in it. Rounding moves it by 1e-14 per tick (measured 2026-11-21).
+TEST(Grasp, AHandOnACompliantWristDoesNotChatterAndLetsGoExactly) {
+  GraspOptions options;
+  options.hand_N_per_m = 2000;
+  for (const char* name : kScenes) {
+    const GraspRun run = run_grasp(scene_named(name).model(), *scene_named(name).scene(), options);
+    ASSERT_GT(run.regions, 5) << name;
+    EXPECT_LT(run.chatter, 1e-9) << name;
+    EXPECT_TRUE(run.back_at_rest) << name;
+  }
 }
 
 TEST(Grasp, OpeningTheHandReturnsTheBodyToRestExactly) {
@@ -111,29 +127,135 @@ TEST(Grasp, StressesStartAtZeroAndAreLargestWhileHeld) {
 // Friction remembers how contact came about, and the stop force where it was reached; without them the end of a grasp
 // is a function of where the hand is, whatever came first. The far field is fixed to the body at each region's first
 // touch, and first touches differ between orders: hence not to rounding. See docs/models_grasp.md for the figures.
-GraspRun played_in_order(CouplingLaw law, const std::vector<double>& delay_s) {
-  const SceneModel& scene = scene_named("grasp_cylinder_5");
+GraspRun played_in_order(const std::string& name, CouplingLaw law, const std::vector<double>& delay_s) {
+  const SceneModel& scene = scene_named(name);
   Model model = scene.model();
   model.params.coupling_law = static_cast<std::int32_t>(law);
   model.params.friction_law = static_cast<std::int32_t>(FrictionLaw::kNone);
   model.params.stop_force_N = 1e6;
   GraspOptions options;
-  for (std::size_t f = 0; f < kMaxFingers; ++f) options.delay_s[f] = delay_s[f];
+  options.every = 1'000'000;  // no history
+  for (std::size_t f = 0; f < delay_s.size(); ++f) options.delay_s[f] = delay_s[f];
   return run_grasp(model, *scene.scene(), options);
 }
 
-TEST(Grasp, TheOrderOfContactMattersInThePapersRuleAndNotInTheCoupledSolve) {
-  const std::vector<std::vector<double>> orders = {
-      {0.3, 0, 0.1, 0.2, 0.05}, {0, 0.3, 0.2, 0.1, 0.25}, {0.1, 0.2, 0.3, 0.05, 0}};
+// Fingers in the order in which they first touched, as digits: 201 is the middle finger, the thumb, the index.
+std::string touched(const Model& model, const State& state, std::int32_t fingers) {
+  std::vector<std::pair<std::uint32_t, std::int32_t>> born;
+  for (std::int32_t f = 0; f < fingers; ++f) {
+    std::uint32_t first = std::numeric_limits<std::uint32_t>::max();
+    for (std::size_t i = 0; i < model.tool_point.size(); ++i) {
+      const ToolPiece& piece = model.piece[static_cast<std::size_t>(model.tool_point[i].piece)];
+      if (piece.group == f && state.point[i].region >= 0)
+        first = std::min(first, state.region[state.point[i].region].born_tick);
+    }
+    born.emplace_back(first, f);
+  }
+  std::sort(born.begin(), born.end());
+  std::string order;
+  for (const auto& [tick, finger] : born) order += static_cast<char>('0' + finger);
+  return order;
+}
+
+struct OrderDependence {
+  std::set<std::string> orders;
+  double coupled = 0, temporal = 0;  // largest difference of a part's force from the first order's, of the largest
+};
+
+// Every finger starts to close `step_s` after the one before it in the order.
+OrderDependence played_in_orders(const std::string& name, const std::vector<std::vector<std::size_t>>& orders,
+                                 double step_s) {
+  OrderDependence all;
   std::vector<GraspRun> coupled, temporal;
-  for (const std::vector<double>& order : orders) {
-    coupled.push_back(played_in_order(CouplingLaw::kCoupled, order));
-    temporal.push_back(played_in_order(CouplingLaw::kTemporal, order));
+  for (const std::vector<std::size_t>& order : orders) {
+    std::vector<double> delay_s(order.size());
+    for (std::size_t k = 0; k < order.size(); ++k) delay_s[order[k]] = step_s * static_cast<double>(k);
+    coupled.push_back(played_in_order(name, CouplingLaw::kCoupled, delay_s));
+    temporal.push_back(played_in_order(name, CouplingLaw::kTemporal, delay_s));
+    all.orders.insert(
+        touched(scene_named(name).model(), *coupled.back().held, static_cast<std::int32_t>(order.size())));
+    all.coupled = std::max(all.coupled, force_difference(coupled[0], coupled.back()));
+    all.temporal = std::max(all.temporal, force_difference(temporal[0], temporal.back()));
   }
-  for (std::size_t i = 1; i < orders.size(); ++i) {
-    EXPECT_LT(force_difference(coupled[0], coupled[i]), 1e-3);
-    EXPECT_GT(force_difference(temporal[0], temporal[i]), 1e-2);
+  return all;
+}
+
+void expect_order_matters_to_the_paper_only(const OrderDependence& all, std::size_t orders) {
+  EXPECT_EQ(all.orders.size(), orders);  // they did touch in that many different orders
+  EXPECT_LT(all.coupled, 1e-4);          // measured 2026-11-21: 1.7e-6 of three fingers, 5.0e-6 of five
+  EXPECT_GT(all.temporal, 0.1);          // 0.74 and 0.69
+}
+
+TEST(Grasp, AllOrdersOfThreeFingersEndInTheSameForces) {
+  std::vector<std::vector<std::size_t>> orders;
+  std::vector<std::size_t> order{0, 1, 2};
+  do orders.push_back(order);
+  while (std::next_permutation(order.begin(), order.end()));
+  expect_order_matters_to_the_paper_only(played_in_orders("grasp_cylinder_3", orders, 0.3), orders.size());
+}
+
+TEST(Grasp, SeveralOrdersOfFiveFingersEndInTheSameForces) {
+  const std::vector<std::vector<std::size_t>> orders = {{0, 1, 2, 3, 4}, {4, 3, 2, 1, 0}, {1, 2, 3, 4, 0},
+                                                        {2, 0, 4, 1, 3}, {3, 1, 4, 0, 2}, {2, 4, 1, 3, 0}};
+  expect_order_matters_to_the_paper_only(played_in_orders("grasp_cylinder_5", orders, 0.17), orders.size());
+}
+
+// The fingers close, the wrist goes aside, the fingers open there, the wrist comes back: what the hand put in it got
+// back, to the error of the sum over ticks. The far field of an articulated tool is fixed to the body for this.
+TEST(Grasp, LoopsOfFingersAndWristReturnNoEnergy) {
+  Model model = scene_named("grasp_cylinder_5").model();
+  model.params.friction_law = static_cast<std::int32_t>(FrictionLaw::kNone);
+  model.params.stop_force_N = 1e6;
+  Bench bench(model);
+  struct Push {
+    std::int32_t piece;
+    Vec3 at_w, force_w;
+  };
+  std::vector<Push> before, now;
+  Pose carrier_before[kMaxPieces];
+  double work_J = 0, most_J = 0, at_hold_J = 0, stored_at_hold_J = 0;
+  constexpr int kPhase = 2500;
+  for (int n = 0; n <= 4 * kPhase; ++n) {
+    const double u = static_cast<double>(n % kPhase) / kPhase;
+    const int phase = n / kPhase;
+    const double closing = phase == 0 ? u : phase == 1 ? 1 : phase == 2 ? 1 - u : 0;
+    const double aside = phase == 0 ? 0 : phase == 1 ? u : phase == 2 ? 1 : phase == 3 ? 1 - u : 0;
+    Pose pose = model.grasp_w[0];
+    pose.position_m += aside * Vec3{-1.2e-3, 1.5e-3, 1e-3};
+    bench.tick_at(pose, closing_all(closing));
+    now.clear();
+    for (std::int32_t i = 0; i < bench.scratch->contact_count; ++i) {
+      const Contact& c = bench.scratch->contact[i];
+      now.push_back({piece_of(model, c), c.position_w, c.force_N * c.normal_w});
+    }
+    Pose carrier[kMaxPieces];
+    for (std::size_t p = 0; p < model.piece.size(); ++p)
+      carrier[p] = carrier_w(model, *bench.state, static_cast<std::int32_t>(p));
+    // The hand's work against the body's force on it: half with the forces before the step, half with those after.
+    if (n > 0) {
+      for (const Push& push : before) {
+        const Vec3 to = transform(carrier[push.piece], inverse_transform(carrier_before[push.piece], push.at_w));
+        work_J -= 0.5 * dot(push.force_w, to - push.at_w);
+      }
+      for (const Push& push : now) {
+        const Vec3 from = transform(carrier_before[push.piece], inverse_transform(carrier[push.piece], push.at_w));
+        work_J -= 0.5 * dot(push.force_w, push.at_w - from);
+      }
+    }
+    before = now;
+    std::copy_n(carrier, kMaxPieces, carrier_before);
+    most_J = std::max(most_J, bench.output.energy_J);
+    if (n == kPhase - 1) {
+      at_hold_J = work_J;
+      stored_at_hold_J = bench.output.energy_J;
+      EXPECT_EQ(bench.output.regions, kHandParts);
+    }
   }
+  EXPECT_EQ(bench.output.regions, 0);
+  EXPECT_GT(most_J, 1e-3);
+  // The bound is 1e-3; measured 2026-11-21: 4.8e-6 at the hold, 2.4e-7 after the loop.
+  EXPECT_NEAR(at_hold_J, stored_at_hold_J, 1e-4 * most_J);
+  EXPECT_NEAR(work_J, 0, 1e-5 * most_J);
 }
 
 TEST(Grasp, TheCoupledSolveConvergesThroughTheWholeGrasp) {
@@ -197,8 +319,9 @@ TEST(Grasp, ACopyOfTheStateGoesOnWithTheSameBits) {
   }
 }
 
-// Twenty jaws of a hundred points each press a block: 2000 points, 20 regions.
-std::string crowd() {
+// Twenty jaws of a hundred points each press a block: 2000 points, 20 regions. Each jaw is described `step_mm` higher
+// than the one before and tilted, so that its points differ in depth.
+std::string crowd(double step_mm, double tilt_deg) {
   std::string text = R"(
 name = "crowd"
 [body]
@@ -220,41 +343,44 @@ stop_force_N = 100
   for (int k = 0; k < 20; ++k) {
     const int x = 50 * (k % 5) - 100, z = 60 * (k / 5) - 90;
     text += "[[tool.piece]]\nshape = \"capsule\"\nposition_mm = [" + std::to_string(x) + ", " +
-            std::to_string(0.02 * k) + ", " + std::to_string(z) +
-            "]\nradius_mm = 6\nlength_mm = 32\npoints = 100\nslide_mm = [" + std::to_string(0.01 * k + 0.01) +
+            std::to_string(step_mm * k) + ", " + std::to_string(z) + "]\nrotation_deg = [" + std::to_string(tilt_deg) +
+            ", 0, 0]\nradius_mm = 6\nlength_mm = 32\npoints = 100\nslide_mm = [" + std::to_string(0.01 * k + 0.01) +
             ", 20, 0]\n";
   }
   return text;
 }
 
+// Both pools overflow in one tick: far more points touch than contacts are kept, and those that are kept belong to
+// more jaws than there are regions. Two runs, one on dirty scratch memory, agree in every bit of every tick.
 TEST(GraspOverflow, ThousandsOfPointsAndTooManyRegionsDegradeDeterministically) {
-  const BakedScene scene(crowd());
+  const BakedScene scene(crowd(0.002, 10));
   const Model& model = scene.model();
   ASSERT_EQ(model.sizes.n_tool_point, 2000);
   Bench a(model), b(model);
   std::memset(static_cast<void*>(b.scratch.get()), 0xC3, sizeof(Scratch));
-  bool contacts_dropped = false, regions_dropped = false;
+  int together = 0;
   for (int i = 0; i < 150; ++i) {
     const Pose pose{{0, 0.0445, 0}, {}};
     a.tick_at(pose, closing_all(1));
     b.tick_at(pose, closing_all(1));
-    ASSERT_EQ(hash_state(model, *a.state), hash_state(model, *b.state));
+    ASSERT_EQ(hash_state(model, *a.state), hash_state(model, *b.state)) << first_difference(model, *a.state, *b.state);
+    ASSERT_EQ(a.output.contact_w, b.output.contact_w);
+    ASSERT_EQ(a.output.status, b.output.status);
     ASSERT_LE(a.output.contacts, kMaxContacts);
     ASSERT_LE(a.output.regions, kMaxRegions);
     ASSERT_EQ(a.output.fault, 0u);
     ASSERT_TRUE(is_finite(a.output.contact_w.force_N));
-    contacts_dropped |= (a.output.status & Status::kContactsDropped) != 0;
-    regions_dropped |= (a.output.status & Status::kRegionsDropped) != 0;
+    constexpr std::uint32_t kBoth = Status::kContactsDropped | Status::kRegionsDropped;
+    together += (a.output.status & kBoth) == kBoth ? 1 : 0;
   }
-  EXPECT_TRUE(contacts_dropped);
-  EXPECT_EQ(a.output.contacts, kMaxContacts);
+  EXPECT_GT(together, 20);  // ticks
+  EXPECT_EQ(a.output.regions, kMaxRegions);
   EXPECT_GT(a.output.contact_w.force_N.y, 0);
-  (void)regions_dropped;
 }
 
 // The same with one point per jaw: twenty regions, of which the sixteen deepest are kept.
 TEST(GraspOverflow, TwentyRegionsKeepTheSixteenDeepest) {
-  std::string text = crowd();
+  std::string text = crowd(0.02, 0);
   for (std::size_t at; (at = text.find("points = 100")) != std::string::npos;) text.replace(at, 12, "points = 1");
   const BakedScene scene(text);
   Bench bench(scene.model());

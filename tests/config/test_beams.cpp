@@ -313,6 +313,30 @@ TEST(PressedRing, SymmetricPressIsSymmetric) {
   }
 }
 
+TEST(PressedRing, WalkEndsWhereTheNearestPointIs) {
+  const Model& model = ring().model;
+  for (std::int32_t v = 0; v < model.sizes.n_vertex; v += 7) {
+    // Above the middle of a triangle at this vertex, from a triangle a few edges away.
+    for (std::int32_t t = 0; t < model.sizes.n_triangle; ++t) {
+      const Triangle& triangle = model.triangle[static_cast<std::size_t>(t)];
+      if (triangle.vertex[0] != v) continue;
+      Vec3 middle;
+      for (const std::int32_t corner : triangle.vertex)
+        middle += (1.0 / 3) * model.vertex_m[static_cast<std::size_t>(corner)];
+      std::int32_t start = t;
+      for (int k = 0; k < 4; ++k) start = model.triangle[static_cast<std::size_t>(start)].adjacent[k % 3];
+      const SurfaceSpot walked = locate_from(model, middle, start), nearest = locate_on_surface(model, middle, -1);
+      ASSERT_TRUE(walked.found);
+      for (int k = 0; k < 3; ++k) {
+        EXPECT_EQ(walked.vertex[k], nearest.vertex[k]);
+        EXPECT_NEAR(walked.weight[k], 1.0 / 3, 1e-9);
+      }
+    }
+  }
+  EXPECT_FALSE(locate_from(model, {0, 0, 0}, -1).found);
+  EXPECT_FALSE(locate_from(model, {std::nan(""), 0, 0}, 0).found);
+}
+
 TEST(PressedRing, ForcesAddUpAndFallWithDistance) {
   const Model& model = ring().model;
   const Press p = press_at(model, {30e-3, 90e-3, 0}, {-3, -4, 0.5});

@@ -85,6 +85,8 @@ expect fail "symbols_core on ccdGJKPenetration" "$gates/symbols_core.sh" "$work/
 expect pass "instructions_core on clean code" "$gates/instructions_core.sh" "$work/clean.a"
 archive fused '__attribute__((target("fma"))) double f(double a, double b, double c) { return __builtin_fma(a, b, c); }\n'
 expect fail "instructions_core on a fused multiply-add" "$gates/instructions_core.sh" "$work/fused.a"
+archive gather 'void f() { __asm__("vgatherdps %%ymm1,(%%rsi,%%ymm4,4),%%ymm3" : : : "memory"); }\n'
+expect fail "instructions_core on a gather that QEMU gets wrong" "$gates/instructions_core.sh" "$work/gather.a"
 
 program() { # NAME TEXT LIBRARY...
   local name=$1

@@ -19,6 +19,8 @@ class MadeUpMachine : public testing::Test {
     put("sys/devices/system/cpu/isolated", "2-3");
     put("proc/cmdline", "quiet isolcpus=2-3 nohz_full=2-3 rcu_nocbs=2-3");
     put("proc/sys/kernel/sched_rt_runtime_us", "-1");
+    put("proc/sys/kernel/watchdog", "1");
+    put("proc/sys/kernel/watchdog_cpumask", "0-1");
     put("sys/devices/system/cpu/cpu3/cpufreq/scaling_governor", "performance");
     put("sys/devices/system/cpu/cpu3/topology/thread_siblings_list", "3");
     put("dev/cpu_dma_latency", "");
@@ -69,6 +71,7 @@ TEST_F(MadeUpMachine, EachSpoiledItemFailsWithARemedy) {
       {"proc/cmdline", "quiet rcu_nocbs=2", "boot option nohz_full"},
       {"proc/cmdline", "quiet nohz_full=2", "boot option rcu_nocbs"},
       {"proc/sys/kernel/sched_rt_runtime_us", "950000", "real-time throttling off"},
+      {"proc/sys/kernel/watchdog_cpumask", "0-3", "lockup watchdog off the real-time CPU"},
       {"sys/fs/cgroup/cpu/cpu.rt_runtime_us", "0", "real-time group scheduling"},
       {"sys/devices/system/cpu/cpu3/cpufreq/scaling_governor", "powersave", "CPU governor"},
       {"sys/devices/system/cpu/cpu3/topology/thread_siblings_list", "3,7", "no SMT sibling on the real-time CPU"},
@@ -91,6 +94,12 @@ TEST_F(MadeUpMachine, WhatCannotBeReadIsUnknown) {
   fs::remove_all(root_ / "proc/sys");
   const auto items = examine_machine(sources_);
   EXPECT_EQ(find(items, "real-time throttling off")->verdict, Verdict::kUnknown);
+}
+
+TEST_F(MadeUpMachine, AWatchdogThatIsOffDisturbsNoProcessor) {
+  put("proc/sys/kernel/watchdog", "0");
+  put("proc/sys/kernel/watchdog_cpumask", "0-3");
+  EXPECT_EQ(find(examine_machine(sources_), "lockup watchdog off the real-time CPU")->verdict, Verdict::kPass);
 }
 
 TEST_F(MadeUpMachine, CanCardOfTheLoopIsJudged) {

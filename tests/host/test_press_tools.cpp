@@ -152,6 +152,57 @@ TEST(PressTools, FrictionlessLoopsAreConservative) {
   }
 }
 
+// The energy the tick reports, and `palpate press` writes, is the work done against the tips at every depth: that of
+// the far field with c1, and of two tips that lean on one another in first and second order, included.
+void expect_energy_is_work(const SceneModel& scene, const char* name) {
+  std::vector<TimedPose> poses;
+  constexpr int kSteps = 4000;
+  // Down, and then along a slant, so that depths and places change together.
+  for (int i = 0; i <= kSteps; ++i) {
+    const double t = static_cast<double>(i) / kSteps;
+    poses.push_back({t, pose_at(0.02 * t * t, 0.1 * t, 0.004 * t)});
+  }
+  const auto state = std::make_unique<State>();
+  double work = 0, worst = 0, energy = 0;
+  Wrench last;
+  Pose from;
+  press(scene.model(), poses, {}, *state, nullptr, [&](const PressRow& row, const State&, const Scratch&) {
+    const Output& output = row.record.output;
+    if (row.record.tick > 0) {
+      const Vec3 step = output.tool_w.position_m - from.position_m;
+      const Vec3 turn = small_rotation_vector(output.tool_w.orientation * conjugate(from.orientation));
+      work -= 0.5 * (dot(output.contact_w.force_N + last.force_N, step) +
+                     dot(output.contact_w.torque_Nm + last.torque_Nm, turn));
+      worst = std::max(worst, std::abs(output.energy_J - work));
+    }
+    energy = output.energy_J;
+    last = output.contact_w;
+    from = output.tool_w;
+  });
+  ASSERT_GT(energy, 1e-4) << name;
+  std::printf("  %-12s %.5f mJ stored, at most %.4f %% of it from the work done\n", name, 1e3 * energy,
+              100 * worst / energy);
+  EXPECT_LT(worst, 1e-4 * energy) << name;
+}
+
+TEST(PressTools, EnergyReportedIsTheWorkDone) {
+  expect_energy_is_work(SceneModel(cylinder_scene("", {"friction.law=none", "contact.series.c0_mm_per_N=0.02",
+                                                       "contact.series.c1_mm_per_N2=0.0004"})),
+                        "c0, c1");
+  const std::string path =
+      (std::filesystem::temp_directory_path() / "palpate_EnergyReportedIsTheWorkDone.toml").string();
+  std::ofstream(path) << "[[tool.piece]]\nshape = \"sphere\"\nposition_mm = [-15, -13.65, 0]\nradius_mm = 6.35\n"
+                         "[[tool.piece]]\nshape = \"sphere\"\nposition_mm = [15, -13.65, 0]\nradius_mm = 6.35\n"
+                         "[[contact.pair]]\npiece_a = 0\npiece_b = 1\nc_mm_per_N = 0.004\nh_ab_mm_per_N2 = 5e-5\n"
+                         "h_ba_mm_per_N2 = -3e-5\n";
+  SceneOverlays overlays;
+  overlays.file.push_back(path);
+  overlays.setting = {"friction.law=none", "contact.series.c0_mm_per_N=0.01", "contact.series.c1_mm_per_N2=0.0001"};
+  const SceneModel two(load_scene(scene_path("tools_on_cylinder"), overlays));
+  std::filesystem::remove(path);
+  expect_energy_is_work(two, "two tips");
+}
+
 // Curves that differ over the surface by a factor of two and more.
 class TableScene : public ::testing::Test {
  protected:
@@ -173,6 +224,35 @@ TEST_F(TableScene, LoopsOverSoftAndStiffPlacesAreConservative) {
       "-40,200,0,0,0\n-40,200,0,1,2\n-40,200,0,2,5\n-40,200,0,6,20\n"
       "40,200,0,0,0\n40,200,0,1,4\n40,200,0,2,9\n40,200,0,6,50\n");
   expect_conservative(scene, "table", 8, 1e-3);
+}
+
+// Curves pressed by the baker, cubic in the root of the depth, softer towards the edge: loops up to 20 mm from the edge
+// of a layer and back, at 3 mm of its 10.
+TEST(PressTools, PressesOfTheBakerAreConservative) {
+  SceneOverlays overlays;
+  overlays.file.push_back(scene_path("responses/table_fem"));
+  overlays.setting = {"friction.law=none", "contact.max_depth_mm=4", "body.triangles=1200"};
+  const SceneModel scene(load_scene(scene_path("tools_on_layer"), overlays));
+  ASSERT_EQ(scene.model().params.response_root, 1);
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> symmetric(-1, 1);
+  double worst = 0;
+  for (int loop = 0; loop < 6; ++loop) {
+    double a[6];
+    for (double& x : a) x = symmetric(random);
+    std::vector<TimedPose> poses;
+    for (int i = 0; i <= 8000; ++i) {
+      const double t = i / 8000.0, w = kTwoPi * t, u = clamp_to(std::min(t, 1 - t) / 0.2, 0, 1);
+      const double in = u * u * (3 - 2 * u), depth = -0.001 + in * (0.0035 + 0.0005 * std::sin(2 * w + a[4]));
+      const double x = 0.05 + in * (0.005 * a[0] * std::sin(w) - 0.03 * a[1] * a[1] * std::sin(0.5 * w));
+      poses.push_back({t, {{x, 0.01 - depth + kTip, 0.03 * a[2] * std::sin(w + a[3]) * in}, {}}});
+    }
+    const LoopWork work = loop_work(scene.model(), poses);
+    ASSERT_GT(work.energy_max_J, 1e-5);
+    worst = std::max(worst, std::abs(work.work_J) / work.energy_max_J);
+  }
+  std::printf("  fem table    largest loop energy %.4f %% of the energy stored\n", 100 * worst);
+  EXPECT_LT(worst, 1e-3);
 }
 
 // At the place of a press its samples come back, through baker, image and tick.
@@ -266,6 +346,34 @@ TEST(PressTools, LayerIsExactThroughTheTick) {
         [&](const PressRow& row, const State&, const Scratch&) { force = norm(row.record.output.contact_w.force_N); });
   const double hertz = 4.0 / 3 * 2e4 / (1 - 0.49 * 0.49) * std::sqrt(6.35e-3) * std::pow(depth, 1.5);
   EXPECT_NEAR(force / hertz, 2.10988, 2e-5);
+}
+
+// Past the middle of a thin body its other face is nearer, and past the axis of a cylinder its other side: neither may
+// pull the tip through. Pressed from 10 mm above to 9 of 10 mm, and to 1.6 of the radius.
+TEST(PressTools, DeepPressesNeverPull) {
+  for (const char* tool : {"cone_30", "cone_60", "flat_3_2", "sphere_3_2", "sphere_12_7"}) {
+    SceneOverlays overlays;
+    overlays.file.push_back(scene_path(std::string("tools/") + tool));
+    overlays.setting = {"friction.law=none"};
+    const SceneModel layer(load_scene(scene_path("tools_on_layer"), overlays));
+    std::vector<TimedPose> down;
+    for (int i = 0; i <= 2000; ++i) down.push_back({0, {{0.003, 0.02 - 9.5e-6 * i + kTip, 0.002}, {}}});
+    const auto state = std::make_unique<State>();
+    double last = 0;
+    press(layer.model(), down, {}, *state, nullptr, [&](const PressRow& row, const State&, const Scratch&) {
+      const Vec3 force = row.record.output.contact_w.force_N;
+      EXPECT_GE(force.y, last) << tool << " " << row.record.tick;
+      EXPECT_LT(norm(Vec3{force.x, 0, force.z}), 1e-9 + 1e-6 * force.y) << tool << " " << row.record.tick;
+      last = force.y;
+    });
+    EXPECT_GT(last, 0.1) << tool;
+    const SceneModel cylinder(cylinder_scene(tool, {"friction.law=none"}));
+    std::vector<TimedPose> through;
+    for (int i = 0; i <= 3200; ++i) through.push_back({0, pose_at(0, 0, 5e-5 * i)});
+    press(cylinder.model(), through, {}, *state, nullptr, [&](const PressRow& row, const State&, const Scratch&) {
+      ASSERT_GE(row.record.output.contact_w.force_N.y, 0) << tool << " " << row.record.tick;
+    });
+  }
 }
 
 TEST(PressTools, OverlaysAndSettingsNameThemselvesInErrors) {

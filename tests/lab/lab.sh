@@ -8,15 +8,17 @@ cache=${PALPATE_LAB_CACHE:-$root/build/lab/cache}
 programs=$root/build/release/bin
 results=$root/out/lab
 jobs=${PALPATE_JOBS:-$(nproc)}
-standard='cyclictest vcan kvaser usb faults determinism vcan_classic:21'
-thorough="$standard buses vcan_classic usb_unplug host_chaos vcan:60 kvaser:60 usb:60 vcan_classic:600"
+every='faults usb kvaser vcan vcan_classic:21 determinism cyclictest'
+standard="$every scene_grasp_cylinder_5 scene_ring"
+scenes=$(cd "$root/config/scenes" && printf 'scene_%s ' *.toml | sed 's/\.toml//g')
+thorough="$every scenes buses vcan_classic usb_unplug host_chaos vcan:60 kvaser:60 usb:60 vcan_classic:600"
 
 usage() {
   cat << TEXT
 Usage: ./run lab [--all | --list] [SCENARIO[:SECONDS]...]
   Without scenarios: $standard
   --all            $thorough
-  --list           every scenario with its first words
+  --list           every scenario with its first words; scene_NAME is a scene, and "scenes" all of them
   --judge          judges again what lies in out/lab; boots nothing
   --docs           writes the table and the plots of what lies in out/lab into docs/laboratory.md; boots nothing
   --programs DIR   where palpate, palpate-rt and palpate-device are; default build/release/bin
@@ -32,12 +34,14 @@ die() {
 # What the numbers must be. Wake-up: cyclictest in the same boot plus 10 us. Sent: deadline to command handed to the bus.
 allowance_us=10
 sent_limit_us=150
+scene_limit_us=500 # of every other scene: half the period, as palpate latency --certify asks
 
 field() { awk "$1" "$log" 2> /dev/null; } # AWK: one number out of the scenario's log
 
 read_numbers() { # RESULT_DIR
   log=$1/log.txt
   forced=$(field '/^loop thread:/ { s += $12; n++ } END { if (n) print s }')
+  heap=$(field '/^loop thread:.* heap calls$/ { s += $14; n++ } END { if (n) print s }')
   missed=$(field '/^controller: .* missed/ { s += $4; n++ } END { if (n) print s }')
   ticks=$(field '/^controller: .* ticks/ { s += $2; n++ } END { if (n) print s }')
   faults=$(field '/^loop thread:/ { s += $3 + $6; n++ } END { if (n) print s }')
@@ -50,8 +54,8 @@ read_numbers() { # RESULT_DIR
 
 above() { awk -v a="${1:-0}" -v b="$2" 'BEGIN { exit !(a > b) }'; }
 
-judge() { # SCENARIO: problems found in the numbers, one a line
-  local name=$1
+judge() { # SCENARIO FOLDER: problems found in the numbers, one a line
+  local name=$1 limit_us=$sent_limit_us
   [ "$(cat "$results/$2/exit_code" 2> /dev/null)" = 0 ] || echo "the scenario failed: see $results/$2/log.txt"
   if [ -n "$kernel" ] && [ "$name" = cyclictest ]; then
     ! above "$kernel" 100 || echo "the kernel itself wakes up late: $kernel us"
@@ -60,11 +64,14 @@ judge() { # SCENARIO: problems found in the numbers, one a line
   [ -n "$ticks" ] || { echo "the controller said nothing"; return; }
   [ "$missed" = 0 ] || echo "$missed ticks missed"
   [ "$faults" = 0 ] || echo "$faults page faults in the loop"
+  [ "$heap" = 0 ] || echo "${heap:-uncounted} heap calls in the loop"
   # Interrupt threads and the writer of USB reports run above the loop on purpose; on vcan nothing does.
-  case $name in vcan* | host_chaos) [ "$forced" = 0 ] || echo "the loop was preempted $forced times" ;; esac
+  case $name in vcan* | host_chaos | faults | scene_*) [ "$forced" = 0 ] || echo "the loop was preempted $forced times" ;; esac
   [ -n "$wake" ] && [ -n "$kernel" ] || { echo "no latency measured"; return; }
   ! above "$wake" $((kernel + allowance_us)) || echo "wake-up $wake us, cyclictest $kernel us"
-  ! above "$sent" $sent_limit_us || echo "deadline to sent $sent us, allowed $sent_limit_us us"
+  case $name in scene_ellipsoid_mallet*) ;; scene_*) limit_us=$scene_limit_us ;; esac
+  ! above "$sent" $limit_us || echo "deadline to sent $sent us, allowed $limit_us us"
+  [ ! -e "$results/$2/replay.txt" ] || grep -q '^identical' "$results/$2/replay.txt" || echo "another result outside the guest"
   above "$hand" 0.5 || echo "the hand felt nothing"
   case $name in host_chaos) ;; *) [ "${lost:-0}" = 0 ] || echo "$lost records lost" ;; esac
 }
@@ -73,15 +80,30 @@ verdict() { # SCENARIO[:SECONDS] [SECONDS TAKEN]: reads and judges the results
   local name=${1%%:*} folder=${1/:/_} problems
   read_numbers "$results/$folder"
   problems=$(judge "$name" "$folder" | paste -sd ';')
-  printf '%-7s %-18s %7s ticks  missed %s  wake-up max %s us (cyclictest %s)  sent max %s us  page faults %s%s%s\n' \
+  printf '%-7s %-28s %7s ticks  missed %s  wake-up max %s us (cyclictest %s)  sent max %s us  page faults %s  heap calls %s%s%s\n' \
     "$([ -z "$problems" ] && echo passed || echo FAILED)" "$1" "${ticks:--}" "${missed:--}" "${wake:--}" "${kernel:--}" \
-    "${sent:--}" "${faults:--}" "${2:+  [$2 s]}" "${problems:+  $problems}" | tee "$results/$folder/verdict.txt"
+    "${sent:--}" "${faults:--}" "${heap:--}" "${2:+  [$2 s]}" "${problems:+  $problems}" | tee "$results/$folder/verdict.txt"
+}
+
+default_seconds() { # SCENARIO
+  case $1 in
+    cyclictest) echo 20 ;;
+    scene_*) awk -F, 'END { print int($1 + 0.999) }' "$out/scenes/${1#scene_}.csv" ;; # its path
+    *) echo 10 ;;
+  esac
+}
+
+replay_outside() { # SCENARIO RESULT_DIR: what was computed inside must be what a real processor computes
+  local scene=ellipsoid_mallet
+  [ -e "$2/run.plr" ] || return
+  case $1 in scene_*) scene=${1#scene_} ;; esac
+  "$out/palpate" replay "$2/run.plr" --image "$out/scenes/$scene.pal" > "$2/replay.txt" 2>&1
+  rm "$2/run.plr"
 }
 
 run_one() { # SCENARIO[:SECONDS]
   local name=${1%%:*} seconds=${1#*:} folder=${1/:/_} started=$SECONDS
-  [ "$seconds" != "$1" ] || seconds=10
-  [ "$name" != cyclictest ] || [ "$1" != cyclictest ] || seconds=20
+  [ "$seconds" != "$1" ] || seconds=$(default_seconds "$name")
   rm -rf "${results:?}/$folder"
   mkdir -p "$results/$folder"
   if [ "$name" = determinism ]; then
@@ -91,6 +113,7 @@ run_one() { # SCENARIO[:SECONDS]
   if ! bash "$here/boot.sh" run "$out" "$name" "$seconds" "$results/$folder" $((300 + 10 * seconds)) 2> "$results/$folder/boot.txt"; then
     cat "$results/$folder/boot.txt" >&2
   fi
+  replay_outside "$name" "$results/$folder"
   verdict "$1" $((SECONDS - started))
 }
 
@@ -99,11 +122,12 @@ determinism() { # FOLDER: two runs of one scenario must give the same bytes, to 
   for run in 1 2; do
     mkdir -p "$results/$1/$run"
     bash "$here/boot.sh" run "$out" vcan 3 "$results/$1/$run" 400 || differ=" run $run failed"
+    rm -f "$results/$1/$run/run.plr"
   done
   for file in recording.sha256 latency.txt cyclictest.txt kernel.log log.txt; do
     [ -s "$results/$1/1/$file" ] && cmp -s "$results/$1/1/$file" "$results/$1/2/$file" || differ+=" $file differs"
   done
-  printf '%-7s %-18s two runs of vcan:3: recording %.12s, histograms, kernel log %s  [%s s]\n' \
+  printf '%-7s %-28s two runs of vcan:3: recording %.12s, histograms, kernel log %s  [%s s]\n' \
     "$([ -z "$differ" ] && echo passed || echo FAILED)" determinism "$(cat "$results/$1/1/recording.sha256" 2> /dev/null)" \
     "${differ:-identical}" $((SECONDS - started)) | tee "$results/$1/verdict.txt"
 }
@@ -112,7 +136,8 @@ judge_again() { # everything in out/lab
   local folder name
   for folder in "$results"/*/; do
     name=$(basename "$folder")
-    [ "$name" = determinism ] || [ ! -e "$folder/log.txt" ] || verdict "$(sed -E 's/_([0-9]+)$/:\1/' <<< "$name")"
+    case $name in determinism) continue ;; scene_*) ;; *) name=$(sed -E 's/_([0-9]+)$/:\1/' <<< "$name") ;; esac
+    [ ! -e "$folder/log.txt" ] || verdict "$name"
   done
 }
 
@@ -128,14 +153,14 @@ write_docs() { # the table between its marks in docs/laboratory.md, and the hist
 
 table() { # every verdict there is, as a dated table for docs/laboratory.md
   local folder name
-  printf '| scenario | ticks | missed | page faults | preemptions | wake-up max (cyclictest), µs | deadline to sent max, µs | verdict | date |\n'
-  printf '|---|---|---|---|---|---|---|---|---|\n'
+  printf '| scenario | ticks | missed | page faults | heap calls | preemptions | wake-up max (cyclictest), µs | deadline to sent max, µs | verdict | date |\n'
+  printf '|---|---|---|---|---|---|---|---|---|---|\n'
   for folder in "$results"/*/; do
     [ -e "$folder/verdict.txt" ] || continue
     name=$(basename "$folder")
     read_numbers "$folder"
-    printf '| %s | %s | %s | %s | %s | %s (%s) | %s | %s | %s |\n' "$name" "${ticks:--}" "${missed:--}" "${faults:--}" \
-      "${forced:--}" "${wake:--}" "${kernel:--}" "${sent:--}" "$(cut -d' ' -f1 "$folder/verdict.txt")" \
+    printf '| %s | %s | %s | %s | %s | %s | %s (%s) | %s | %s | %s |\n' "$name" "${ticks:--}" "${missed:--}" "${faults:--}" \
+      "${heap:--}" "${forced:--}" "${wake:--}" "${kernel:--}" "${sent:--}" "$(cut -d' ' -f1 "$folder/verdict.txt")" \
       "$(date -u -r "$folder/verdict.txt" +%Y-%m-%d)"
   done
 }
@@ -158,7 +183,7 @@ scenarios=()
 while [ $# -gt 0 ]; do
   case $1 in
     --judge | --docs)
-      judge_again
+      [ "$1" = --docs ] || judge_again
       write_table
       [ "$1" = --judge ] || write_docs
       exit 0
@@ -166,9 +191,14 @@ while [ $# -gt 0 ]; do
     --all) read -ra scenarios <<< "$thorough" ;;
     --list)
       for file in "$here"/scenarios/*.sh; do
-        [ "$(basename "$file")" = common.sh ] || printf '%-14s %s\n' "$(basename "$file" .sh)" "$(sed -n '1s/^# //p' "$file")"
+        case $file in */common.sh | */scene.sh) continue ;; esac
+        printf '%-28s %s\n' "$(basename "$file" .sh)" "$(sed -n '1s/^# //p' "$file")"
       done
-      printf '%-14s %s\n' determinism 'vcan run twice: recording, histograms and kernel log must be the same'
+      for file in $scenes; do
+        printf '%-28s %s\n' "$file" "config/scenes/${file#scene_}.toml along its own path, CAN FD on vcan"
+      done
+      printf '%-28s %s\n' scenes 'every one of these'
+      printf '%-28s %s\n' determinism 'vcan run twice: recording, histograms and kernel log must be the same'
       exit 0
       ;;
     --programs) programs=$(cd "${2:?}" && pwd) && shift ;;
@@ -179,22 +209,34 @@ while [ $# -gt 0 ]; do
   shift
 done
 [ ${#scenarios[@]} -gt 0 ] || read -ra scenarios <<< "$standard"
+words=" ${scenarios[*]} "
+read -ra scenarios <<< "${words/ scenes / $scenes }"
 for one in "${scenarios[@]}"; do
-  [ "${one%%:*}" = determinism ] || [ -e "$here/scenarios/${one%%:*}.sh" ] || die "no scenario '$one': see lab.sh --list"
+  case ${one%%:*} in
+    determinism) continue ;;
+    scene_*) file=$root/config/scenes/${one#scene_} && file=${file%%:*}.toml ;;
+    *) file=$here/scenarios/${one%%:*}.sh ;;
+  esac
+  [ -e "$file" ] || die "no scenario '$one': see lab.sh --list"
 done
 for tool in qemu-system-x86_64 cpio busybox; do
   command -v $tool > /dev/null || die "$tool is missing: apt-get install qemu-system-x86 cpio busybox-static iproute2 kmod"
 done
-for program in palpate palpate-rt palpate-device lab_host lab_check lab_idle; do
+for program in palpate palpate-rt palpate-device lab_host lab_check lab_scene lab_idle; do
   [ -x "$programs/$program" ] || die "$programs/$program is missing: build first, or give --programs DIR"
 done
 
 out=$(mktemp -d "${TMPDIR:-/tmp}/palpate-lab.XXXXXX")
 trap 'rm -rf "$out"' EXIT
-"$programs/palpate" bake "$root/config/scenes/ellipsoid_mallet.toml" -o "$out/ellipsoid_mallet.pal" > /dev/null ||
-  die "cannot bake the scene"
+cp "$programs/palpate" "$out/" # a long run may outlive the build
+mkdir "$out/scenes"
+for one in $scenes; do
+  one=${one#scene_}
+  cp "$programs/../scenes/$one.pal" "$out/scenes/" || die "the scenes are not baked: build the target scene_images"
+  "$programs/lab_scene" "$root/config/scenes/$one.toml" "$out/scenes" || die "$one.toml cannot be read"
+done
 bash "$here/guest.sh" "$cache" "$out" "$programs"/{palpate,palpate-rt,palpate-device,lab_host,lab_check,lab_idle} -- \
-  "$here"/{scenarios,faults,hand.csv,press.csv} "$out/ellipsoid_mallet.pal" || die "cannot build the guest"
+  "$here"/{scenarios,faults,hand.csv,press.csv} "$out/scenes" || die "cannot build the guest"
 echo "lab: booting the guest" >&2
 bash "$here/boot.sh" save "$out" || die "the guest does not boot"
 mkdir -p "$results"

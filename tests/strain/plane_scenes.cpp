@@ -54,6 +54,18 @@ LargeStrainSolver<2> clip_on_tube(double element_m) {
   return solver;
 }
 
+double clip_tip_face_m() { return kClipTipCentreRadius_m * std::cos(kClipArmEnd_rad) - kClipTipRadius_m; }
+
+LargeStrainSolver<2> clip_spread(double element_m) {
+  const ClipMesh clip = clip_mesh(element_m);
+  RigidTool face;
+  face.shape = RigidShape::kPlane;
+  face.axis = {1, 0, 0};
+  LargeStrainSolver<2> solver(clip.mesh, clip_material(), clip.fixed, clip.contact_nodes, {face});
+  solver.place_tools({{clip_tip_face_m(), 0}});
+  return solver;
+}
+
 // Edges from `from` to `to`, fine at the ends that are fingers, none longer
 // than 5 degrees.
 std::vector<double> arc_steps(double from, bool finger_from, double to, bool finger_to, double step) {
@@ -216,6 +228,14 @@ ClipOnTube::State ClipOnTube::insert(double insertion_m) {
   const PressState<2> state = solver.move_tools({{0, clip_first_contact_m() - insertion_m}});
   EXPECT_TRUE(state.converged) << insertion_m;
   return {2 * state.force_on_tool_N[0][1], 2 * state.energy_J};
+}
+
+ClipSpread::ClipSpread(double element_m) : solver(clip_spread(element_m)) {}
+
+double ClipSpread::force_N(double travel_m) {
+  const PressState<2> state = solver.move_tools({{clip_tip_face_m() + travel_m, 0}});
+  EXPECT_TRUE(state.converged) << travel_m;
+  return -state.force_on_tool_N[0][0];
 }
 
 RingUnderFingers::RingUnderFingers(double contact_element_m, StrainLaw law)

@@ -46,6 +46,14 @@ struct ClipOnTube {
   LargeStrainSolver<2> solver;
 };
 
+// The same clip, its tips spread along x by a frictionless face instead of the
+// tube.
+struct ClipSpread {
+  explicit ClipSpread(double element_m);
+  double force_N(double travel_m);  // of one arm; travels must rise
+  LargeStrainSolver<2> solver;
+};
+
 // G2: plane-strain ring like D's, outer arc within 25 degrees of -y fixed, two
 // rigid cylinders of 8 mm radius at the polar angles 90 and 20 degrees, pressed
 // towards the centre.

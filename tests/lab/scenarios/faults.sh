@@ -10,10 +10,10 @@ for script in /lab/faults/*.txt; do
   [ "$(basename "$script")" != passes.txt ] || length=7
   rm -f /tmp/run.*
   start_device can:vcan0 --faults "$script"
-  palpate run /lab/ellipsoid_mallet.pal --device can:vcan0 --duration $length --record /tmp/run.plr --priority 80 --quiet ||
+  palpate run "$image" --device can:vcan0 --duration $length --record /tmp/run.plr --priority 80 --quiet ||
     [ "$fault" != none ]
   kill $device 2> /dev/null || true
-  lab_check /lab/ellipsoid_mallet.pal /tmp/run.plr "$fault"
+  lab_check "$image" /tmp/run.plr "$fault"
   [ "$fault" != none ] || continue
   palpate replay /tmp/run.*fault*.plr
   candump -n 100 -T 3000 vcan0 > /tmp/seen & seen=$!
