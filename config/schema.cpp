@@ -170,8 +170,9 @@ const KeySpec kNodal[] = {
     integer<&NodalDesc::friction_sweeps>("friction_sweeps", 1, 20,
                                          "sweeps per tick of the problem with friction; each costs about 30,000 "
                                          "instructions for 45 contacts"),
-    choice<&NodalDesc::carry>("carry", "far_field|rest",
-                              "where gaps and normals are taken: on the surface carried by its far field, or at rest"),
+    choice<&NodalDesc::carry>("carry", "far_field|rest|turned",
+                              "where gaps and normals are taken: on the surface carried by its far field, at rest, or "
+                              "carried by the far field's finite rotation (clips: 4.6 % instead of 8.8 %)"),
     number_or_auto<&NodalDesc::margin_m>("margin_mm", 0.001, 100, kMilli,
                                          "nodes nearer to the tool take part; auto: a quarter of a mean edge"),
     number<&NodalDesc::wall_N_per_m>("wall_N_per_m", 1, 1e9, 1, "stiffness of held nodes"),

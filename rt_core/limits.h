@@ -17,6 +17,9 @@ inline constexpr std::int32_t kMaxFingers = 5;
 inline constexpr std::int32_t kMaxToolPoints = 2048;
 // Tool points in contact at once. Overflow: the deepest are kept (ties by index), Status::kContactsDropped.
 inline constexpr std::int32_t kMaxContacts = 64;
+// Contacts solved in a tick's friction sweeps, all sweeps together: one sweep of sixty, four of sixteen. Past it no
+// further sweep is begun; the next tick goes on from there. docs/models_contact_lcp.md has what that costs in accuracy.
+inline constexpr std::int32_t kMaxFrictionVisits = 64;
 // Surface nodes of a finite-element body: at 5461 nodes the compliance in single precision is 1 GiB, locked in memory.
 // Refused when the scene is baked.
 inline constexpr std::int32_t kMaxNodalVertices = 5461;

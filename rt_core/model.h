@@ -35,7 +35,7 @@ enum class Articulation : std::int32_t { kRigid = 0, kGripper = 1, kHand = 2 };
 enum class Backend : std::int32_t { kResponse = 0, kNodal = 1 };
 enum class NodalSolver : std::int32_t { kPivoting = 0, kGaussSeidel = 1 };
 // Where the tool's gap and normal are taken: at the node carried by the body's far field, or at rest.
-enum class NodalCarry : std::int32_t { kFarField = 0, kRest = 1 };
+enum class NodalCarry : std::int32_t { kFarField = 0, kRest = 1, kTurned = 2 };
 
 // X(type, name, unit, lowest, highest, meaning). All are finite; the loader checks every range.
 #define PALPATE_MODEL_PARAMS(X)                                                                              \
@@ -56,7 +56,7 @@ enum class NodalCarry : std::int32_t { kFarField = 0, kRest = 1 };
   X(std::int32_t, friction_sweeps, "-", 0, 20, "Gauss-Seidel sweeps of the problem with friction")           \
   X(std::int32_t, articulation, "-", 0, 2, "Articulation: whether pieces of the tool move by joints")        \
   X(std::int32_t, reserved, "-", 0, 0, "keeps the doubles aligned")                                          \
-  X(std::int32_t, nodal_carry, "-", 0, 1, "NodalCarry: where gaps and normals are taken")                    \
+  X(std::int32_t, nodal_carry, "-", 0, 2, "NodalCarry: where gaps and normals are taken")                    \
   X(std::int32_t, response_law, "-", 0, 2, "ResponseLaw: what carries the normal force")                     \
   X(std::int32_t, response_root, "-", 0, 1, "1: the knots of the tables are roots of depths")                \
   X(double, period_s, "s", 1e-5, 1e-1, "tick period")                                                        \

@@ -42,7 +42,7 @@ void visit_nodal(const State& state, Visitor&& visit) PALPATE_RT {
   for (std::int32_t r = 0; r < kMaxRegions; ++r)
     if (state.region[r].id != 0) {
       const RegionMotion& m = nodal.motion[r];
-      visit("nodal.motion", m.centre_w, m.translation_m, m.rotation_rad, m.reach_m);
+      visit("nodal.motion", m.centre_w, m.translation_m, m.rotation_rad, m.reach_m, m.growth, m.finite);
     }
 }
 

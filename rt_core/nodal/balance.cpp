@@ -7,9 +7,10 @@ namespace palpate {
 
 namespace {
 
-// Above this a problem counts as not solved: a sixth of an encoder's step. The sweeps with friction leave 3e-6 m after
-// a tool is put 5 mm deep in one tick, below 1e-7 m in steady motion (2026-11-21); without friction it is rounding.
-constexpr Real kTolerance_m = 5e-6;
+// Above this a problem counts as not solved: an encoder's step. Friction that its cone cuts at the end leaves up to
+// 1e-5 m under sixty nodes that turn back at 0.2 m/s and 2.5e-5 m in a pinch that is torn off, below 1e-6 m in steady
+// motion (2026-11-21); without friction it is rounding.
+constexpr Real kTolerance_m = 30e-6;
 
 Real friction_coefficient(const Model& model) PALPATE_RT {
   const bool coulomb = model.params.friction_law == static_cast<std::int32_t>(FrictionLaw::kCoulomb);
@@ -34,8 +35,8 @@ class Balance {
 
   void run() PALPATE_RT {
     gather_influence(model_, p_);
-    for (std::int32_t i = 0; i < p_.count; ++i) set_frame(p_.node[i]);  // bound: kMaxContacts
     gather_normal(model_, p_);
+    if (mu_ > 0) make_frames(model_, p_, mu_);
     clear_motion();
     if (mu_ > 0) add_remembered_friction();
     solve_normal();
@@ -48,17 +49,12 @@ class Balance {
     return model_.params.nodal_solver == static_cast<std::int32_t>(NodalSolver::kPivoting);
   }
 
-  // Any two tangents; with friction they are turned later.
-  static void set_frame(ContactNode& node) PALPATE_RT {
-    const Vec3 n = node.normal_w;
-    const Vec3 axis = abs_of(n.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-    node.tangent_w[0] = unit_or(cross(n, axis), {});
-    node.tangent_w[1] = cross(n, node.tangent_w[0]);
-    node.push = {};
-    node.block.normal = 0;  // not made yet
-  }
-
   void clear_motion() PALPATE_RT {
+    for (std::int32_t i = 0; i < p_.count; ++i) {  // bound: kMaxContacts
+      p_.node[i].push = {};
+      p_.node[i].force_w = {};
+      p_.node[i].has_offset = false;
+    }
     for (auto& row : p_.motion_m) {
       for (std::int32_t i = 0; i < whole_lanes(p_.count, 8); ++i) row[i] = 0;  // bound: kMaxContacts
     }
@@ -66,32 +62,30 @@ class Balance {
   }
 
   // How far the body's material at a node is from the tool's material it is compared with, without any push.
-  Vec3 free_offset(const ContactNode& node) const PALPATE_RT {
+  Vec3 free_offset(const ContactNode& node) PALPATE_RT {
     Vec3 anchor_tool;
     if (node.memory >= 0 && state_.nodal.contact[node.memory].piece == node.piece) {
       anchor_tool = state_.nodal.contact[node.memory].anchor_tool_m;
     } else {
-      anchor_tool = inverse_transform(carried_before(model_, state_, before_, node.piece), node.rest_w + node.carry_w);
+      anchor_tool = inverse_transform(carried_before(model_, state_, before_, node.piece),
+                                      node.rest_w + node.carry_w + node.bend_w);
     }
-    return node.rest_w - transform(carrier_w(model_, state_, node.piece), anchor_tool) - tool_motion(node);
+    if (node.piece != carried_piece_) {
+      carried_piece_ = node.piece;
+      carrier_ = carrier_w(model_, state_, node.piece);
+    }
+    return node.rest_w + node.bend_w - transform(carrier_, anchor_tool) - tool_motion(node);
   }
   Vec3 tool_motion(const ContactNode& node) const PALPATE_RT {
     return drift_.translation_m + cross(drift_.rotation_rad, node.arm_w);
   }
 
-  // Turns the tangents to those of the node's own compliance, once the node is known to push.
-  void prepare_friction(std::int32_t i) PALPATE_RT {
-    ContactNode& node = p_.node[i];
-    if (node.block.normal > 0) return;
-    Real w[3][3];
-    own_compliance(model_, p_, i, w);
-    node.block = make_friction_block(w, mu_);
-    const Vec3 t0 = node.tangent_w[0], t1 = node.tangent_w[1];
-    node.tangent_w[0] = node.block.cosine * t0 + node.block.sine * t1;
-    node.tangent_w[1] = node.block.cosine * t1 - node.block.sine * t0;
+  // Tangential displacement without any push, once the node is known to push.
+  void set_offset(ContactNode& node) PALPATE_RT {
     const Vec3 offset = free_offset(node);
-    node.offset_m[1] = dot(offset, node.tangent_w[0]);
-    node.offset_m[2] = dot(offset, node.tangent_w[1]);
+    node.offset_m[0] = dot(offset, node.tangent_w[0]);
+    node.offset_m[1] = dot(offset, node.tangent_w[1]);
+    node.has_offset = true;
   }
 
   // Starts from last tick's friction.
@@ -99,122 +93,153 @@ class Balance {
     for (std::int32_t i = 0; i < p_.count; ++i) {  // bound: kMaxContacts
       ContactNode& node = p_.node[i];
       if (node.memory < 0) continue;
-      prepare_friction(i);
+      set_offset(node);
       const Vec3 force = tangential_part(state_.nodal.contact[node.memory].force_w, node.normal_w);
       node.push.tangent_N[0] = dot(force, node.tangent_w[0]);
       node.push.tangent_N[1] = dot(force, node.tangent_w[1]);
-      if (squared_norm(force) > 0) add_push(p_, i, push_w(node));
+      node.push.slips = state_.nodal.contact[node.memory].friction == FrictionMode::kSlip;
     }
+    set_forces();
   }
 
-  Real normal_gap(std::int32_t i) const PALPATE_RT {
-    return p_.node[i].offset_m[0] + dot(relative_motion(p_, i), p_.node[i].normal_w);
+  // Carries node.push over to the forces and displacements.
+  void set_force(std::int32_t i) PALPATE_RT {
+    ContactNode& node = p_.node[i];
+    const Vec3 force = push_w(node);
+    const Vec3 step = force - node.force_w;
+    node.force_w = force;
+    if (squared_norm(step) > 0) add_push(p_, i, step);
+  }
+  // The same for all nodes at once.
+  void set_forces() PALPATE_RT {
+    float steps[3 * kMaxContacts];
+    for (std::int32_t i = 0; i < p_.count; ++i) {  // bound: kMaxContacts
+      ContactNode& node = p_.node[i];
+      const Vec3 force = push_w(node), step = force - node.force_w;
+      node.force_w = force;
+      p_.force_N += step;
+      p_.torque_Nm += cross(node.arm_w, step);
+      steps[3 * i] = static_cast<float>(step.x);
+      steps[3 * i + 1] = static_cast<float>(step.y);
+      steps[3 * i + 2] = static_cast<float>(step.z);
+    }
+    add_pushes(p_, steps);
   }
 
   void solve_normal() PALPATE_RT {
     NormalProblem& normal = p_.normal;
     for (std::int32_t i = 0; i < p_.count; ++i) {  // bound: kMaxContacts
-      ContactNode& node = p_.node[i];
-      node.offset_m[0] = node.gap_m - dot(node.carry_w + tool_motion(node), node.normal_w);
-      normal.free_gap_m[i] = normal_gap(i);
+      const ContactNode& node = p_.node[i];
+      p_.offset_m[i] = node.gap_m - dot(node.carry_w + tool_motion(node), node.normal_w);
       normal.push_N[i] =
           node.memory >= 0 ? max_of(dot(state_.nodal.contact[node.memory].force_w, node.normal_w), 0.0) : 0.0;
     }
+    for (std::int32_t i = p_.count; i < whole_lanes(p_.count, 4); ++i) p_.offset_m[i] = 0;  // bound: 3
+    find_normal_gaps(p_, normal.free_gap_m);
     if (pivots()) {
       solve_pivoting(normal);
     } else {
       normal.pivots = 0;
       solve_sweeping(normal, model_.params.nodal_sweeps);
     }
-    for (std::int32_t i = 0; i < p_.count; ++i) {  // bound: kMaxContacts
-      ContactNode& node = p_.node[i];
-      node.push.normal_N = normal.push_N[i];
-      if (node.push.normal_N > 0) add_push(p_, i, node.push.normal_N * node.normal_w);
-    }
+    for (std::int32_t i = 0; i < p_.count; ++i) p_.node[i].push.normal_N = normal.push_N[i];  // bound: kMaxContacts
+    set_forces();
   }
 
-  void set_push(std::int32_t i, const Push& push) PALPATE_RT {
+  // False: the node is open and was.
+  bool solve_node(std::int32_t i) PALPATE_RT {
     ContactNode& node = p_.node[i];
-    const Vec3 before = push_w(node);
-    node.push = push;
-    const Vec3 step = push_w(node) - before;
-    if (squared_norm(step) > 0) add_push(p_, i, step);
-  }
-
-  void solve_node(std::int32_t i) PALPATE_RT {
-    const ContactNode& node = p_.node[i];
     const Vec3 u = relative_motion(p_, i);
-    const Real normal_m = node.offset_m[0] + dot(u, node.normal_w);
-    if (node.memory < 0 && node.push.normal_N == 0 && normal_m >= 0) return;  // open, and stays so
-    prepare_friction(i);
-    Real own[3];
-    own_displacement(node.block, node.push, own);
-    const Real free_m[3] = {normal_m - own[0], node.offset_m[1] + dot(u, node.tangent_w[0]) - own[1],
-                            node.offset_m[2] + dot(u, node.tangent_w[1]) - own[2]};
-    set_push(i, solve_friction(node.block, mu_, free_m));
+    const Real normal_m = p_.offset_m[i] + dot(u, node.normal_w);
+    if (!node.has_offset) {
+      if (node.push.normal_N == 0 && normal_m >= 0) return false;  // open, and stays so
+      set_offset(node);
+    }
+    const Real now_m[3] = {normal_m, node.offset_m[0] + dot(u, node.tangent_w[0]),
+                           node.offset_m[1] + dot(u, node.tangent_w[1])};
+    node.push = improve_friction(node.block, mu_, node.push, now_m);
+    set_force(i);
+    return true;
   }
 
   void solve_with_friction() PALPATE_RT {
-    for (std::int32_t sweep = 0; sweep < model_.params.friction_sweeps; ++sweep) {  // bound: 20, from the image
-      for (std::int32_t i = 0; i < p_.count; ++i) solve_node(i);                    // bound: kMaxContacts
+    std::int32_t left = kMaxFrictionVisits;
+    for (std::int32_t sweep = 0; sweep < model_.params.friction_sweeps && left >= p_.count; ++sweep) {  // bound: 20
+      for (std::int32_t i = 0; i < p_.count; ++i) left -= solve_node(i) ? 1 : 0;  // bound: kMaxContacts
     }
     if (pivots()) close_normal_gaps();
-    for (std::int32_t i = 0; i < p_.count; ++i) keep_in_cone(i);  // bound: kMaxContacts
   }
 
   // The sweeps leave the normal gaps of the nodes visited first slightly wrong. With the friction they found, the
-  // normal problem is solved once more through the factor at hand, if the same nodes still push.
+  // normal problem is solved once more, from the factor at hand.
   void close_normal_gaps() PALPATE_RT {
     NormalProblem& normal = p_.normal;
     if (normal.factored == 0) return;
-    std::int32_t pushing = 0;
-    for (std::int32_t i = 0; i < p_.count; ++i) pushing += p_.node[i].push.normal_N > 0 ? 1 : 0;
-    if (pushing != normal.factor.n) return;
+    alignas(32) double gap[kContactStride];
+    find_normal_residuals(gap);
+    if (!close_all(gap)) {
+      for (std::int32_t i = 0; i < p_.count; ++i) normal.push_N[i] = p_.node[i].push.normal_N;  // bound: kMaxContacts
+      measure_gaps(normal);
+      for (std::int32_t i = 0; i < p_.count; ++i) normal.free_gap_m[i] += gap[i] - normal.gap_m[i];
+      resolve_pivoting(normal);
+    }
+    for (std::int32_t i = 0; i < p_.count; ++i) {  // bound: kMaxContacts
+      p_.node[i].push.normal_N = normal.push_N[i];
+      cut_to_cone(p_.node[i].push);
+    }
+    set_forces();
+  }
+
+  // Where all nodes push, and still do without the gaps, one solution suffices. Writes normal.push_N.
+  bool close_all(const double (&gap)[kContactStride]) PALPATE_RT {
+    NormalProblem& normal = p_.normal;
+    if (normal.factor.n != p_.count) return false;
     alignas(32) double step[kContactStride] = {};
-    for (std::int32_t k = 0; k < normal.factor.n; ++k) {  // bound: kMaxContacts
-      const std::int32_t i = normal.active[k];
-      if (!(p_.node[i].push.normal_N > 0)) return;
-      step[k] = -normal_residual(i);
+    for (std::int32_t k = 0; k < p_.count; ++k) {  // bound: kMaxContacts
+      if (normal.active[k] < 0) return false;
+      step[k] = -gap[normal.active[k]];
     }
     solve_lower(normal.factor, step);
     solve_upper(normal.factor, step);
-    for (std::int32_t k = 0; k < normal.factor.n; ++k) {
-      if (!(p_.node[normal.active[k]].push.normal_N + step[k] >= 0)) return;
-    }
-    for (std::int32_t k = 0; k < normal.factor.n; ++k) {
+    bool pushes = true;
+    for (std::int32_t k = 0; k < p_.count; ++k) {  // bound: kMaxContacts
       const std::int32_t i = normal.active[k];
-      Push push = p_.node[i].push;
-      push.normal_N += step[k];
-      set_push(i, push);
+      normal.push_N[i] = p_.node[i].push.normal_N + step[k];
+      pushes = pushes && normal.push_N[i] >= 0;
     }
+    return pushes;
   }
 
-  // Normal gap with the softening that the regularisation stands for.
-  Real normal_residual(std::int32_t i) const PALPATE_RT {
-    const Real m = p_.normal.compliance[i][i], rho = model_.params.regularisation;
-    const bool held = model_.nodal_vertex[static_cast<std::size_t>(p_.node[i].vertex)].is_free == 0;
-    const Real wall = held ? 1.0 / model_.params.wall_N_per_m : 0.0;
-    return normal_gap(i) + ((m - wall) * rho / (1 + rho) + wall) * p_.node[i].push.normal_N;
+  // Normal gaps with the softening that the regularisation and a wall stand for.
+  void find_normal_residuals(double (&gap)[kContactStride]) const PALPATE_RT {
+    find_normal_gaps(p_, gap);
+    const Real rho = model_.params.regularisation, softening = rho / (1 + rho);
+    for (std::int32_t i = 0; i < p_.count; ++i) {  // bound: kMaxContacts
+      Real own = softening * p_.normal.compliance[i][i];
+      if (is_held(model_, p_.node[i])) own += (1 - softening) / model_.params.wall_N_per_m;
+      gap[i] += own * p_.node[i].push.normal_N;
+    }
   }
 
   // The last step changed normal pushes only: friction beyond their limit is cut.
-  void keep_in_cone(std::int32_t i) PALPATE_RT {
-    Push push = p_.node[i].push;
-    const Real size = square_root(push.tangent_N[0] * push.tangent_N[0] + push.tangent_N[1] * push.tangent_N[1]);
+  void cut_to_cone(Push& push) const PALPATE_RT {
     const Real limit = mu_ * push.normal_N;
-    if (!(size > limit)) return;
+    const Real size2 = push.tangent_N[0] * push.tangent_N[0] + push.tangent_N[1] * push.tangent_N[1];
+    if (!(size2 > limit * limit)) return;
     push.slips = true;
-    for (Real& t : push.tangent_N) t *= limit / size;
-    set_push(i, push);
+    const Real share = limit / square_root(size2);
+    for (Real& t : push.tangent_N) t *= share;
   }
 
   void measure() PALPATE_RT {
     scratch_.residual_m = p_.normal.residual_m;
     if (mu_ > 0) {
+      alignas(32) double gap[kContactStride];
+      find_normal_residuals(gap);
       scratch_.residual_m = 0;
       for (std::int32_t i = 0; i < p_.count; ++i) {  // bound: kMaxContacts
-        const Real push_m = p_.node[i].push.normal_N * p_.normal.compliance[i][i], gap = normal_residual(i);
-        scratch_.residual_m = max_of(scratch_.residual_m, abs_of(push_m < gap ? push_m : gap));
+        const Real push_m = p_.node[i].push.normal_N * p_.normal.compliance[i][i];
+        scratch_.residual_m = max_of(scratch_.residual_m, abs_of(push_m < gap[i] ? push_m : gap[i]));
       }
     }
     if (!(scratch_.residual_m <= kTolerance_m)) scratch_.status |= Status::kNotConverged;
@@ -227,6 +252,8 @@ class Balance {
   const Twist drift_;
   const Pose before_;
   const Real mu_;
+  Pose carrier_;  // of the piece last asked for
+  std::int32_t carried_piece_ = -1;
 };
 
 }  // namespace

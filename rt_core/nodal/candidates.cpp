@@ -44,9 +44,11 @@ class NodeSearch {
     stack[top++] = 0;
     while (top > 0) {  // bound: every hierarchy node once
       const BvhNode& node = model_.bvh[static_cast<std::size_t>(stack[--top])];
+      const Balls balls = balls_around(node);
       for (int k = 3; k >= 0; --k) {  // bound: 4
         if (node.count[k] == 0 && node.child[k] < 0) continue;
-        if (!may_touch(shape, frame, node, k)) continue;
+        if (node.count[k] == 0 && !may_touch(shape, frame, {balls.x[k], balls.y[k], balls.z[k]}, balls.radius[k]))
+          continue;
         if (node.count[k] > 0) {
           visit_leaf(shape, frame, ~node.child[k], node.count[k]);
         } else if (top < kMaxTraversalStack) {
@@ -65,27 +67,33 @@ class NodeSearch {
       if (region.id == 0 || region.lost_ticks > 0) continue;
       const RegionMotion& motion = state_.nodal.motion[s];
       region_[regions_++] = motion;
-      const Real carry = norm(motion.translation_m) + norm(motion.rotation_rad) * motion.reach_m;
-      carry_max_m_ = max_of(carry_max_m_, carry);
+      const Real turn = norm(motion.rotation_rad), carry = norm(motion.translation_m) + turn * motion.reach_m;
+      carry_max_m_ = max_of(carry_max_m_, (1 + motion.finite * (0.5 * turn + abs_of(motion.growth))) * carry);
     }
   }
 
-  // Whether a node in the box can come within reach of the piece, at rest or carried by a region that reaches the box.
-  bool may_touch(const ToolPiece& shape, const PieceFrame& frame, const BvhNode& node, int k) const PALPATE_RT {
-    const auto middle = [&](int axis) PALPATE_RT {
-      return 0.5 * (static_cast<Real>(node.lower_m[axis][k]) + static_cast<Real>(node.upper_m[axis][k]));
-    };
-    const auto half = [&](int axis) PALPATE_RT {
-      return 0.5 * (static_cast<Real>(node.upper_m[axis][k]) - static_cast<Real>(node.lower_m[axis][k]));
-    };
-    const Vec3 centre{middle(0), middle(1), middle(2)};
-    const Real radius = norm({half(0), half(1), half(2)});
+  // Balls around the four boxes of a node.
+  struct Balls {
+    Double4 x, y, z, radius;
+  };
+  static Balls balls_around(const BvhNode& node) PALPATE_RT {
+    const auto middle = [&](int axis)
+                            PALPATE_RT { return 0.5 * (widen4(node.lower_m[axis]) + widen4(node.upper_m[axis])); };
+    const auto half = [&](int axis)
+                          PALPATE_RT { return 0.5 * (widen4(node.upper_m[axis]) - widen4(node.lower_m[axis])); };
+    const Double4 x = half(0), y = half(1), z = half(2);
+    return {middle(0), middle(1), middle(2), square_root(x * x + y * y + z * z)};
+  }
+
+  // Whether a node in the ball can come within reach of the piece, at rest or carried by a region that reaches the
+  // ball.
+  bool may_touch(const ToolPiece& shape, const PieceFrame& frame, Vec3 centre, Real radius) const PALPATE_RT {
     const Real gap = piece_gap(shape, frame.into(centre)).gap_m - radius - margin_m_;
     if (!(gap > 0)) return true;
     if (gap > (1 + kCarryShare) * carry_max_m_) return false;
     for (std::int32_t r = 0; r < regions_; ++r) {  // bound: kMaxRegions
       if (!(norm(centre - region_[r].centre_w) <= region_[r].reach_m + radius)) continue;
-      const Vec3 carry = carry_at(region_[r], centre);
+      const Vec3 linear = carry_at(region_[r], centre), carry = linear + bend_of(region_[r], linear);
       const Real spread = norm(region_[r].rotation_rad) * radius + kCarryShare * carry_max_m_;
       if (!(piece_gap(shape, frame.into(centre + carry)).gap_m - radius - spread > margin_m_)) return true;
     }
@@ -93,9 +101,11 @@ class NodeSearch {
   }
 
   void visit_leaf(const ToolPiece& shape, const PieceFrame& frame, std::int32_t first, std::int32_t count) PALPATE_RT {
-    for (std::int32_t t = first; t < first + count; ++t) {  // bound: 4
-      for (const std::int32_t v : model_.triangle[static_cast<std::size_t>(t)].vertex) {
-        if (model_.nodal_vertex[static_cast<std::size_t>(v)].owner == t) visit_vertex(shape, frame, v);
+    const Triangle* triangle = model_.triangle.data() + first;
+    const NodalVertex* node = model_.nodal_vertex.data();
+    for (std::int32_t t = first; t < first + count; ++t, ++triangle) {  // bound: 4
+      for (int k = 0; k < 3; ++k) {                                     // bound: 3
+        if (node[triangle->vertex[k]].owner == t) visit_vertex(shape, frame, triangle->vertex[k]);
       }
     }
   }
@@ -118,17 +128,18 @@ class NodeSearch {
     const Vec3 rest = model_.vertex_m[v];
     const RegionMotion* motion = carrier(rest);
     const Vec3 carry = motion != nullptr ? carry_at(*motion, rest) : Vec3{};
+    const Vec3 bend = motion != nullptr ? bend_of(*motion, carry) : Vec3{}, carried = rest + carry + bend;
     const Real margin = margin_m_ + (problem_.memory_of[vertex] < 0 ? kCarryShare * norm(carry) : 0.0);
     const NodalVertex& node = model_.nodal_vertex[v];
-    const PieceGap gap = piece_gap(shape, frame.into(rest + carry));
+    const PieceGap gap = piece_gap(shape, frame.into(carried));
     if (!(gap.gap_m - node.round_m < margin)) return;
-    Touch touch{rest + carry, frame.direction_out(gap.normal), gap.gap_m};
+    Touch touch{carried, frame.direction_out(gap.normal), gap.gap_m};
     if (node.round_m > 0) {
       const Vec3 turn = motion != nullptr ? cross(motion->rotation_rad, node.round_normal) : Vec3{};
       round_off(shape, frame, node, unit_or(node.round_normal + turn, node.round_normal), touch);
     }
     if (!(touch.gap_m < margin) || dot(model_.vertex_normal[v], touch.normal_w) > kFacing) return;
-    keep(vertex, rest, carry, touch);
+    keep(vertex, rest, carry, bend, touch);
   }
 
   // Between the nodes of a sharp bend the surface bulges out; a convex tool would roll over the chords as over a
@@ -152,7 +163,7 @@ class NodeSearch {
   // Rank when the pool is full: nodes that pushed last tick stay, then the deepest; ties: first come.
   Real rank(std::int32_t vertex, Real gap_m) const PALPATE_RT { return pushed(vertex) ? gap_m - 1.0 : gap_m; }
 
-  void keep(std::int32_t vertex, Vec3 rest, Vec3 carry, const Touch& touch) PALPATE_RT {
+  void keep(std::int32_t vertex, Vec3 rest, Vec3 carry, Vec3 bend, const Touch& touch) PALPATE_RT {
     const Real gap_m = touch.gap_m;
     std::int32_t at = problem_.node_of[vertex];
     if (at >= 0) {  // another piece was nearer or is now
@@ -175,6 +186,7 @@ class NodeSearch {
     node.region = node.memory >= 0 ? state_.nodal.contact[node.memory].region : -1;
     node.rest_w = rest;
     node.carry_w = carry;
+    node.bend_w = bend;
     node.normal_w = touch.normal_w;
     node.arm_w = touch.position_w - state_.tool_w.position_m;
     node.gap_m = gap_m;

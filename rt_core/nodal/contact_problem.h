@@ -15,19 +15,32 @@ struct ContactNode {
   std::int32_t memory;  // its entry in State::nodal, or -1: not a candidate last tick
   std::int32_t region;  // slot of the last tick, or -1
   Vec3 rest_w;
-  Vec3 carry_w;   // carried position minus rest
+  Vec3 carry_w;   // linear part of carried position minus rest
+  Vec3 bend_w;    // the rest of it
   Vec3 normal_w;  // out of the tool, into the body
   Vec3 tangent_w[2];
   Vec3 arm_w;    // carried position minus the tool's origin
   double gap_m;  // of the carried position
   FrictionBlock block;
-  double offset_m[3];  // displacement relative to the tool without any push, in the node's frame
+  double offset_m[2];  // tangential displacement relative to the tool without any push
+  bool has_offset;
   Push push;
+  Vec3 force_w;  // of the push, on the body: push_w() once it has been carried over to motion_m
+};
+
+// Normals of the nodes and their turns, arm x normal, as rows: for several nodes at a time. Zero past the last one.
+struct Directions {
+  alignas(32) double normal[3][kContactStride];
+  alignas(32) double turn[3][kContactStride];
+  alignas(32) float narrow[3][kContactStride];  // both in single precision
+  alignas(32) float narrow_turn[3][kContactStride];
 };
 
 struct ContactProblem {
   std::int32_t count = 0;
   ContactNode node[kMaxContacts];
+  Directions directions;
+  alignas(32) double offset_m[kContactStride];  // normal gaps without any push; zero past the last node
   NormalProblem normal;
   // influence[j][a][b][i]: displacement component b of node i per newton along a on node j. Single precision: half of
   // the sweeps' cost, and what the image usually holds.
@@ -41,7 +54,7 @@ struct ContactProblem {
 };
 static_assert(kMaxContacts <= 127, "nodes are numbered in 8 bits");
 
-// Force of a node's push on the body.
+// What its push does to the body.
 inline Vec3 push_w(const ContactNode& node) PALPATE_RT {
   return node.push.normal_N * node.normal_w + node.push.tangent_N[0] * node.tangent_w[0] +
          node.push.tangent_N[1] * node.tangent_w[1];
@@ -57,7 +70,12 @@ inline Vec3 relative_motion(const ContactProblem& p, std::int32_t i) PALPATE_RT 
   return motion_of(p, i) + p.per_N * p.force_N + p.per_Nm * cross(p.torque_Nm, p.node[i].arm_w);
 }
 
+// Normal gaps of all nodes with the pushes so far. Bound: kMaxContacts.
+void find_normal_gaps(const ContactProblem& problem, double (&gap_m)[kContactStride]) PALPATE_RT;
 // Adds a push (N, world axes, on the body) at node j: its displacements and the sum of forces. Bound: kMaxContacts.
 void add_push(ContactProblem& problem, std::int32_t j, Vec3 force_N) PALPATE_RT;
+// Adds the displacements by many pushes (x, y, z of every node); the sum of forces is left to the caller. Bound:
+// kMaxContacts^2.
+void add_pushes(ContactProblem& problem, const float (&force_N)[3 * kMaxContacts]) PALPATE_RT;
 
 }  // namespace palpate

@@ -55,7 +55,7 @@ void remember(const Model& model, State& state, const Scratch& scratch) PALPATE_
     contact.vertex = node.vertex;
     contact.piece = node.piece;
     contact.region = node.region;
-    contact.force_w = push_w(node);
+    contact.force_w = node.force_w;
     contact.friction = node.push.slips ? FrictionMode::kSlip : FrictionMode::kStick;
     const bool stays = node.memory >= 0 && before[node.memory].piece == node.piece;
     if (contact.friction == FrictionMode::kStick && stays) {
@@ -64,7 +64,7 @@ void remember(const Model& model, State& state, const Scratch& scratch) PALPATE_
     }
     const Pose carrier = is_articulated(model) ? scratch.tool_corrected_w * state.articulation.motion_tool[node.piece]
                                                : scratch.tool_corrected_w;
-    contact.anchor_tool_m = inverse_transform(carrier, node.rest_w + motion_of(p, i));
+    contact.anchor_tool_m = inverse_transform(carrier, node.rest_w + node.bend_w + motion_of(p, i));
   }
 }
 
@@ -75,24 +75,28 @@ void set_stiffness(State& state, const Scratch& scratch) PALPATE_RT {
   const ContactProblem& p = scratch.nodal;
   const ContactFactor& factor = p.normal.factor;
   if (p.normal.factored == 0 || factor.n == 0) return;
-  alignas(32) double column[kDof][kContactStride];
+  FactorRow column[kContactStride];
   const Real root[2] = {p.per_N > 0 ? square_root(p.per_N) : 1.0, p.per_Nm > 0 ? square_root(p.per_Nm) : 1.0};
-  for (std::int32_t k = 0; k < whole_lanes(factor.n, 4); ++k) {  // bound: kMaxContacts
-    const bool real = k < factor.n;
-    const ContactNode& node = p.node[p.normal.active[real ? k : 0]];
+  for (std::int32_t k = 0; k < factor.n; ++k) {  // bound: kMaxContacts
+    const bool real = p.normal.active[k] >= 0;
+    const ContactNode& node = p.node[real ? p.normal.active[k] : 0];
     const Vec3 n = real ? root[0] * node.normal_w : Vec3{};
     const Vec3 m = real ? root[1] * cross(node.arm_w, node.normal_w) : Vec3{};
-    const Real entry[kDof] = {n.x, n.y, n.z, m.x, m.y, m.z};
-    for (std::int32_t d = 0; d < kDof; ++d) column[d][k] = entry[d];
+    column[k] = {{n.x, n.y, n.z, m.x, m.y, m.z, 0, 0}};
   }
-  for (auto& x : column) solve_lower(factor, x);  // bound: 6
+  solve_lower(factor, column);
   Real series[kDof * kDof], rest[kDof * kDof];
-  for (std::int32_t a = 0; a < kDof; ++a) {  // bound: 21 sums of kMaxContacts
-    for (std::int32_t b = 0; b <= a; ++b) {
-      Double4 along{};
-      for (std::int32_t k = 0; k < factor.n; k += 4) along += load4(column[a] + k) * load4(column[b] + k);
-      series[a * kDof + b] = series[b * kDof + a] = sum(along);
+  Double4 product[kDof][2] = {};
+  for (std::int32_t k = 0; k < factor.n; ++k) {  // bound: kMaxContacts
+    const Double4 low = load4(column[k].entry), high = load4(column[k].entry + 4);
+    for (std::int32_t a = 0; a < kDof; ++a) {  // bound: 6
+      const Double4 s = splat4(column[k].entry[a]);
+      product[a][0] += low * s;
+      product[a][1] += high * s;
     }
+  }
+  for (std::int32_t a = 0; a < kDof; ++a) {  // bound: 6 x 6
+    for (std::int32_t b = 0; b <= a; ++b) series[a * kDof + b] = series[b * kDof + a] = product[a][b / 4][b % 4];
   }
   const bool coupled = p.per_N > 0;
   for (std::int32_t e = 0; e < kDof * kDof; ++e) rest[e] = -series[e];
@@ -131,7 +135,7 @@ void sum_up(Scratch& scratch) PALPATE_RT {
   const ContactProblem& p = scratch.nodal;
   Real work = 0;
   for (std::int32_t i = 0; i < p.count; ++i) {  // bound: kMaxContacts
-    const Vec3 force = push_w(p.node[i]);
+    const Vec3 force = p.node[i].force_w;
     if (p.node[i].push.normal_N > 0) work += dot(force, motion_of(p, i));
   }
   scratch.contact_wrench_w = {-p.force_N, -p.torque_Nm};

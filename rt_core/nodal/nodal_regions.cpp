@@ -31,7 +31,7 @@ struct Sums {
 
 void add(const Model& model, const Scratch& scratch, const Contact& contact, Sums& s) PALPATE_RT {
   const ContactNode& node = scratch.nodal.node[contact.point];
-  const Vec3 on_tool = -push_w(node);
+  const Vec3 on_tool = -node.force_w;
   s.centre += contact.force_N * contact.position_w;
   s.normal += contact.force_N * contact.normal_w;
   s.friction += on_tool - contact.force_N * contact.normal_w;
@@ -39,7 +39,7 @@ void add(const Model& model, const Scratch& scratch, const Contact& contact, Sum
   s.torque += cross(node.arm_w, on_tool);
   s.carry += contact.force_N * motion_of(scratch.nodal, contact.point);
   s.load += contact.force_N;
-  s.energy += 0.5 * dot(push_w(node), motion_of(scratch.nodal, contact.point));
+  s.energy += 0.5 * dot(node.force_w, motion_of(scratch.nodal, contact.point));
   s.area += model.nodal_vertex[static_cast<std::size_t>(node.vertex)].area_m2;
   s.slipping += node.push.slips ? 1 : 0;
   s.count += 1;
@@ -80,6 +80,7 @@ Real far_share(const Model& model, Real local_J, Real energy_J) PALPATE_RT {
     case NodalCarry::kRest:
       return 0;
     case NodalCarry::kFarField:
+    case NodalCarry::kTurned:
       break;
   }
   return energy_J > 0 ? 1 - min_of(local_J / energy_J, 1.0) : 0;
@@ -128,6 +129,9 @@ void fit_motions(const Model& model, State& state, const Scratch& scratch) PALPA
   }
   for (std::int32_t s = 0; s < kMaxRegions; ++s) {  // bound: kMaxRegions
     state.nodal.motion[s] = fit[s].result(kBlur * model.params.cluster_distance_m, state.nodal.far_share);
+    const bool turned = model.params.nodal_carry == static_cast<std::int32_t>(NodalCarry::kTurned);
+    state.nodal.motion[s].finite = turned ? 1 : 0;
+    state.nodal.motion[s].growth = growth_under(state.nodal.motion[s], -state.region[s].wrench_w.force_N);
     state.nodal.motion[s].reach_m = square_root(reach2[s]) + 2 * model.params.cluster_distance_m;
   }
 }

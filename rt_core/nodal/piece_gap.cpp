@@ -7,7 +7,7 @@ namespace {
 Real with_sign(Real magnitude, Real sign) PALPATE_RT { return sign < 0 ? -magnitude : magnitude; }
 
 // From the nearest point of the core, `offset` away and outside it.
-PieceGap outside(Vec3 offset, Real margin) PALPATE_RT {
+[[gnu::always_inline]] inline PieceGap outside(Vec3 offset, Real margin) PALPATE_RT {
   const Real distance = norm(offset);
   return {distance - margin, unit_or(offset, {0, 0, 1})};
 }

@@ -19,15 +19,17 @@ struct NormalProblem {
                                                                 // active set); out: f
   alignas(32) double gap_m[kContactStride];                     // out: w
   ContactFactor factor;                                         // out: of M over the active set, when `factored`
-  std::int32_t active[kMaxContacts];                            // out: contacts of the factor, in order
+  std::int32_t active[kMaxContacts];                            // out: contacts of the factor, in order; -1: taken out
   std::int32_t n = 0;
   std::int32_t factored = 0;
-  std::int32_t pivots = 0;  // factorisations made
+  std::int32_t pivots = 0;  // active sets tried
   double residual_m = 0;    // largest |min(f M_ii, w)|
 };
 
 // Solves by pivoting. Bound: kMaxPivots factorisations, then kFallbackSweeps sweeps.
 void solve_pivoting(NormalProblem& problem) PALPATE_RT;
+// Solves again for other free gaps, from the factor at hand (`factored`) and its active set.
+void resolve_pivoting(NormalProblem& problem) PALPATE_RT;
 // Sweeps from the guess, f_i <- max(0, f_i - w_i / M_ii).
 void solve_sweeping(NormalProblem& problem, std::int32_t sweeps) PALPATE_RT;
 // w = q + M f and the residual.

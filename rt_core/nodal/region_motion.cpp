@@ -4,17 +4,6 @@
 
 namespace palpate {
 
-void MotionFit::add(Vec3 rest, Vec3 u) PALPATE_RT {
-  if (count_ == 0) origin_ = rest;
-  const Vec3 x = rest - origin_;
-  count_ += 1;
-  position_ += x;
-  displacement_ += u;
-  moment_ += cross(x, u);
-  const double products[6] = {x.x * x.x, x.x * x.y, x.x * x.z, x.y * x.y, x.y * x.z, x.z * x.z};
-  for (int k = 0; k < 6; ++k) square_[k] += products[k];  // bound: 6
-}
-
 // Minimises sum |u - t - r x (x - c)|^2: with d = x - c, (sum d.d 1 - d d^T) r = sum d x u.
 RegionMotion MotionFit::result(double blur_m, double share) const PALPATE_RT {
   RegionMotion motion;

@@ -72,15 +72,18 @@ void find_clusters(const Model& model, const State& state, const Scratch& scratc
   sort_by_point(scratch, out);
   Kinship kin;
   find_kinship(model, scratch, out, kin);
-  std::int32_t set[kMaxContacts];                    // rank of the lowest contact of each contact's set
+  std::int32_t set[kMaxContacts];  // rank of the lowest contact of each contact's set
+  std::int32_t sets = 0;
   for (std::int32_t i = 0; i < out.contacts; ++i) {  // bound: kMaxContacts
     set[i] = i;
+    sets += 1;
     const Contact& contact = scratch.contact[out.order[i]];
-    for (std::int32_t j = kin.previous[i]; j >= 0; j = kin.previous[j]) {  // bound: kMaxContacts; j falls
+    for (std::int32_t j = kin.previous[i]; j >= 0 && sets > 1; j = kin.previous[j]) {  // bound: kMaxContacts; j falls
       if (set[i] == set[j] || kin.group[i] != kin.group[j]) continue;
       const bool same = kin.piece[i] == kin.piece[j];
       if (!same && !linked(model, state, contact, scratch.contact[out.order[j]])) continue;
       unite(set, i + 1, set[i], set[j]);
+      sets -= 1;
     }
   }
   out.count = 0;

@@ -21,6 +21,8 @@ struct NodalSceneOptions {
   CompliancePrecision precision = CompliancePrecision::kDouble;
   NodalCarry carry = NodalCarry::kFarField;
   double coupling_N_per_m = 1500, coupling_Nm_per_rad = 0.5;
+  std::vector<float> strain_gauge = {};  // as Model::strain_gauge
+  double strain_limit = 1;
 };
 
 class NodalScene {
@@ -32,6 +34,8 @@ class NodalScene {
     add_nodal_body(body, options.precision, "test", image);
     ModelParams& p = image.params;
     p.backend = static_cast<std::int32_t>(Backend::kNodal);
+    image.strain_gauge = options.strain_gauge;
+    p.strain_limit = options.strain_limit;
     p.nodal_sweeps = 20;
     p.friction_sweeps = 10;
     p.nodal_carry = static_cast<std::int32_t>(options.carry);

@@ -9,7 +9,9 @@
 #include <cmath>
 #include <cstdio>
 
+#include "config/scene.h"
 #include "tests/nodal/nodal_scene.h"
+#include "tests/support/baked_scene.h"
 
 namespace palpate::test {
 namespace {
@@ -28,7 +30,7 @@ constexpr double kPeak_N = 6.534;
 
 class Clip {
  public:
-  explicit Clip(std::int32_t level, NodalCarry carry = NodalCarry::kFarField, double mu = 0)
+  explicit Clip(std::int32_t level, NodalCarry carry = NodalCarry::kTurned, double mu = 0)
       : mesh_(make_clip_mesh(level)),
         body_(condense(mesh_, {2e9, 0}, clip_supports(mesh_), "clip")),
         scene_(body_, {cylinder_piece(0.010, 0.040, 0.001)}, options(carry, mu)) {}
@@ -69,29 +71,49 @@ double zero_crossing_mm(const std::vector<double>& force) {
   return kNan;
 }
 
-// Linear elasticity itself is 6 % too stiff at the peak; 8 % leaves 2 % for the meshes. The coarsest gets 10 %.
+double worst_error(const std::vector<double>& force) {
+  double worst = 0;
+  for (const Sample& s : kReference)
+    worst = std::max(worst, std::abs(force[static_cast<std::size_t>(std::lround(10 * s.insertion_mm))] - s.force_N));
+  return worst / kPeak_N;
+}
+
+// Without the finite rotation of the arms linear elasticity is 8 % off; with it the meshes decide: 4.6, 4.2 and 3.0 %
+// (2026-11-21).
 TEST(Snap, FollowsTheReferenceOnThreeMeshes) {
   for (std::int32_t level = 1; level <= 3; ++level) {
     Clip clip(level);
     const std::vector<double> force = clip.insert();
     const auto highest = std::max_element(force.begin(), force.end());
     const auto lowest = std::min_element(force.begin(), force.end());
-    double worst = 0;
-    for (const Sample& s : kReference) {
-      const double error = force[static_cast<std::size_t>(std::lround(10 * s.insertion_mm))] - s.force_N;
-      worst = std::max(worst, std::abs(error) / kPeak_N);
-    }
     std::printf(
         "level %d, %zu nodes: peak %.3f N at %.1f mm, zero at %.2f mm, lowest %.3f N at %.1f mm, worst error "
         "%.1f %% of the peak\n",
         level, clip.nodes(), *highest, 0.1 * static_cast<double>(highest - force.begin()), zero_crossing_mm(force),
-        *lowest, 0.1 * static_cast<double>(lowest - force.begin()), 100 * worst);
-    EXPECT_LT(worst, level == 3 ? 0.08 : 0.10) << "level " << level;
-    EXPECT_NEAR(*highest, kPeak_N, 0.10 * kPeak_N);
-    EXPECT_NEAR(*lowest, -7.351, 0.08 * kPeak_N);
+        *lowest, 0.1 * static_cast<double>(lowest - force.begin()), 100 * worst_error(force));
+    EXPECT_LT(worst_error(force), 0.06) << "level " << level;
+    EXPECT_NEAR(*highest, kPeak_N, 0.06 * kPeak_N);
+    EXPECT_NEAR(*lowest, -7.351, 0.06 * kPeak_N);
     EXPECT_NEAR(0.1 * static_cast<double>(highest - force.begin()), 3.0, 0.5);
     EXPECT_NEAR(0.1 * static_cast<double>(lowest - force.begin()), 11.5, 0.5);
-    EXPECT_NEAR(zero_crossing_mm(force), 7.35, 0.3);
+    EXPECT_NEAR(zero_crossing_mm(force), 7.35, 0.15);
+  }
+}
+
+// The scene as it is shipped, but for its friction, which the reference does not have; and with finite rotation.
+TEST(Snap, TheShippedSceneFollowsTheReference) {
+  for (const bool turned : {false, true}) {
+    BakedScene scene(load_scene(PALPATE_SOURCE_DIR "/config/scenes/snap_in.toml"));
+    scene.model().params.friction_law = static_cast<std::int32_t>(FrictionLaw::kNone);
+    if (turned) scene.model().params.nodal_carry = static_cast<std::int32_t>(NodalCarry::kTurned);
+    Bench bench(scene.model());
+    std::vector<double> force;
+    for (int k = 0; k <= 560; ++k) {
+      bench.tick_at({{0, kFirstContact_m - 2.5e-5 * k, 0}, {}}, {});
+      if (k % 4 == 0) force.push_back(bench.output.contact_w.force_N.y);
+    }
+    EXPECT_LT(worst_error(force), turned ? 0.06 : 0.10);
+    EXPECT_EQ(bench.output.fault, 0u);
   }
 }
 
@@ -103,7 +125,7 @@ TEST(Snap, NormalsAtRestAreWrongForAClip) {
 }
 
 TEST(Snap, InsertionAndReleaseRepeatToTheBit) {
-  Clip clip(1, NodalCarry::kFarField, 0.2);
+  Clip clip(1, NodalCarry::kTurned, 0.2);
   std::uint64_t hash[2] = {};
   for (std::uint64_t& h : hash) {
     clip.scene().restart();
@@ -134,7 +156,7 @@ TEST(Snap, FrictionlessInsertionReturnsItsWork) {
 
 // With friction the way in costs more and the way out returns less.
 TEST(Snap, FrictionAddsToTheInsertionForce) {
-  Clip smooth(1), rough(1, NodalCarry::kFarField, 0.2);
+  Clip smooth(1), rough(1, NodalCarry::kTurned, 0.2);
   const std::vector<double> without = smooth.insert(), with = rough.insert();
   EXPECT_GT(*std::max_element(with.begin(), with.end()), 1.2 * *std::max_element(without.begin(), without.end()));
   EXPECT_LT(rough.scene().output().residual_m, 1e-6);
