@@ -62,8 +62,7 @@ TEST(Pinch, TheScenesPathPinchesLiftsAndLetsGo) {
   EXPECT_EQ(seen.hash, play(scene, desc).hash);
 }
 
-// The block and the jaws are mirror images in x = 0: action equals reaction through the block.
-// The nodes are mirror images in x = 0, the tetrahedra between them are not: the sum vanishes to the mesh's error only.
+// Block and jaws are mirror images in x = 0, the mesher's tetrahedra are not: equal within the mesh's error only.
 TEST(Pinch, JawsPushEqually) {
   const BakedScene scene(pinch_scene());
   Bench bench(scene.model());
@@ -77,7 +76,7 @@ TEST(Pinch, JawsPushEqually) {
   std::printf("pinch: %.3f N on either side, at most %.1e N apart\n", largest, difference);
   EXPECT_EQ(bench.output.regions, 2);
   EXPECT_GT(largest, 3);
-  EXPECT_LT(difference, 0.02 * largest);  // 0.9 %, 2026-11-21: one jaw meets its stop force a tick before the other
+  EXPECT_LT(difference, 0.02 * largest);  // 0.9 % measured, 2026-11-21
 }
 
 // One jaw alone pushes the block aside; with the other behind it the same place meets more force: the jaws feel each
