@@ -76,7 +76,9 @@ void add_run_command(CLI::App& app, int& exit_code) {
   RunOptions* options = &settings->run;
   CLI::App* command = app.add_subcommand("run", "Render a scene at its full rate on a device or on the simulated hand");
   command->add_option("SCENE", options->scene, "scene (.toml, baked first) or image (.pal)")->required();
-  command->add_option("--device", options->device, "auto, loopback (simulated device and hand), can:IFACE or usb:/dev/hidrawN")
+  command
+      ->add_option("--device", options->device,
+                   "auto, loopback (simulated device and hand), can:IFACE or usb:/dev/hidrawN")
       ->capture_default_str();
   command->add_option("--duration", options->duration_s, "seconds")
       ->capture_default_str()
