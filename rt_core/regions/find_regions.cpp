@@ -4,7 +4,7 @@
 // A region without contact renders no force but remembers its identity and friction for kRegionMemoryTicks. Its
 // lost_ticks stays at 1, so that the memory does not run out, for as long as the exact piece still overlaps the surface
 // triangle it last touched: tool points only sample the piece, so a flat face can touch between them. An inconclusive
-// overlap test holds as well: "could not decide" must never be read as "no contact".
+// overlap test holds as well: "could not decide" must never be read as "no contact". A whole tip has no between.
 #include "rt_core/articulate/carrier.h"
 #include "rt_core/collide/overlap.h"
 #include "rt_core/nodal/nodal.h"
@@ -54,6 +54,8 @@ std::int32_t point_at(const Model& model, const State& state, const Region& regi
 bool still_touching(const Model& model, State& state, Scratch& scratch, const Region& region) PALPATE_RT {
   const std::int32_t point = point_at(model, state, region);
   if (point < 0) return false;
+  // A whole tip touches where its one point does; the overlap of a flat punch lying on a flat face costs 20,000.
+  if (static_cast<ResponseLaw>(model.params.response_law) != ResponseLaw::kPoints) return false;
   const Triangle& triangle = model.triangle[static_cast<std::size_t>(state.point[point].triangle)];
   Vec3 corner[3];
   for (int k = 0; k < 3; ++k) corner[k] = model.vertex_m[static_cast<std::size_t>(triangle.vertex[k])];  // bound: 3
