@@ -10,15 +10,6 @@
 #include "rt_core/stages.h"
 #include "tests/collide/pieces.h"
 
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) || __has_feature(memory_sanitizer) || \
-    __has_feature(realtime_sanitizer)
-#define PALPATE_SANITIZED
-#endif
-#elif defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define PALPATE_SANITIZED
-#endif
-
 #ifndef PALPATE_SANITIZED  // the sanitizers bring their own malloc
 
 namespace {
