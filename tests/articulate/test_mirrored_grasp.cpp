@@ -13,8 +13,6 @@
 namespace palpate::test {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 // The world's mirror image in z = 0 of a pose of a right hand, as a pose of the left hand, which is the right hand's
 // image in y = 0 of its own frame: S_z R S_y = (S_z R S_z) (S_z S_y), and S_z S_y is half a turn about x.
 Vec3 mirrored_rotation(Vec3 rotation_rad) {
