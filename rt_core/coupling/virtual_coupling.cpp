@@ -9,8 +9,10 @@ namespace {
 
 constexpr std::int32_t kDof = 6;
 
-// Solves (contact_stiffness + diag(coupling)) x = b in place.
-bool solve(const Model& model, const double (&contact_stiffness)[36], Real (&b)[kDof]) PALPATE_RT {
+// (contact_stiffness + diag(coupling)) motion = wrench. Returns false, `motion` untouched, when singular.
+bool solve(const Model& model, const double (&contact_stiffness)[36], const Wrench& wrench, Twist& motion) PALPATE_RT {
+  const Vec3 f = wrench.force_N, m = wrench.torque_Nm;
+  Real x[kDof] = {f.x, f.y, f.z, m.x, m.y, m.z};
   Real matrix[kDof * kDof];
   for (std::int32_t i = 0; i < kDof * kDof; ++i) matrix[i] = contact_stiffness[i];
   for (std::int32_t i = 0; i < 3; ++i) {
@@ -18,7 +20,8 @@ bool solve(const Model& model, const double (&contact_stiffness)[36], Real (&b)[
     matrix[(i + 3) * (kDof + 1)] += model.params.coupling_Nm_per_rad;
   }
   if (!cholesky_factor(matrix, kDof)) return false;
-  cholesky_solve(matrix, b, kDof);
+  cholesky_solve(matrix, x, kDof);
+  motion = {{x[0], x[1], x[2]}, {x[3], x[4], x[5]}};
   return true;
 }
 
@@ -38,10 +41,8 @@ bool add_reversals(const State& state, const Twist& motion, ContactStiffness& st
 
 // Motion of the tool under a wrench: the tangent is right for slipping forwards, so try that first.
 bool answer(const Model& model, const State& state, const Wrench& wrench, Twist& motion) PALPATE_RT {
-  const Vec3 f = wrench.force_N, m = wrench.torque_Nm;
-  Real x[kDof] = {f.x, f.y, f.z, m.x, m.y, m.z};
-  if (!solve(model, state.contact_stiffness, x)) return false;
-  const Twist forwards{{x[0], x[1], x[2]}, {x[3], x[4], x[5]}};
+  Twist forwards;
+  if (!solve(model, state.contact_stiffness, wrench, forwards)) return false;
   ContactStiffness reversals;
   if (!add_reversals(state, forwards, reversals)) {
     motion = forwards;
@@ -50,10 +51,7 @@ bool answer(const Model& model, const State& state, const Wrench& wrench, Twist&
   double matrix[36];
   store(reversals, matrix);
   for (std::int32_t i = 0; i < 36; ++i) matrix[i] += state.contact_stiffness[i];  // bound: 36
-  Real y[kDof] = {f.x, f.y, f.z, m.x, m.y, m.z};
-  if (!solve(model, matrix, y)) return false;
-  motion = {{y[0], y[1], y[2]}, {y[3], y[4], y[5]}};
-  return true;
+  return solve(model, matrix, wrench, motion);
 }
 
 }  // namespace
