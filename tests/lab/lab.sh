@@ -110,6 +110,7 @@ run_one() { # SCENARIO[:SECONDS]
   [ "$seconds" != "$1" ] || seconds=$(default_seconds "$name")
   rm -rf "${results:?}/$folder"
   mkdir -p "$results/$folder"
+  cp "$out/commit" "$results/$folder/"
   if [ "$name" = determinism ]; then
     determinism "$folder"
     return
@@ -145,6 +146,12 @@ judge_again() { # everything in out/lab
   done
 }
 
+this_commit() { # the last that touched a program or the laboratory; + if it has been changed since
+  local but_docs=(-- . ':!docs' ':!*.md') commit
+  commit=$(git -C "$root" log -1 --format=%h "${but_docs[@]}" 2> /dev/null) || { echo -; return; }
+  git -C "$root" diff --quiet HEAD "${but_docs[@]}" && echo "$commit" || echo "$commit+"
+}
+
 write_docs() { # the table between its marks in docs/laboratory.md, and the histograms of the long runs
   local page=$root/docs/laboratory.md name
   [ -e "$results/table.md" ] || die "no results: run some scenarios first"
@@ -157,15 +164,15 @@ write_docs() { # the table between its marks in docs/laboratory.md, and the hist
 
 table() { # every verdict there is, as a dated table for docs/laboratory.md
   local folder name
-  printf '| scenario | ticks | missed | page faults | heap calls | preemptions | wake-up max (cyclictest), µs | deadline to sent max, µs | verdict | date |\n'
-  printf '|---|---|---|---|---|---|---|---|---|---|\n'
+  printf '| scenario | ticks | missed | page faults | heap calls | preemptions | wake-up max (cyclictest), µs | deadline to sent max, µs | verdict | date | commit |\n'
+  printf '|---|---|---|---|---|---|---|---|---|---|---|\n'
   for folder in "$results"/*/; do
     [ -e "$folder/verdict.txt" ] || continue
     name=$(basename "$folder")
     read_numbers "$folder"
-    printf '| %s | %s | %s | %s | %s | %s | %s (%s) | %s | %s | %s |\n' "$name" "${ticks:--}" "${missed:--}" "${faults:--}" \
+    printf '| %s | %s | %s | %s | %s | %s | %s (%s) | %s | %s | %s | %s |\n' "$name" "${ticks:--}" "${missed:--}" "${faults:--}" \
       "${heap:--}" "${forced:--}" "${wake:--}" "${kernel:--}" "${sent:--}" "$(cut -d' ' -f1 "$folder/verdict.txt")" \
-      "$(date -u -r "$folder/verdict.txt" +%Y-%m-%d)"
+      "$(date -u -r "$folder/verdict.txt" +%Y-%m-%d)" "$(cat "$folder/commit" 2> /dev/null || echo -)"
   done
 }
 
@@ -232,6 +239,7 @@ done
 
 out=$(mktemp -d "${TMPDIR:-/tmp}/palpate-lab.XXXXXX")
 trap 'rm -rf "$out"' EXIT
+this_commit > "$out/commit"
 cp "$programs/palpate" "$out/" # a long run may outlive the build
 mkdir "$out/scenes"
 for one in $scenes; do
