@@ -21,7 +21,8 @@ struct PlaneMesh {
 TetMesh extrude(const PlaneMesh& plane, const std::vector<double>& height_m);
 std::vector<double> equal_steps(double from_m, double to_m, std::int32_t steps);
 
-// Box centred at x = z = 0 standing on y = 0, `cells` boxes of six tetrahedra along x, y, z.
+// Box centred at x = z = 0 standing on y = 0, `cells` boxes of six tetrahedra along x, y, z. An even number along x or z
+// makes the mesh its own mirror image there, to the last bit.
 TetMesh make_box_tets(Vec3 size_m, std::array<std::int32_t, 3> cells);
 // Ring around the z axis, symmetric about z = 0; `cells` around, across the wall, along z.
 TetMesh make_ring_tets(double inner_m, double outer_m, double width_m, std::array<std::int32_t, 3> cells);
