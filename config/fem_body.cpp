@@ -25,7 +25,7 @@ TetMesh box_mesh(const SceneDesc& scene) {
   const Vec3 size = scene.body.size_m;
   const double edge = edge_m(scene, size);
   const auto cells = [&](double side) { return std::max(1, static_cast<std::int32_t>(std::lround(side / edge))); };
-  return make_box_tets(size, {cells(size.x), cells(size.y), cells(size.z)});
+  return make_mirrored_box_tets(size, {cells(size.x), cells(size.y), cells(size.z)});
 }
 
 TetMesh file_mesh(const SceneDesc& scene, std::vector<std::string>& warnings) {

@@ -117,6 +117,21 @@ void mirror(TetMesh& mesh, double Vec3::*axis) {
   }
 }
 
+// Corners of boxes of six tetrahedra between the given planes; the diagonals of the faces across z lean towards x = 0.
+TetMesh box_corners(const std::vector<double>& x, const std::vector<double>& y, const std::vector<double>& z) {
+  PlaneMesh plane;
+  for (const double v : y)
+    for (const double u : x) plane.node_m.push_back({u, v, 0});
+  const auto columns = static_cast<std::int32_t>(x.size());
+  const auto node = [&](std::size_t i, std::size_t j) {
+    return static_cast<std::int32_t>(j) * columns + static_cast<std::int32_t>(i);
+  };
+  for (std::size_t j = 0; j + 1 < y.size(); ++j)
+    for (std::size_t i = 0; i + 1 < x.size(); ++i)
+      add_quad(plane, {node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)}, x[i] < -1e-9 * x.back());
+  return extrude(plane, z);
+}
+
 struct ClipLevel {
   std::int32_t foot, arm, across, sectors, along;
 };
@@ -165,23 +180,20 @@ TetMesh extrude(const PlaneMesh& plane, const std::vector<double>& height_m) {
 }
 
 TetMesh make_box_tets(Vec3 size_m, std::array<std::int32_t, 3> cells) {
-  const bool halves_x = cells[0] % 2 == 0, halves_z = cells[2] % 2 == 0;
-  const auto across = [](double side_m, std::int32_t count, bool half) {
-    return half ? equal_steps(0, 0.5 * side_m, count / 2) : equal_steps(-0.5 * side_m, 0.5 * side_m, count);
+  TetMesh mesh = box_corners(equal_steps(-0.5 * size_m.x, 0.5 * size_m.x, cells[0]), equal_steps(0, size_m.y, cells[1]),
+                             equal_steps(-0.5 * size_m.z, 0.5 * size_m.z, cells[2]));
+  add_middle_nodes(mesh);
+  return mesh;
+}
+
+TetMesh make_mirrored_box_tets(Vec3 size_m, std::array<std::int32_t, 3> cells) {
+  const auto half_if_even = [](double side_m, std::int32_t count) {
+    return count % 2 == 0 ? equal_steps(0, 0.5 * side_m, count / 2) : equal_steps(-0.5 * side_m, 0.5 * side_m, count);
   };
-  PlaneMesh plane;
-  const std::vector<double> x = across(size_m.x, cells[0], halves_x);
-  const std::vector<double> y = equal_steps(0, size_m.y, cells[1]);
-  for (const double v : y)
-    for (const double u : x) plane.node_m.push_back({u, v, 0});
-  const auto columns = static_cast<std::int32_t>(x.size()) - 1;
-  const auto node = [&](std::int32_t i, std::int32_t j) { return j * (columns + 1) + i; };
-  for (std::int32_t j = 0; j < cells[1]; ++j)
-    for (std::int32_t i = 0; i < columns; ++i)
-      add_quad(plane, {node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)}, !halves_x && 2 * i < columns);
-  TetMesh mesh = extrude(plane, across(size_m.z, cells[2], halves_z));
-  if (halves_x) mirror(mesh, &Vec3::x);
-  if (halves_z) mirror(mesh, &Vec3::z);
+  TetMesh mesh = box_corners(half_if_even(size_m.x, cells[0]), equal_steps(0, size_m.y, cells[1]),
+                             half_if_even(size_m.z, cells[2]));
+  if (cells[0] % 2 == 0) mirror(mesh, &Vec3::x);
+  if (cells[2] % 2 == 0) mirror(mesh, &Vec3::z);
   add_middle_nodes(mesh);
   return mesh;
 }

@@ -1,7 +1,6 @@
 // Linear elasticity on tetrahedra: patch test, worked elements, balance of reactions.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -80,10 +79,7 @@ TEST(PatchTest, HoldsWithMeanDilatation) { patch_test(distorted_box(2), 0.4999);
 // An inner node pushed almost onto a face: elements with a height of 1e-5 of their edges must not spoil the solution.
 TEST(PatchTest, HoldsWithSlivers) {
   TetMesh mesh = distorted_box(1);
-  const std::vector<std::int32_t> boundary = surface_of(mesh).node;
-  for (std::size_t i = 0; i < mesh.node_m.size(); ++i)
-    if (!std::binary_search(boundary.begin(), boundary.end(), static_cast<std::int32_t>(i)))
-      mesh.node_m[i] = 1e-5 * mesh.node_m[i];  // the inner node; the middle of the bottom is the origin
+  mesh.node_m[13] = 1e-5 * mesh.node_m[13];  // the inner node; the middle of the bottom is the origin
   add_middle_nodes(mesh);
   check_tet_mesh(mesh, "slivers");
   double least = 1;

@@ -40,8 +40,9 @@ TEST(TetMesh, BoxIsSound) {
   EXPECT_TRUE(std::is_sorted(surface.node.begin(), surface.node.end()));
 }
 
-// An even number of cells along x or z makes the box its own mirror image there, element by element and bit by bit.
-TEST(TetMesh, BoxIsItsOwnMirrorImageToTheBit) {
+// An even number of cells along x or z makes the mirrored box its own mirror image there, element by element and bit by
+// bit.
+TEST(TetMesh, MirroredBoxIsItsOwnMirrorImageToTheBit) {
   using Place = std::array<double, 3>;
   const auto elements = [](const TetMesh& mesh, Vec3 sign) {
     std::set<std::vector<Place>> all;
@@ -57,7 +58,7 @@ TEST(TetMesh, BoxIsItsOwnMirrorImageToTheBit) {
     return all;
   };
   for (const std::array<std::int32_t, 3> cells : {std::array{4, 3, 2}, {3, 1, 4}, {2, 2, 5}, {3, 2, 1}, {1, 1, 1}}) {
-    const TetMesh mesh = make_box_tets({0.024, 0.031, 0.017}, cells);
+    const TetMesh mesh = make_mirrored_box_tets({0.024, 0.031, 0.017}, cells);
     check_tet_mesh(mesh, "box");
     EXPECT_NEAR(volume_of(mesh), 0.024 * 0.031 * 0.017, 1e-18);
     EXPECT_EQ(mesh.tet.size(), static_cast<std::size_t>(6 * cells[0] * cells[1] * cells[2]));
@@ -123,7 +124,7 @@ TEST(TetMesh, DuplicatedAndUnusedNodesAreNamed) {
   const auto copy = static_cast<std::int32_t>(twin.node_m.size());
   twin.node_m.push_back(twin.node_m[0]);
   std::replace(twin.tet[0].node.begin(), twin.tet[0].node.end(), 0, copy);  // other elements keep the first
-  EXPECT_SAYS(check_error(twin), "nodes 0 and 125 lie in the same place, at (0, 0, 0) mm");
+  EXPECT_SAYS(check_error(twin), "nodes 0 and 125 lie in the same place, at (-20, 0, -25) mm");
 }
 
 TEST(TetMesh, NumbersOutOfRangeAndNotFinite) {
