@@ -152,8 +152,7 @@ void add_picture_command(CLI::App& app, int& exit_code) {
     try {
       exit_code = run_picture(*options);
     } catch (const RecordingError& error) {
-      const std::string what = error.what();
-      throw std::runtime_error(what.starts_with(options->source) ? what : options->source + ": " + what);
+      throw std::runtime_error(about_file(options->source, error.what()));
     }
   });
 }
