@@ -112,7 +112,12 @@ int draw_scene(const DrawOptions& options) {
   const auto state = std::make_unique<State>();
   reset(*state);
   if (scene.scene() && !scene.scene()->path.point.empty()) {
-    state->tool_w = scripted_poses(scene.scene()->path, scene.model().params.period_s).front().tool_w;
+    Input input;
+    input.drive = Drive::kTool;
+    input.pose_w = scripted_poses(scene.scene()->path, scene.model().params.period_s).front().tool_w;
+    const auto scratch = std::make_unique<Scratch>();
+    Output output;
+    tick(scene.model(), *state, *scratch, input, output);  // a hand's joints go to where they begin
   }
   PictureOptions picture;
   picture.width = options.width;
