@@ -6,8 +6,9 @@ namespace palpate {
 
 namespace {
 
-// Penetration of a node left out above which the tick says so: a thirtieth of an encoder's step, and far above the
-// rounding of a surface on which all nodes touch alike.
+// Penetration of a node left out above which the tick says so, beyond what the tool moved in it, which the body has not
+// followed yet: a thirtieth of an encoder's step, and far above the rounding of a surface on which all nodes touch
+// alike.
 constexpr Real kTolerance_m = 1e-6;
 
 // One of the near nodes.
@@ -18,9 +19,10 @@ struct Lane {
 
 // How many may join when so many pushed.
 std::int32_t places_for(std::int32_t pushed) PALPATE_RT {
+  if (pushed == 0) return kMaxContacts;
   std::int32_t problem = whole_lanes(pushed + kMinJoining, 8);
   if (problem < kMinChosen) problem = kMinChosen;
-  return (problem < kMaxContacts ? problem : kMaxContacts) - pushed;
+  return (problem > kMostChosen ? kMaxContacts : problem) - pushed;
 }
 
 // The deepest nodes so far, deepest first; ties: first come.
@@ -205,7 +207,8 @@ void reduce_near(const Model& model, const State& state, Scratch& scratch) PALPA
   } else {
     find_deepest(model, LastPushes<double>(model.compliance_f64, length, state.nodal), state, p, joining);
   }
-  if (joining.left_out_m < -kTolerance_m) scratch.status |= Status::kContactsDropped;
+  const Real moved_m = norm(state.tool_w.position_m - state.tool_previous_w.position_m);
+  if (joining.left_out_m < -kTolerance_m - moved_m) scratch.status |= Status::kContactsDropped;
   for (std::int32_t n = 0; n < joining.count; ++n) {  // bound: kMaxJoining
     p.near[joining.lane[n].four].lanes |= 1u << joining.lane[n].k;
   }

@@ -7,10 +7,12 @@
 namespace palpate {
 
 // When not all near nodes fit into a problem, as many join those that pushed as fill whole lanes: at least kMinJoining,
-// and no fewer than make a problem of kMinChosen.
+// and no fewer than make a problem of kMinChosen. Where none pushed, or so many that the problem would exceed
+// kMostChosen, as many as fit.
 inline constexpr std::int32_t kMinJoining = 6;
 inline constexpr std::int32_t kMinChosen = 32;
-inline constexpr std::int32_t kMaxJoining = kMinChosen;
+inline constexpr std::int32_t kMostChosen = 48;
+inline constexpr std::int32_t kMaxJoining = kMaxContacts;
 // Displacements predicted in one tick, as pushes times nodes that they move, eight nodes for one.
 inline constexpr std::int32_t kMaxPredictions = 256;
 

@@ -94,7 +94,7 @@ TEST(WarmPivots, BallOnABlock) {
   for (const double mu : {0.0, 0.5}) {
     NodalScene scene(block({4, 4, 4}), {sphere_piece(0.010)}, soft(mu));
     const Vec3 from{0, 0.0341, 0}, to{0.001, 0.030, 0.0005};
-    mu > 0 ? press(scene, from, to, "ball on a block, mu 0.5", 5, 0.02) : press(scene, from, to, "ball on a block", 3);
+    mu > 0 ? press(scene, from, to, "ball on a block, mu 0.5", 5, 0.03) : press(scene, from, to, "ball on a block", 3);
   }
 }
 
@@ -108,7 +108,7 @@ TEST(WarmPivots, PlateOnABlock) {
     NodalScene scene(block({3, 3, 3}), {plate}, soft(mu));
     const Vec3 from{0, 0.0291, 0}, to{0, 0.027, 0};
     // All nodes of the face arrive at once; its rim then opens and closes.
-    mu > 0 ? press(scene, from, to, "plate on a block, mu 0.5", 10, 0.15)
+    mu > 0 ? press(scene, from, to, "plate on a block, mu 0.5", 10, 0.30)
            : press(scene, from, to, "plate on a block", 4, 0.01);
   }
 }
