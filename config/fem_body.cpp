@@ -11,6 +11,7 @@
 #include "config/fem/strain_gauges.h"
 #include "config/fem/tet_io.h"
 #include "config/fem/tet_procedural.h"
+#include "config/schema.h"
 
 namespace palpate {
 
@@ -24,7 +25,7 @@ TetMesh box_mesh(const SceneDesc& scene) {
   const Vec3 size = scene.body.size_m;
   const double edge = edge_m(scene, size);
   const auto cells = [&](double side) { return std::max(1, static_cast<std::int32_t>(std::lround(side / edge))); };
-  return make_box_tets(size, {cells(size.x), cells(size.y), cells(size.z)});
+  return make_mirrored_box_tets(size, {cells(size.x), cells(size.y), cells(size.z)});
 }
 
 TetMesh file_mesh(const SceneDesc& scene, std::vector<std::string>& warnings) {
@@ -41,23 +42,28 @@ TetMesh file_mesh(const SceneDesc& scene, std::vector<std::string>& warnings) {
   return read.mesh;
 }
 
-// Corners only.
-TetMesh without_middles(const TetMesh& mesh) {
-  TetMesh linear;
-  std::vector<std::int32_t> number(mesh.node_m.size(), -1);
-  for (const Tet& tet : mesh.tet) {
-    Tet corners;
-    for (std::size_t k = 0; k < 4; ++k) {
-      std::int32_t& n = number[static_cast<std::size_t>(tet.node[k])];
-      if (n < 0) {
-        n = static_cast<std::int32_t>(linear.node_m.size());
-        linear.node_m.push_back(mesh.node_m[static_cast<std::size_t>(tet.node[k])]);
-      }
-      corners.node[k] = n;
-    }
-    linear.tet.push_back(corners);
+std::string text_mm(Vec3 p) {
+  return "(" + number_text(1e3 * p.x) + ", " + number_text(1e3 * p.y) + ", " + number_text(1e3 * p.z) + ")";
+}
+
+// Flags of the elements that the scene's zone keeps quadratic.
+std::vector<char> zone_elements(const SceneDesc& scene, const TetMesh& mesh, std::vector<std::string>& warnings) {
+  const Vec3 from = scene.fem.zone_from_m, to = scene.fem.zone_to_m;
+  const auto inside = [&](Vec3 x) {
+    return x.x >= from.x && x.x <= to.x && x.y >= from.y && x.y <= to.y && x.z >= from.z && x.z <= to.z;
+  };
+  const std::vector<char> quadratic = elements_near(mesh, inside, scene.fem.zone_layers);
+  const auto count = std::count(quadratic.begin(), quadratic.end(), 1);
+  const std::string where = scene.source.where("body.fem.zone_from_mm") + ": ";
+  if (count == 0) {
+    const Bounds body = bounds_of(surface_of(mesh).mesh);
+    throw ConfigError(where + "no corner of a tetrahedron lies in the zone; the body reaches from " +
+                      text_mm(body.lower_m) + " to " + text_mm(body.upper_m) +
+                      " mm: move the zone there, or make it larger than an element");
   }
-  return linear;
+  if (count == static_cast<std::ptrdiff_t>(quadratic.size()))
+    warnings.push_back(where + "the zone makes all elements quadratic; order = \"quadratic\" says so");
+  return quadratic;
 }
 
 Supports supports_of(const SceneDesc& scene, const TetMesh& mesh) {
@@ -95,8 +101,9 @@ TetMesh make_tet_mesh(const SceneDesc& scene, std::vector<std::string>& warnings
       mesh = tetrahedralise(surface, edge_m(scene, bounds_of(surface).size_m()), scene.source.where("body.shape"));
     }
   }
-  if (scene.fem.order == FemOrder::kLinear) return without_middles(mesh);
   add_middle_nodes(mesh);
+  if (scene.fem.order == FemOrder::kLinear) keep_middle_nodes(mesh, std::vector<char>(mesh.tet.size(), 0));
+  if (scene.fem.order == FemOrder::kMixed) keep_middle_nodes(mesh, zone_elements(scene, mesh, warnings));
   return mesh;
 }
 

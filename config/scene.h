@@ -48,7 +48,7 @@ struct BodyDesc {
   std::int32_t triangles = 3000;
 };
 // Finite elements of a body (contact.backend = "nodal").
-enum class FemOrder : std::int32_t { kQuadratic, kLinear };
+enum class FemOrder : std::int32_t { kQuadratic, kLinear, kMixed };
 enum class FemPrecision : std::int32_t { kByError, kSingle, kDouble };
 struct FemDesc {
   FemOrder order = FemOrder::kQuadratic;
@@ -56,6 +56,8 @@ struct FemDesc {
   double edge_m = kAuto;
   std::int32_t level = 1;
   std::int32_t strain_gauges = 8;
+  Vec3 zone_from_m{kAuto, kAuto, kAuto}, zone_to_m{kAuto, kAuto, kAuto};  // mixed order: quadratic in this box
+  std::int32_t zone_layers = 1;
 };
 struct MaterialDesc {
   double youngs_modulus_Pa = 3e6;

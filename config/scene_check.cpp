@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "config/config_error.h"
+#include "config/fem/material.h"
 #include "config/scene.h"
 #include "config/schema.h"
 
@@ -225,6 +226,22 @@ void check_friction(const SceneDesc& scene) {
     fail(scene, "friction.slip_distance_mm", "has no effect unless friction.law = \"presliding_paper\"; remove it");
 }
 
+// Order of the finite elements: where it is mixed, the zone of the quadratic ones.
+void check_order(const SceneDesc& scene) {
+  if (scene.fem.order != FemOrder::kMixed)
+    return check_effect(scene, "body.fem", {"zone_from_mm", "zone_to_mm", "zone_layers"}, {},
+                        "unless body.fem.order = \"mixed\"");
+  for (const char* key : {"body.fem.zone_from_mm", "body.fem.zone_to_mm"})
+    if (!scene.source.has(key))
+      fail(scene, key, "missing; order = \"mixed\" needs both corners of the box in which elements are quadratic");
+  const Vec3 from = scene.fem.zone_from_m, to = scene.fem.zone_to_m;
+  if (!(from.x < to.x && from.y < to.y && from.z < to.z))
+    fail(scene, "body.fem.zone_to_mm", "must be greater than zone_from_mm along x, y and z; exchange the corners");
+  if (scene.material.poisson_ratio > kMeanDilatationAbove)
+    fail(scene, "body.fem.order",
+         "\"mixed\" needs body.material.poisson_ratio of at most 0.49, where linear elements lock; use \"quadratic\"");
+}
+
 // The nodal back-end has no tool-point law, no skeleton and no shape functions; the others no finite elements.
 void check_backend(const SceneDesc& scene) {
   const bool nodal = scene.contact.backend == Backend::kNodal;
@@ -249,6 +266,7 @@ void check_backend(const SceneDesc& scene) {
   if (scene.material.poisson_ratio >= 0.5)
     fail(scene, "body.material.poisson_ratio",
          number_text(scene.material.poisson_ratio) + "; finite elements need less than 0.5: use 0.4999 or below");
+  check_order(scene);
   if (scene.nodal.solver == NodalSolver::kPivoting)
     check_effect(scene, "contact.nodal", {"sweeps"}, {}, "with solver = \"pivoting\"");
   if (scene.body.shape != BodyShape::kClip)

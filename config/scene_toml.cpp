@@ -34,7 +34,7 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 // The known name nearest to `name`, if it is near enough to be meant; also a name given without its unit.
 std::string nearest(const std::string& name, const std::vector<std::string>& known) {
   std::string best;
-  std::size_t best_distance = std::max<std::size_t>(2, name.size() / 3) + 1;
+  std::size_t best_distance = std::max<std::size_t>(1, name.size() / 3) + 1;
   for (const std::string& candidate : known) {
     const std::size_t distance = candidate.starts_with(name + "_") ? 1 : edit_distance(name, candidate);
     if (distance < best_distance) {
@@ -120,7 +120,8 @@ class Reader {
                                  const std::string& path) const {
     const std::string guess = nearest(key, known_names(table));
     fail(value, path,
-         "unknown key; " + (guess.empty() ? std::string("see docs/scene_format.md") : "did you mean '" + guess + "'?"));
+         "unknown key; " + (guess.empty() ? std::string("see docs/scene_format.md or `palpate bake --schema`")
+                                          : "did you mean '" + guess + "'?"));
   }
 
   void read_child(const toml::node& value, const std::string& path) {

@@ -93,10 +93,17 @@ const KeySpec kBody[] = {
                                   "all but mesh: about this many triangles; the tick's cost hardly depends on it"),
 };
 const KeySpec kFem[] = {
-    choice<&FemDesc::order>("order", "quadratic|linear",
-                            "quadratic: 10-node tetrahedra; linear: 4-node ones, 12 to 22 % too stiff in bending"),
+    choice<&FemDesc::order>("order", "quadratic|linear|mixed",
+                            "quadratic: 10-node tetrahedra; linear: 4-node ones, 12 to 22 % too stiff in bending; "
+                            "mixed: quadratic in a zone, linear elsewhere, with transition elements between"),
+    list<&FemDesc::zone_from_m>(kVec3, "zone_from_mm", -10000, 10000, kMilli,
+                                "mixed: lowest corner of the box, in the world, where elements are quadratic"),
+    list<&FemDesc::zone_to_m>(kVec3, "zone_to_mm", -10000, 10000, kMilli, "mixed: its highest corner"),
+    integer<&FemDesc::zone_layers>("zone_layers", 1, 10,
+                                   "mixed: layers of quadratic elements around the nodes in the box"),
     number_or_auto<&FemDesc::edge_m>("edge_mm", 0.01, 1000, kMilli,
                                      "about this long an edge of a tetrahedron; auto: an eighth of the largest extent; "
+                                     "box: an even number along x or z makes its mesh symmetric there; "
                                      "clip, tets: the mesh has its own"),
     integer<&FemDesc::level>("level", 1, 3, "clip: fineness of its mesh; 1 has 717 nodes"),
     choice<&FemDesc::precision>("precision", "auto|single|double",

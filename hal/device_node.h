@@ -37,7 +37,6 @@ class DeviceNode {
 
   void press_stop(bool pressed) noexcept { stop_pressed_ = pressed; }  // the device's emergency stop: zero force
   void set_error(std::uint8_t code) noexcept { error_ = code; }        // 0 clears
-  void set_buttons(std::uint32_t buttons) noexcept { buttons_ = buttons; }
   // Misbehaviour on purpose: sends nothing; numbers its samples from 0 again; loses power (no force, deaf and mute) and
   // begins anew when it comes back, with numbers, clock and watchdog as at the start.
   void set_silent(bool silent) noexcept { silent_ = silent; }
@@ -53,7 +52,7 @@ class DeviceNode {
   void obey(std::uint32_t sequence, const DeviceCommand& command, std::int64_t now_ns) noexcept;
   void send_status() noexcept;
   std::uint32_t flags() const noexcept;
-  std::uint32_t buttons() const noexcept { return buttons_ | (plant_.trigger() ? kButtonClose : 0u); }
+  std::uint32_t buttons() const noexcept { return plant_.trigger() ? kButtonClose : 0u; }
 
   Transport& transport_;
   NodeOptions options_;
@@ -67,7 +66,6 @@ class DeviceNode {
   std::int64_t last_command_ns_ = 0;
   std::uint32_t status_sequence_ = 0;
   std::uint8_t error_ = 0;
-  std::uint32_t buttons_ = 0;
   bool stop_pressed_ = false;
   bool silent_ = false;
   bool powered_ = true;

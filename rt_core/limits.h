@@ -36,8 +36,6 @@ inline constexpr std::int32_t kMaxTraversalStack = 64;
 // past the budget the answer is "inconclusive": the last contact is kept, Status::kOverlapInconclusive.
 inline constexpr std::int32_t kGjkSupportBudget = 128;
 inline constexpr std::int32_t kGjkMaxIterations = 60;
-// Iterations of our own GJK distance routine; convex pairs here converge in fewer than 20.
-inline constexpr std::int32_t kClosestPointIterations = 32;
 // Newton iterations of the coupled region solve: residual below 7e-14 m after 5 (2000 random 15-region problems).
 inline constexpr std::int32_t kCoupledNewtonIterations = 5;
 // Newton iterations of the inverse cubic law: relative error below 7e-16 after 5.

@@ -10,17 +10,13 @@
 #include "rt_core/deform/beam_table.h"
 #include "rt_core/deform/skeleton.h"
 #include "rt_core/deform/temporal_order.h"
-#include "sim_host/plot.h"
+#include "sim_host/line_plot.h"
 
 namespace palpate {
 
 namespace {
 
-constexpr Colour kInk = colour(0x1f2933), kFaint = colour(0xdde2e8), kGrey = colour(0x66717d);
-constexpr Colour kSeries[] = {colour(0xd1495b), colour(0x2e9e6b), colour(0x2f6fb2), colour(0x22262b),
-                              colour(0xe08e2b), colour(0x7d5ba6), colour(0x3aa6a6), colour(0x8a6d3b)};
 constexpr std::size_t kMostSeries = 8;
-constexpr double kWidth = 900, kHeight = 560, kLeft = 80, kTop = 60, kPlotWidth = 560, kPlotHeight = 430;
 
 // Adds the force of one region's beams on their tips.
 void add_region(const Model& model, const State& state, std::int32_t slot, std::vector<Vec3>& sum) {
@@ -37,6 +33,7 @@ void add_region(const Model& model, const State& state, std::int32_t slot, std::
   for (std::size_t a = 0; a < sum.size(); ++a) sum[a] += skeleton->force_w[a];
 }
 
+// Numbers of the anchors, from 1, that ever carry most.
 std::vector<int> strongest_anchors(std::span<const AnchorSample> samples) {
   std::vector<double> largest;
   for (const AnchorSample& s : samples) {
@@ -44,9 +41,9 @@ std::vector<int> strongest_anchors(std::span<const AnchorSample> samples) {
     for (std::size_t a = 0; a < largest.size(); ++a) largest[a] = std::max(largest[a], s.force_N[a]);
   }
   std::vector<int> order(largest.size());
-  for (std::size_t a = 0; a < order.size(); ++a) order[a] = static_cast<int>(a);
+  for (std::size_t a = 0; a < order.size(); ++a) order[a] = static_cast<int>(a + 1);
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
-    return largest[static_cast<std::size_t>(a)] > largest[static_cast<std::size_t>(b)];
+    return largest[static_cast<std::size_t>(a - 1)] > largest[static_cast<std::size_t>(b - 1)];
   });
   order.resize(std::min(order.size(), kMostSeries));
   return order;
@@ -71,7 +68,7 @@ void write_anchor_csv(const std::string& path, std::span<const AnchorSample> sam
   if (file == nullptr) throw std::runtime_error(path + ": cannot be written");
   std::string text = "time_s,depth_mm";
   const std::size_t anchors = samples.empty() ? 0 : samples[0].force_N.size();
-  for (std::size_t a = 0; a < anchors; ++a) text += fmt::format(",a{}_F_N,a{}_stress_Pa", a, a);
+  for (std::size_t a = 0; a < anchors; ++a) text += fmt::format(",a{}_F_N,a{}_stress_Pa", a + 1, a + 1);
   text += '\n';
   for (const AnchorSample& s : samples) {
     text += fmt::format("{:.9g},{:.9g}", s.time_s, 1e3 * s.depth_m);
@@ -84,46 +81,23 @@ void write_anchor_csv(const std::string& path, std::span<const AnchorSample> sam
 
 Drawing anchor_force_plot(const Model& model, std::span<const AnchorSample> samples, std::vector<int> anchors,
                           const std::string& title) {
-  for (const int a : anchors)
-    if (a < 0 || static_cast<std::size_t>(a) >= model.anchor.size())
-      throw std::runtime_error(fmt::format("anchor {}: the body has anchors 0 to {}", a, model.anchor.size() - 1));
   if (anchors.empty()) anchors = strongest_anchors(samples);
   // Loading only: up to the deepest sample, each step deeper than all before.
   std::vector<const AnchorSample*> loading;
   for (const AnchorSample& s : samples)
     if (s.depth_m > (loading.empty() ? 0.0 : loading.back()->depth_m)) loading.push_back(&s);
-  double depth = 1e-3, force = 1e-3;
-  for (const AnchorSample* s : loading) {
-    depth = std::max(depth, s->depth_m);
-    for (const int a : anchors) force = std::max(force, 1.05 * s->force_N[static_cast<std::size_t>(a)]);
-  }
-  Drawing drawing(kWidth, kHeight);
-  drawing.text(kLeft, 32, title, 18, kInk, Align::kStart, false, true);
-  const auto x = [&](double d) { return kLeft + kPlotWidth * d / depth; };
-  const auto y = [&](double f) { return kTop + kPlotHeight * (1 - f / force); };
-  for (const double d : axis_ticks(0, 1e3 * depth, 6)) {
-    drawing.line({{x(1e-3 * d), kTop}, {x(1e-3 * d), kTop + kPlotHeight}}, 0.8, kFaint);
-    drawing.text(x(1e-3 * d), kTop + kPlotHeight + 18, tick_label(d), 12, kGrey, Align::kMiddle);
-  }
-  for (const double f : axis_ticks(0, force, 6)) {
-    drawing.line({{kLeft, y(f)}, {kLeft + kPlotWidth, y(f)}}, 0.8, kFaint);
-    drawing.text(kLeft - 8, y(f) + 4, tick_label(f), 12, kGrey, Align::kEnd);
-  }
-  drawing.text(kLeft + kPlotWidth / 2, kTop + kPlotHeight + 42, "depth (mm)", 13, kInk, Align::kMiddle);
-  drawing.text(24, kTop + kPlotHeight / 2, "force at the anchor (N)", 13, kInk, Align::kMiddle, true);
-  for (std::size_t i = 0; i < anchors.size(); ++i) {
-    const auto a = static_cast<std::size_t>(anchors[i]);
-    const Colour c = kSeries[i % kMostSeries];
-    Stroke line{{x(0), y(0)}};
-    for (const AnchorSample* s : loading) line.push_back({x(s->depth_m), y(s->force_N[a])});
-    drawing.line(std::move(line), 2.2, c);
-    const double row = kTop + 14 + 24 * static_cast<double>(i);
+  std::vector<PlotCurve> curves;
+  for (const int number : anchors) {
+    const auto a = static_cast<std::size_t>(number - 1);
     const Vec3 p = 1e3 * model.anchor[a].position_m;
-    drawing.line({{kLeft + kPlotWidth + 24, row - 4}, {kLeft + kPlotWidth + 46, row - 4}}, 3, c);
-    drawing.text(kLeft + kPlotWidth + 54, row, fmt::format("{} at ({:.3g}, {:.3g}, {:.3g}) mm", a, p.x, p.y, p.z), 12,
-                 kInk);
+    PlotCurve curve{fmt::format("{} at ({:.3g}, {:.3g}, {:.3g}) mm", number, p.x, p.y, p.z), {0}, {0}};
+    for (const AnchorSample* s : loading) {
+      curve.x.push_back(1e3 * s->depth_m);
+      curve.y.push_back(s->force_N[a]);
+    }
+    curves.push_back(std::move(curve));
   }
-  return drawing;
+  return line_plot(curves, {title, "depth (mm)", "force at the anchor (N)"}, false);
 }
 
 }  // namespace palpate

@@ -19,11 +19,12 @@ struct AnchorSample {
 };
 AnchorSample sample_anchors(const Model& model, const State& state, double time_s, double depth_m);
 
-// One row per sample: time_s, depth_mm, then aN_F_N and aN_stress_Pa for every anchor. Throws std::runtime_error when
-// it cannot be written.
+// One row per sample: time_s, depth_mm, then aN_F_N and aN_stress_Pa for every anchor N from 1. Throws
+// std::runtime_error when it cannot be written.
 void write_anchor_csv(const std::string& path, std::span<const AnchorSample> samples);
 
-// Force at the named anchors (empty: the eight that carry most) against depth, from first touch to the deepest sample.
+// Force at the anchors of these numbers (from 1; empty: the eight that carry most) against depth, from first touch to
+// the deepest sample.
 Drawing anchor_force_plot(const Model& model, std::span<const AnchorSample> samples, std::vector<int> anchors,
                           const std::string& title);
 

@@ -50,7 +50,7 @@ PlotCurve stress_by_anchor(const GraspRun& run) {
 Drawing history_plot(const GraspRun& run) {
   std::vector<PlotCurve> curves;
   for (std::size_t a = 0; a < run.stress_Pa.size(); ++a) {
-    PlotCurve curve{fmt::format("{}", a + 1), run.time_s, {}};
+    PlotCurve curve{fmt::format("anchor {}", a + 1), run.time_s, {}};
     for (const double stress : run.stress_Pa[a]) curve.y.push_back(1e-3 * stress);
     curves.push_back(std::move(curve));
   }
@@ -64,9 +64,10 @@ void print_run(const Model& model, const GraspRun& run) {
       run.name, run.regions, run.contact_w.force_N.x, run.contact_w.force_N.y, run.contact_w.force_N.z,
       run.palm_w.force_N.x, run.palm_w.force_N.y, run.palm_w.force_N.z,
       (run.status & Status::kGraspUnstable) != 0 ? ": UNSTABLE, the palm would have to pull" : "");
-  for (std::size_t part = 1; part < run.region_force_N.size(); ++part)
-    if (run.region_force_N[part] > 0)
-      fmt::print("  {:<18}{:8.4f} N\n", hand_parts()[part - 1].name, run.region_force_N[part]);
+  fmt::print("  normal force on each part, and stress at each anchor\n");
+  for (std::size_t part = 1; part < run.part_force_N.size(); ++part)
+    if (run.part_force_N[part] > 0)
+      fmt::print("  {:<18}{:8.4f} N\n", hand_parts()[part - 1].name, run.part_force_N[part]);
   for (std::size_t a = 0; a < run.held_stress_Pa.size(); ++a) {
     const Vec3 at = 1e3 * model.anchor[a].position_m;
     fmt::print("  anchor {:<2} ({:7.2f}, {:7.2f}, {:7.2f}) mm{:10.1f} Pa\n", a + 1, at.x, at.y, at.z,

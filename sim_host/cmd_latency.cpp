@@ -15,6 +15,7 @@
 #include "hal/rt_linux.h"
 #include "sim_host/certify.h"
 #include "sim_host/cli.h"
+#include "sim_host/cli_checks.h"
 #include "sim_host/cyclictest_read.h"
 #include "sim_host/latency.h"
 #include "sim_host/recording.h"
@@ -197,14 +198,15 @@ void add_latency_command(CLI::App& app, int& exit_code) {
       ->excludes(recording);
   command->add_option("--histfile", options->histfile, "write cyclictest's histogram text to this file");
   command->add_option("--json", options->json, "write cyclictest's JSON to this file");
-  command->add_option("--plot", options->plot, "draw the histograms to this .svg or .png file");
+  command->add_option("--plot", options->plot, "draw the histograms to this .svg or .png file")
+      ->check(ends_in({".svg", ".png"}));
   command->add_option("--overlay", options->overlay,
                       "histogram text of cyclictest (-h 400 -q) to draw with the wake-up latency; needs --plot");
   command->add_option("--worst", options->worst, "how many of the worst ticks to list with their parts")
       ->capture_default_str()
       ->check(CLI::Range(0, static_cast<int>(kWorstTicksKept)));
   command->add_option("--limit", options->limit_us, "exit with 1 when the latest wake-up exceeds this many µs")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   add_certify_options(*command, *options, recording, live);
   command->footer(
       "Without --recording, --live or --certify it sleeps to 1 kHz deadlines as the controller does, and measures how "

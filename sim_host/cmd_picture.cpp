@@ -8,6 +8,7 @@
 
 #include "rt_core/tick.h"
 #include "sim_host/cli.h"
+#include "sim_host/cli_checks.h"
 #include "sim_host/image_file.h"
 #include "sim_host/picture.h"
 #include "sim_host/plot.h"
@@ -133,11 +134,14 @@ void add_picture_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<DrawOptions>();
   CLI::App* command = app.add_subcommand("picture", "Draw the deformed body of a recorded run, or a scene at rest");
   command->add_option("SOURCE", options->source, "recording (.plr), scene (.toml) or image (.pal)")->required();
-  command->add_option("-o,--output", options->output, "picture to write (.png)")->capture_default_str();
+  command->add_option("-o,--output", options->output, "picture to write (.png)")
+      ->capture_default_str()
+      ->check(ends_in({".png"}));
   command->add_option("--tick", options->tick, "tick to draw; default: the one with the largest force")
       ->check(CLI::NonNegativeNumber);
   command->add_option("--image", options->image, "scene image, when it is no longer where the recording says");
-  command->add_option("--plot", options->plot, "also draw the force history (.svg or .png)");
+  command->add_option("--plot", options->plot, "also draw the force history (.svg or .png)")
+      ->check(ends_in({".svg", ".png"}));
   command->add_option("--width", options->width, "pixels")->capture_default_str()->check(CLI::Range(200, 4000));
   command->add_option("--height", options->height, "pixels")->capture_default_str()->check(CLI::Range(150, 4000));
   command->footer(

@@ -10,6 +10,7 @@
 
 #include "sim_host/anchor_loads.h"
 #include "sim_host/cli.h"
+#include "sim_host/cli_checks.h"
 #include "sim_host/force_csv.h"
 #include "sim_host/joint_script.h"
 #include "sim_host/picture.h"
@@ -73,7 +74,12 @@ struct Collected {
   std::vector<ForceSample> samples;
   std::vector<AnchorSample> anchors;
   std::uint64_t rows = 0;
-  std::uint32_t status = 0, fault = 0;
+  std::uint32_t fault = 0;
+  struct Seen {
+    std::uint64_t ticks = 0;
+    double first_s = 0;
+  };
+  Seen status[32];  // of each status bit
   std::int64_t instructions_max = -1;
   double force_max_N = 0, depth_max_m = 0;
   std::unique_ptr<State> strongest = std::make_unique<State>();
@@ -86,7 +92,10 @@ struct Collected {
       *strongest = state;
     }
     rows += 1;
-    status |= output.status;
+    for (std::size_t bit = 0; bit < std::size(status); ++bit) {
+      if ((output.status >> bit & 1u) == 0) continue;
+      if (status[bit].ticks++ == 0) status[bit].first_s = row.time_s;
+    }
     fault |= output.fault;
     instructions_max = std::max(instructions_max, row.instructions);
     depth_max_m = std::max(depth_max_m, output.penetration_m);
@@ -100,7 +109,10 @@ void print_summary(const Collected& all, const PressOptions& options) {
   if (all.instructions_max >= 0) fmt::print(", costliest tick {} instructions", all.instructions_max);
   fmt::print("\n");
   for (const BitText& bit : status_bit_texts()) {
-    if ((all.status >> bit.bit & 1u) != 0) fmt::print("status  {}: {}; {}\n", bit.name, bit.meaning, bit.remedy);
+    const Collected::Seen& seen = all.status[bit.bit];
+    if (seen.ticks == 0) continue;
+    fmt::print("status  {} in {} ticks, first at {:.3f} s: {}\n        remedy: {}\n", bit.name, seen.ticks,
+               seen.first_s, bit.meaning, bit.remedy);
   }
   for (const BitText& bit : fault_bit_texts()) {
     if ((all.fault >> bit.bit & 1u) != 0) fmt::print("FAULT   {}: {}; {}\n", bit.name, bit.meaning, bit.remedy);
@@ -131,9 +143,21 @@ void write_pictures(const PressOptions& options, const Model& model, const Colle
   }
 }
 
+void check_anchors(const PressOptions& options, const Model& model) {
+  if (options.anchors.empty() && options.anchor_plot.empty()) return;
+  const std::size_t count = model.anchor.size();
+  if (count == 0)
+    throw std::runtime_error(
+        "--anchors, --anchor-plot: this body has no beam skeleton, hence no anchors; leave them out");
+  for (const int a : options.plotted_anchors)
+    if (a < 1 || static_cast<std::size_t>(a) > count)
+      throw std::runtime_error(fmt::format("--plotted-anchors: {}; this body has anchors 1 to {}", a, count));
+}
+
 int run_press(const PressOptions& options) {
   const SceneModel scene(options.scene, options.overlays);
   const Model& model = scene.model();
+  check_anchors(options, model);
   std::vector<TimedPose> poses = poses_of(options, scene);
   std::vector<TimedJoints> scripted;
   for (const TimedPose& pose : poses) scripted.push_back({pose.time_s, pose.joints});
@@ -186,13 +210,16 @@ void add_press_command(CLI::App& app, int& exit_code) {
   command->add_option("--every", options->every, "with --vtu: write only every Nth pose")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000000000));
-  command->add_option("--png", options->png, "draw the deformed body at the largest force");
-  command->add_option("--plot", options->plot, "draw the force history (.svg or .png)");
+  command->add_option("--png", options->png, "draw the deformed body at the largest force (.png)")
+      ->check(ends_in({".png"}));
+  command->add_option("--plot", options->plot, "draw the force history (.svg or .png)")
+      ->check(ends_in({".svg", ".png"}));
   command->add_option("--anchors", options->anchors, "write the forces and stresses at the skeleton's anchors (CSV)");
-  command->add_option("--anchor-plot", options->anchor_plot, "draw the anchors' forces against depth (.svg or .png)");
+  command->add_option("--anchor-plot", options->anchor_plot, "draw the anchors' forces against depth (.svg or .png)")
+      ->check(ends_in({".svg", ".png"}));
   command
       ->add_option("--plotted-anchors", options->plotted_anchors,
-                   "anchors in that plot, as 0,1,2; default: the eight that carry most")
+                   "anchors in that plot, as 1,2,3; default: the eight that carry most")
       ->delimiter(',');
   command
       ->add_option("--hand", options->hand_N_per_m,

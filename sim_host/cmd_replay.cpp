@@ -84,7 +84,8 @@ void add_replay_command(CLI::App& app, int& exit_code) {
     try {
       exit_code = run_replay(*options);
     } catch (const std::exception& error) {
-      throw std::runtime_error(options->recording + ": " + error.what());
+      const std::string what = error.what();
+      throw std::runtime_error(what.starts_with(options->recording) ? what : options->recording + ": " + what);
     }
   });
 }

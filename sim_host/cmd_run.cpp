@@ -54,10 +54,13 @@ int run(RunCommand& command) {
   }
   LivePrinter printer;
   if (command.live) options.progress = [&](const LiveState& state) { printer.print(live_text(state)); };
-  if (!options.quiet) print_hint(options);
+  if (!options.quiet) options.before_start = [&] { print_hint(options); };
   const RunResult result = run_session(options);
-  fmt::print("{}", summary_text(result.summary, result.lost, command.worst));
-  if (!options.record.empty() && result.recorder_error.empty()) {
+  if (result.summary.ticks > 0) fmt::print("{}", summary_text(result.summary, result.lost, command.worst));
+  if (result.summary.ticks == 0) {
+    fmt::print("nothing ran, nothing was recorded\n");
+    if (!options.record.empty()) std::filesystem::remove(options.record);
+  } else if (!options.record.empty() && result.recorder_error.empty()) {
     fmt::print("record  {} ({} ticks){}\n", options.record, result.summary.ticks,
                result.interrupted ? ", stopped by signal" : "");
   }

@@ -14,6 +14,7 @@ namespace palpate {
 namespace {
 
 using Corners = std::array<std::int32_t, 3>;
+using TriangleNormals = std::array<Vec3, 3>;
 
 std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
 
@@ -93,29 +94,101 @@ void displace(const Model& model, const State& state, DeformedSurface& surface) 
     surface.displacement_m[i] = surface.position_m[i] - surface.rest_m[i];
 }
 
-// Halves every edge; `normal` grows with the vertices.
-void refine(DeformedSurface& surface, std::vector<Vec3>& normal) {
-  constexpr double kCrease = 0.8;  // cosine of the normals' angle beyond which an edge stays straight
-  constexpr double kRounding = 0.75;
-  std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> middles;
-  const auto middle = [&](std::int32_t a, std::int32_t b) {
-    const auto [entry, is_new] =
-        middles.try_emplace(std::minmax(a, b), static_cast<std::int32_t>(surface.rest_m.size()));
-    if (is_new) {
-      const Vec3 p = 0.5 * (surface.rest_m[at(a)] + surface.rest_m[at(b)]), na = normal[at(a)], nb = normal[at(b)];
-      const Vec3 lift = dot(surface.rest_m[at(a)] - p, na) * na + dot(surface.rest_m[at(b)] - p, nb) * nb;
-      surface.rest_m.push_back(dot(na, nb) > kCrease ? p + (0.5 * kRounding) * lift : p);
-      normal.push_back(unit_or(na + nb, na));
+// Cosine of the angle between two triangles beyond which their common corner is a crease: 40 degrees.
+constexpr double kCrease = 0.766;
+
+std::vector<Vec3> face_normals(const std::vector<Vec3>& position, const std::vector<Corners>& triangles) {
+  std::vector<Vec3> normal;
+  for (const auto& [a, b, c] : triangles)
+    normal.push_back(unit_or(cross(position[at(b)] - position[at(a)], position[at(c)] - position[at(a)]), {}));
+  return normal;
+}
+
+// Per corner of every triangle the angle-weighted mean over the triangles around it that do not lie beyond a crease.
+std::vector<TriangleNormals> smooth_normals(const std::vector<Vec3>& position, const std::vector<Corners>& triangles) {
+  const std::vector<Vec3> face = face_normals(position, triangles);
+  std::vector<std::vector<std::pair<std::size_t, double>>> around(position.size());  // triangle, its angle here
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 p = position[at(triangles[t][k])];
+      const Vec3 a = unit_or(position[at(triangles[t][(k + 1) % 3])] - p, {});
+      const Vec3 b = unit_or(position[at(triangles[t][(k + 2) % 3])] - p, {});
+      around[at(triangles[t][k])].push_back({t, std::acos(std::clamp(dot(a, b), -1.0, 1.0))});
     }
-    return entry->second;
-  };
+  }
+  std::vector<TriangleNormals> normal(triangles.size());
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      Vec3 sum;
+      for (const auto& [other, angle] : around[at(triangles[t][k])])
+        if (dot(face[other], face[t]) > kCrease) sum += angle * face[other];
+      normal[t][k] = unit_or(sum, face[t]);
+    }
+  }
+  return normal;
+}
+
+// An edge while it is halved: the new point, how far the rounding lifts it off the chord, and the normals that say so.
+struct HalvedEdge {
+  std::int32_t middle;
+  Vec3 lift, low_normal, high_normal;
+};
+
+// Halves every edge; `corner` goes along.
+void refine(DeformedSurface& surface, std::vector<TriangleNormals>& corner) {
+  constexpr double kRounding = 0.5;  // exact for a circle to second order
+  std::map<std::pair<std::int32_t, std::int32_t>, HalvedEdge> edges;
+  const auto same = [](Vec3 a, Vec3 b) { return squared_norm(a - b) < 1e-6; };
+  for (std::size_t t = 0; t < corner.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t next = (k + 1) % 3;
+      std::int32_t a = surface.triangle[t][k], b = surface.triangle[t][next];
+      Vec3 na = corner[t][k], nb = corner[t][next];
+      if (b < a) std::swap(a, b), std::swap(na, nb);
+      const Vec3 pa = surface.rest_m[at(a)], pb = surface.rest_m[at(b)], p = 0.5 * (pa + pb);
+      const Vec3 lift = dot(pa - p, na) * na + dot(pb - p, nb) * nb;
+      const auto [entry, is_new] =
+          edges.try_emplace({a, b}, HalvedEdge{static_cast<std::int32_t>(surface.rest_m.size()), lift, na, nb});
+      HalvedEdge& edge = entry->second;
+      if (is_new) surface.rest_m.push_back(p);
+      // On a crease each side lifts by its own curvature: at a cylinder's rim the wall does and the lid does not.
+      else if (!same(edge.low_normal, na) || !same(edge.high_normal, nb))
+        edge.lift += lift;
+    }
+  }
+  for (const auto& [ends, edge] : edges) surface.rest_m[at(edge.middle)] += (0.5 * kRounding) * edge.lift;
   std::vector<Corners> finer;
-  finer.reserve(4 * surface.triangle.size());
-  for (const auto& [a, b, c] : surface.triangle) {
-    const std::int32_t ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+  std::vector<TriangleNormals> finer_normal;
+  finer.reserve(4 * corner.size());
+  finer_normal.reserve(4 * corner.size());
+  for (std::size_t t = 0; t < corner.size(); ++t) {
+    const auto [a, b, c] = surface.triangle[t];
+    const auto [na, nb, nc] = corner[t];
+    const std::int32_t ab = edges.at(std::minmax(a, b)).middle, bc = edges.at(std::minmax(b, c)).middle,
+                       ca = edges.at(std::minmax(c, a)).middle;
+    const Vec3 nab = unit_or(na + nb, na), nbc = unit_or(nb + nc, nb), nca = unit_or(nc + na, nc);
     finer.insert(finer.end(), {{a, ab, ca}, {b, bc, ab}, {c, ca, bc}, {ab, bc, ca}});
+    finer_normal.insert(finer_normal.end(), {{na, nab, nca}, {nb, nbc, nab}, {nc, nca, nbc}, {nab, nbc, nca}});
   }
   surface.triangle = std::move(finer);
+  corner = std::move(finer_normal);
+}
+
+// Turns the normals at rest with the surface. Rounded points are not quite smooth across the old edges, so only the
+// turn is taken from the points, and the normal at rest from the interpolation.
+void turn_normals(DeformedSurface& surface) {
+  const std::vector<Vec3> at_rest = mesh_normals(surface.rest_m, surface.triangle);
+  const std::vector<Vec3> face_at_rest = face_normals(surface.rest_m, surface.triangle);
+  const std::vector<Vec3> face = face_normals(surface.position_m, surface.triangle);
+  for (std::size_t t = 0; t < surface.corner_normal.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      Vec3& n = surface.corner_normal[t][k];
+      const std::size_t vertex = at(surface.triangle[t][k]);
+      const bool smooth = dot(n, at_rest[vertex]) > 0.97;
+      n = smooth ? unit_or(n + surface.normal[vertex] - at_rest[vertex], surface.normal[vertex])
+                 : rotate(rotation_between(face_at_rest[t], face[t]), n);
+    }
+  }
 }
 
 }  // namespace
@@ -136,19 +209,14 @@ DeformedSurface deformed_surface(const Model& model, const State& state) {
 
 DeformedSurface refined_surface(const Model& model, const State& state, std::size_t most_triangles) {
   DeformedSurface surface = rest_surface(model);
-  std::vector<Vec3> normal(model.vertex_normal.begin(), model.vertex_normal.end());
+  std::vector<TriangleNormals> corner = smooth_normals(surface.rest_m, surface.triangle);
   const bool everywhere =
       !is_nodal(model) && static_cast<ShapeLaw>(model.params.shape_law) != ShapeLaw::kDisplacementAngle;
-  while (everywhere && 4 * surface.triangle.size() <= most_triangles) refine(surface, normal);
+  while (everywhere && 4 * surface.triangle.size() <= most_triangles) refine(surface, corner);
   displace(model, state, surface);
   finish(surface);
-  // Rounded points are not quite smooth across the old edges. So only the turn of the normal by the deformation is
-  // taken from the points, and the normal at rest from the interpolation, except at creases.
-  const std::vector<Vec3> at_rest = mesh_normals(surface.rest_m, surface.triangle);
-  for (std::size_t i = 0; i < normal.size(); ++i) {
-    if (dot(normal[i], at_rest[i]) < 0.97) continue;
-    surface.normal[i] = unit_or(normal[i] + surface.normal[i] - at_rest[i], surface.normal[i]);
-  }
+  surface.corner_normal = std::move(corner);
+  turn_normals(surface);
   return surface;
 }
 

@@ -17,6 +17,8 @@ struct DeformedSurface {
   std::vector<Vec3> displacement_m;                   // world frame, per vertex
   std::vector<Vec3> position_m;                       // rest position plus displacement
   std::vector<Vec3> normal;                           // of the deformed surface, angle-weighted, outward
+  // Of a refined surface only, per triangle and corner: normals that do not average over creases.
+  std::vector<std::array<Vec3, 3>> corner_normal;
 };
 
 // On the model's vertices, with a given displacement for each.
@@ -24,7 +26,7 @@ DeformedSurface deformed_surface(const Model& model, std::vector<Vec3> displacem
 // On the model's vertices, from the shape models of the scene.
 DeformedSurface deformed_surface(const Model& model, const State& state);
 // The same on a mesh refined for drawing, up to `most_triangles`: edges are halved and the new points rounded by the
-// vertex normals (Phong tessellation, Boubekeur & Alexa 2008), except across creases. Not refined where the shape law
+// normals (Phong tessellation, Boubekeur & Alexa 2008), which keep creases sharp. Not refined where the shape law
 // is only known at the model's vertices (displacement angles, finite elements).
 DeformedSurface refined_surface(const Model& model, const State& state, std::size_t most_triangles = 250'000);
 

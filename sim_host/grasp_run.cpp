@@ -73,11 +73,11 @@ void keep_hold(const Model& model, const PressRow& row, const State& state, Gras
   run.regions = row.record.output.regions;
   run.status = row.record.output.status;
   run.held_stress_Pa = anchor_stresses_Pa(model, state);
-  run.region_force_N.assign(kHandParts + 1, 0);
+  run.part_force_N.assign(kHandParts + 1, 0);
   for (std::size_t p = 0; p < model.piece.size(); ++p) {
     const std::int32_t part = model.piece[p].part;
     if (part >= 1 && part <= kHandParts)
-      run.region_force_N[static_cast<std::size_t>(part)] += norm(state.articulation.piece_force_tool_N[p]);
+      run.part_force_N[static_cast<std::size_t>(part)] += norm(state.articulation.piece_force_tool_N[p]);
   }
 }
 
@@ -123,9 +123,9 @@ GraspRun run_grasp(const Model& model, const SceneDesc& scene, const GraspOption
 
 double force_difference(const GraspRun& a, const GraspRun& b) {
   double most = 0, difference = 0;
-  for (std::size_t part = 0; part < std::min(a.region_force_N.size(), b.region_force_N.size()); ++part) {
-    most = std::max(most, std::max(a.region_force_N[part], b.region_force_N[part]));
-    difference = std::max(difference, std::abs(a.region_force_N[part] - b.region_force_N[part]));
+  for (std::size_t part = 0; part < std::min(a.part_force_N.size(), b.part_force_N.size()); ++part) {
+    most = std::max(most, std::max(a.part_force_N[part], b.part_force_N[part]));
+    difference = std::max(difference, std::abs(a.part_force_N[part] - b.part_force_N[part]));
   }
   return most > 0 ? difference / most : 0;
 }

@@ -28,7 +28,7 @@ struct GraspRun {
   std::unique_ptr<State> held;
   std::vector<double> held_stress_Pa;  // per anchor
   Wrench contact_w, palm_w;
-  std::vector<double> region_force_N;  // normal force of each region in contact, by finger part; [0] unused
+  std::vector<double> part_force_N;  // sum of the normal forces on each finger part; [0] unused
   std::int32_t regions = 0;
   std::uint32_t status = 0;   // of that tick
   double chatter = 0;         // largest relative change of the summed normal force per tick over the last 0.2 s of hold

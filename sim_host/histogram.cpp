@@ -17,10 +17,6 @@ std::int64_t percentile_ns(const Histogram& histogram, double fraction) {
   return histogram.max_ns;  // the rank lies among the overflows
 }
 
-double mean_ns(const Histogram& histogram) {
-  return histogram.total == 0 ? 0.0 : static_cast<double>(histogram.sum_ns) / static_cast<double>(histogram.total);
-}
-
 void merge(Histogram& to, const Histogram& from) {
   if (from.total == 0) return;
   for (std::int32_t bucket = 0; bucket < kHistogramBuckets; ++bucket) to.count[bucket] += from.count[bucket];

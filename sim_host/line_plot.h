@@ -17,7 +17,8 @@ struct PlotText {
   std::string title, x_title, y_title;
 };
 
-// Lines through the points; with `marks` also a dot at each. The y axis starts at 0 or at the lowest value below it.
+// Lines through the points; with `marks` also a dot at each; the names stand at the right. The y axis starts at 0 or at
+// the lowest value below it. A curve that lies on an earlier one is dashed.
 Drawing line_plot(const std::vector<PlotCurve>& curves, const PlotText& text, bool marks);
 
 }  // namespace palpate

@@ -2,18 +2,36 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <string>
 
 #include "sim_host/build_id.h"
 #include "sim_host/cli.h"
 
+namespace {
+
+// Empty, or what to say of a first word that is no command.
+std::string unknown_command(const CLI::App& app, const std::string& word) {
+  if (word.starts_with("-")) return "";
+  std::string text = "no command '" + word + "'; the commands are";
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    if (command->get_name() == word) return "";
+    text += " " + command->get_name();
+  }
+  return text + "; `palpate --help` says what they do";
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
+  // Lines in their order where standard output and standard error go to one file.
+  std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
   CLI::App app{"Feel soft objects: a haptic controller that is never late."};
   app.set_version_flag("--version", palpate::kBuildId);
   app.require_subcommand(1);
   app.footer(
       "Examples:\n"
       "  palpate bake config/scenes/ellipsoid_mallet.toml -o mallet.pal\n"
-      "  palpate run mallet.pal --device loopback --duration 10 --record run.plr\n"
+      "  palpate run config/scenes/ellipsoid_mallet.toml --device loopback --record run.plr\n"
       "  palpate replay run.plr\n"
       "`palpate COMMAND --help` shows the options of one command.");
   int exit_code = palpate::kExitOk;
@@ -25,6 +43,10 @@ int main(int argc, char** argv) {
   palpate::add_picture_command(app, exit_code);
   palpate::add_grasp_command(app, exit_code);
   palpate::add_doctor_command(app, exit_code);
+  if (const std::string unknown = argc > 1 ? unknown_command(app, argv[1]) : ""; !unknown.empty()) {
+    std::fprintf(stderr, "palpate: %s\n", unknown.c_str());
+    return palpate::kExitUsage;
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -18,14 +18,39 @@ namespace {
 
 enum Material : std::int32_t { kBody = 0, kAnchorFree, kAnchorFixed, kTool, kArrow };
 
+constexpr double kPi = 3.14159265358979323846;
 constexpr Colour kInk = colour(0x1f2933), kGrey = colour(0x5b6672);
 constexpr Colour kSkinColour = colour(0xd8a488);
 constexpr Colour kToolColour = colour(0x6d8fae), kArrowColour = colour(0x1b74c4);
 
-struct ForceLabel {
-  Vec3 tip_w;
+// Force of a region on the tool, as long as it is drawn.
+struct ForceArrow {
+  Vec3 tail_w, tip_w;
   double force_N;
 };
+
+std::vector<ForceArrow> force_arrows(const Model& model, const State& state, double force_max_N) {
+  double largest = force_max_N;
+  for (const Region& region : state.region) {
+    if (force_max_N > 0 || region.id == 0 || region.lost_ticks > 0) continue;
+    largest = std::max(largest, norm(region.wrench_w.force_N));
+  }
+  std::vector<ForceArrow> arrows;
+  const double size = model.params.surface_size_m;
+  for (const Region& region : state.region) {
+    const double force = norm(region.wrench_w.force_N);
+    if (region.id == 0 || region.lost_ticks > 0 || !(force > 0.01 * largest) || !(largest > 0)) continue;
+    const double length = size * (0.12 + 0.33 * std::min(1.0, force / largest));
+    arrows.push_back({region.centre_w, region.centre_w + (length / force) * region.wrench_w.force_N, force});
+  }
+  return arrows;
+}
+
+std::vector<Vec3> tips_of(const std::vector<ForceArrow>& arrows) {
+  std::vector<Vec3> tips;
+  for (const ForceArrow& arrow : arrows) tips.push_back(arrow.tip_w);
+  return tips;
+}
 
 class Renderer {
  public:
@@ -36,8 +61,11 @@ class Renderer {
         options_(options),
         is_hand_(static_cast<Articulation>(model.params.articulation) == Articulation::kHand),
         samples_(std::clamp(options.supersampling, 1, 4)),
-        projection_(options.camera.value_or(default_camera(model, state)), options.width * samples_,
-                    options.height * samples_),
+        forces_(force_arrows(model, state, options.force_max_N)),
+        projection_(options.camera
+                        ? *options.camera
+                        : default_camera(model, state, tips_of(forces_), double(options.width) / options.height),
+                    options.width * samples_, options.height * samples_),
         solid_(options.width * samples_, options.height * samples_),
         rest_(solid_),
         tool_(solid_),
@@ -83,11 +111,11 @@ class Renderer {
   const PictureOptions& options_;
   bool is_hand_;
   int samples_;
+  std::vector<ForceArrow> forces_;
   Projection projection_;
   Layer solid_, rest_, tool_, arrows_;
   double scale_top_m_ = 1e-3;
   std::vector<double> legend_mm_;
-  std::vector<ForceLabel> labels_;
   // Soft shadow on the ground: a blurred view of body and tool from above.
   static constexpr int kShadow = 256;
   double ground_y_ = 0, shadow_half_ = 1;
@@ -110,12 +138,20 @@ void Renderer::choose_scale() {
 
 void Renderer::draw_body() {
   RenderMesh mesh;
-  mesh.position_m = surface_.position_m;
-  mesh.normal = surface_.normal;
-  for (const Vec3 d : surface_.displacement_m) mesh.value.push_back(norm(d));
-  mesh.triangle = surface_.triangle;
+  std::vector<Vec3> rest_m;
+  for (std::size_t t = 0; t < surface_.triangle.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto v = static_cast<std::size_t>(surface_.triangle[t][k]);
+      mesh.position_m.push_back(surface_.position_m[v]);
+      rest_m.push_back(surface_.rest_m[v]);
+      mesh.normal.push_back(surface_.corner_normal.empty() ? surface_.normal[v] : surface_.corner_normal[t][k]);
+      mesh.value.push_back(norm(surface_.displacement_m[v]));
+    }
+    const auto first = static_cast<std::int32_t>(3 * t);
+    mesh.triangle.push_back({first, first + 1, first + 2});
+  }
   solid_.draw(mesh, projection_, kBody);
-  mesh.position_m = surface_.rest_m;
+  mesh.position_m = std::move(rest_m);
   rest_.draw(mesh, projection_, kBody);
 }
 
@@ -129,20 +165,9 @@ void Renderer::draw_anchors() {
 }
 
 void Renderer::draw_arrows() {
-  double largest = options_.force_max_N;
-  for (const Region& region : state_.region) {
-    if (options_.force_max_N > 0 || region.id == 0 || region.lost_ticks > 0) continue;
-    largest = std::max(largest, norm(region.wrench_w.force_N));
-  }
   const double size = model_.params.surface_size_m;
-  for (const Region& region : state_.region) {
-    const double force = norm(region.wrench_w.force_N);
-    if (region.id == 0 || region.lost_ticks > 0 || !(force > 0.01 * largest) || !(largest > 0)) continue;
-    const double length = size * (0.12 + 0.33 * std::min(1.0, force / largest));
-    const Vec3 tip = region.centre_w + (length / force) * region.wrench_w.force_N;
-    arrows_.draw(arrow_mesh(region.centre_w, tip, 0.010 * size), projection_, kArrow);
-    labels_.push_back({tip, force});
-  }
+  for (const ForceArrow& force : forces_)
+    arrows_.draw(arrow_mesh(force.tail_w, force.tip_w, 0.010 * size), projection_, kArrow);
 }
 
 void Renderer::make_shadow() {
@@ -316,26 +341,34 @@ void Renderer::draw_legend(Canvas& canvas) const {
   canvas.text(x1, top - 16 * unit, "(mm)", 15 * unit, kInk, Align::kMiddle);
 }
 
+// Beyond the arrow's tip, in the direction it points.
 void Renderer::draw_force_labels(Canvas& canvas) const {
-  const double unit = options_.height / 900.0;
+  const double unit = options_.height / 900.0, size = 18 * unit, gap = 9 * unit;
   // The largest first; a number that would cover one already there is left out (a hand has up to fifteen).
-  std::vector<ForceLabel> labels = labels_;
-  std::ranges::stable_sort(labels, std::greater{}, &ForceLabel::force_N);
+  std::vector<ForceArrow> forces = forces_;
+  std::ranges::stable_sort(forces, std::greater{}, &ForceArrow::force_N);
   struct Box {
-    double x, y, width;
+    double x, y, width;  // of the number's middle
   };
   std::vector<Box> placed;
-  const double size = 18 * unit;
-  for (const ForceLabel& label : labels) {
-    const Vec3 at = projection_(label.tip_w);
-    const std::string number = fmt::format("{:.2f} N", label.force_N);
-    const Box box{at.x / samples_ + 12 * unit, at.y / samples_ + 4 * unit, text_width(number, size)};
+  for (const ForceArrow& force : forces) {
+    const Vec3 tail = (1.0 / samples_) * projection_(force.tail_w), tip = (1.0 / samples_) * projection_(force.tip_w);
+    const Vec3 way = unit_or({tip.x - tail.x, tip.y - tail.y, 0}, {1, 0, 0});
+    const std::string number = fmt::format("{:.2f} N", force.force_N);
+    const double width = text_width(number, size);
+    const Box box{tip.x + way.x * (gap + 0.5 * width), tip.y + way.y * (gap + 0.5 * size), width};
     const auto covers = [&](const Box& other) {
-      return std::abs(box.y - other.y) < size && box.x < other.x + other.width && other.x < box.x + box.width;
+      return std::abs(box.y - other.y) < size && std::abs(box.x - other.x) < 0.5 * (box.width + other.width);
     };
     if (std::ranges::any_of(placed, covers)) continue;
     placed.push_back(box);
-    canvas.text(box.x, box.y, number, size, kArrowColour, Align::kStart, false, true);
+    const double base = box.y + 0.36 * size;
+    for (int k = 0; k < 8; ++k) {  // a light rim, to be read on arrows and skin
+      const double angle = 0.25 * kPi * k, rim = 2 * unit;
+      canvas.text(box.x + rim * std::cos(angle), base + rim * std::sin(angle), number, size, colour(0xfdfdfe),
+                  Align::kMiddle, false, true);
+    }
+    canvas.text(box.x, base, number, size, kArrowColour, Align::kMiddle, false, true);
   }
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 
 #include "rt_core/model.h"
@@ -24,8 +25,9 @@ struct PictureOptions {
   double force_max_N = 0;         // force of the longest arrow; 0: the largest region's
 };
 
-// Sees the whole body, slightly from above, from the side on which the contacts are.
-Camera default_camera(const Model& model, const State& state);
+// Sees the body, `points_w` and the tool (of a long one the end near the body), slightly from above, from the side on
+// which the contacts are, and leaves room for title and legend. `aspect`: width over height.
+Camera default_camera(const Model& model, const State& state, std::span<const Vec3> points_w, double aspect);
 Canvas render_scene(const Model& model, const State& state, const DeformedSurface& surface,
                     const PictureOptions& options = {});
 // Writes render_scene of the scene's own shape models as PNG.

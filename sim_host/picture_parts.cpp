@@ -3,43 +3,90 @@
 #include <array>
 #include <cmath>
 
+#include "config/hand/hand_model.h"
 #include "rt_core/articulate/carrier.h"
 #include "sim_host/hand_mesh.h"
 #include "sim_host/picture.h"
 
 namespace palpate {
 
-Camera default_camera(const Model& model, const State& state) {
-  Vec3 low = model.vertex_m[0], high = low;
-  for (const Vec3 v : model.vertex_m) {
-    low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
-    high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
+namespace {
+
+bool is_hand(const Model& model) { return static_cast<Articulation>(model.params.articulation) == Articulation::kHand; }
+
+// Everything to be seen. What of a long tool lies farther from the body than kToolShown of its radii is
+// left to the edge of the picture.
+std::vector<Vec3> scene_points(const Model& model, const State& state) {
+  constexpr double kToolShown = 2.8;
+  std::vector<Vec3> points(model.vertex_m.begin(), model.vertex_m.end());
+  Vec3 centre;
+  for (const Vec3 v : points) centre += (1.0 / static_cast<double>(model.vertex_m.size())) * v;
+  double radius = 0;
+  for (const Vec3 v : points) radius = std::max(radius, norm(v - centre));
+  for (std::size_t i = 0; i < model.piece.size(); ++i) {
+    const Pose carrier = carrier_w(model, state, static_cast<std::int32_t>(i));
+    const RenderMesh mesh = is_hand(model) ? hand_render_mesh(model.piece[i], carrier, is_left_hand(model))
+                                           : piece_mesh(model, model.piece[i], carrier);
+    for (const Vec3 v : mesh.position_m) {
+      const double far = norm(v - centre);
+      points.push_back(
+          is_hand(model) || far < kToolShown * radius ? v : centre + (kToolShown * radius / far) * (v - centre));
+    }
   }
-  const bool hand = static_cast<Articulation>(model.params.articulation) == Articulation::kHand;
-  for (std::size_t i = 0; hand && i < model.piece.size(); ++i) {  // the hand is larger than what it holds
-    const Vec3 v =
-        transform(carrier_w(model, state, static_cast<std::int32_t>(i)), model.piece[i].pose_tool.position_m);
-    low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
-    high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
-  }
-  const Vec3 centre = 0.5 * (low + high);
-  const double radius = 0.5 * norm(high - low);
+  return points;
+}
+
+// Where the camera looks along: a unit vector from the eye into the scene.
+Vec3 view_direction(const Model& model, const State& state) {
   Vec3 side;
   for (const Region& region : state.region) {
     if (region.id != 0 && region.lost_ticks == 0) side += region.normal_force_N * region.normal_w;
   }
   side = unit_or(side, kWorldUp);
   double azimuth = 0.55;  // radians from +z towards +x: from the front, a little from the right
-  if (hand)
+  if (is_hand(model))
     azimuth = 0.9;  // fingers and thumb from where they close
   else if (std::hypot(side.x, side.z) > 0.4)
     azimuth = std::atan2(side.x, side.z) + 0.7;
-  constexpr double kElevation = 0.42, kFov = 0.5;
-  const Vec3 direction{std::cos(kElevation) * std::sin(azimuth), std::sin(kElevation),
-                       std::cos(kElevation) * std::cos(azimuth)};
+  constexpr double kElevation = 0.42;
+  return -Vec3{std::cos(kElevation) * std::sin(azimuth), std::sin(kElevation),
+               std::cos(kElevation) * std::cos(azimuth)};
+}
+
+// The eye's place along one direction of the picture, as near as all points allow. A point at (along, deep) is seen
+// within the slopes `low` to `high` from an eye at (at, back) when at >= along - high deep + high back and
+// at <= along - low deep + low back.
+struct Fit {
+  double low, high;
+  double most = -1e300, least = 1e300;
+  void add(double along, double deep) {
+    most = std::max(most, along - high * deep);
+    least = std::min(least, along - low * deep);
+  }
+  double nearest() const { return (least - most) / (high - low); }
+  double place(double back) const { return 0.5 * (most + high * back + least + low * back); }
+};
+
+}  // namespace
+
+Camera default_camera(const Model& model, const State& state, std::span<const Vec3> points_w, double aspect) {
+  constexpr double kFov = 0.5;
+  const Vec3 forward = view_direction(model, state);
+  const Vec3 right = unit_or(cross(forward, kWorldUp), {1, 0, 0}), up = cross(right, forward);
+  const double slope = std::tan(0.5 * kFov), wide = slope * aspect;
+  // Shares of the half picture: the legend stands at the right, the title at the top, a force's number may stand beyond
+  // an arrow's tip.
+  Fit across{-0.86 * wide, 0.72 * wide}, upward{-0.90 * slope, 0.72 * slope};
+  std::vector<Vec3> points = scene_points(model, state);
+  points.insert(points.end(), points_w.begin(), points_w.end());
+  for (const Vec3 p : points) {
+    across.add(dot(p, right), dot(p, forward));
+    upward.add(dot(p, up), dot(p, forward));
+  }
+  const double back = std::min(across.nearest(), upward.nearest());
   Camera camera;
-  camera.target_m = hand ? centre : centre + 0.38 * radius * kWorldUp;  // room for the tool above
-  camera.eye_m = camera.target_m + (1.32 * radius / std::tan(0.5 * kFov)) * direction;
+  camera.eye_m = across.place(back) * right + upward.place(back) * up + back * forward;
+  camera.target_m = camera.eye_m + forward;
   camera.up = kWorldUp;
   camera.vertical_fov_rad = kFov;
   return camera;

@@ -226,18 +226,9 @@ int finish(ControllerLink& link) {
   return link.finish();
 }
 
-// A broken image is the controller's to report: it says what is wrong with which field.
-std::unique_ptr<ImageFile> open_if_valid(const std::string& path) {
-  try {
-    return std::make_unique<ImageFile>(path);
-  } catch (const std::runtime_error&) {
-    return nullptr;
-  }
-}
-
-// Records and watches a controller that has just started, then ends it. `model` may be null.
+// Records and watches a controller that has just started, then ends it.
 RunResult follow(ControllerLink& link, const RunOptions& options, const JointScript& joints,
-                 const DeviceAddress& address, const Model* model) {
+                 const DeviceAddress& address, const Model& model) {
   const TelemetryHeader& header = link.telemetry().header;
   std::unique_ptr<RecordingWriter> file;
   if (!options.record.empty()) {
@@ -245,7 +236,7 @@ RunResult follow(ControllerLink& link, const RunOptions& options, const JointScr
   }
   std::unique_ptr<BlackBox> box;
   if (!options.black_box.empty()) {
-    box = std::make_unique<BlackBox>(options.black_box, recording_header(header), header.initial_state, model,
+    box = std::make_unique<BlackBox>(options.black_box, recording_header(header), header.initial_state, &model,
                                      candump_options(address));
   }
   const auto summary = std::make_unique<SharedSummary>();
@@ -276,11 +267,11 @@ RunResult run_session(const RunOptions& options) {
   const StopSignals signals;
   const DeviceAddress address = device_address(options.device);
   SceneImage scene = prepare_scene(options.scene, options.image, options.record);
-  const std::unique_ptr<ImageFile> image = open_if_valid(scene.image_path);
-  if (image) check_bus(address, image->model().params.period_s);
+  const ImageFile image(scene.image_path);
+  check_bus(address, image.model().params.period_s);
   std::vector<TimedJoints> scripted;
   if (scene.scene && options.path.empty()) scripted = scripted_joints(scene.scene->path);
-  const JointScript joints = image ? JointScript(options.joints, image->model(), scripted) : JointScript();
+  const JointScript joints(options.joints, image.model(), scripted);
   // The commands go through the mailbox; the closing button, which closes every finger, is left alone then.
   if (!joints.empty() && scene.scene)
     for (PathPoint& point : scene.scene->path.point) point.closing.clear();
@@ -288,6 +279,7 @@ RunResult run_session(const RunOptions& options) {
   const std::string& folder = options.program_folder;
   const auto program = [&](const char* name) { return folder.empty() ? sibling_program(name) : folder + "/" + name; };
 
+  if (options.before_start) options.before_start();
   std::optional<DeviceProcess> device;
   if (wants_simulated_device(address, options.device)) {
     device.emplace(program("palpate-device"), scene, options.path, options.device,
@@ -297,7 +289,7 @@ RunResult run_session(const RunOptions& options) {
                       controller_arguments(options, scene.image_path, options.device, device.has_value()),
                       device ? device->controller_end() : -1);
   if (device) device->close_controller_end();
-  return follow(link, options, joints, address, image ? &image->model() : nullptr);
+  return follow(link, options, joints, address, image.model());
 }
 
 }  // namespace palpate

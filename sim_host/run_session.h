@@ -27,6 +27,7 @@ struct RunOptions {
   bool arm = true;                 // false: never armed, hence zero force throughout; every stage computes all the same
   bool repeat_path = false;        // the simulated hand repeats the scene's own motion for the whole duration
   std::string black_box;           // prefix of the files written with every fault; empty: none
+  std::function<void()> before_start;              // scene and options are accepted, nothing has started; may be empty
   std::function<void(const LiveState&)> progress;  // called about every second while the run goes on; may be empty
   std::string program_folder;                      // of palpate-rt and palpate-device; empty: beside this program
 };

@@ -12,7 +12,8 @@ namespace palpate::fem {
 using DepthOfForce = std::function<double(double force_N)>;  // rises from 0 at 0
 using ForceOfDepth = std::function<double(double depth_m)>;  // rises from 0 at 0
 
-// Inverts a rising law by bisection; `depth_hint_m` is any positive length of its range.
+// Inverts a rising law of the depth (its force, or the travel it makes) by bisection, to rounding; `depth_hint_m` is
+// any positive length of its range.
 DepthOfForce inverse_of(const ForceOfDepth& law, double depth_hint_m);
 
 struct LoadPoint {

@@ -126,6 +126,23 @@ void add_middle_nodes(TetMesh& mesh, const std::vector<char>& wanted, const Edge
       if (const auto found = middle.find(key_of(tet, e)); found != middle.end()) tet.node[4 + e] = found->second;
 }
 
+void keep_middle_nodes(TetMesh& mesh, const std::vector<char>& wanted) {
+  std::vector<std::int32_t> number(mesh.node_m.size(), -1);
+  for (std::size_t t = 0; t < mesh.tet.size(); ++t)
+    for (std::size_t k = 0; k < (wanted[t] ? 10 : 4); ++k)
+      if (mesh.tet[t].node[k] >= 0) number[at(mesh.tet[t].node[k])] = 0;
+  std::vector<Vec3> kept;
+  for (std::size_t i = 0; i < number.size(); ++i) {
+    if (number[i] < 0) continue;
+    number[i] = static_cast<std::int32_t>(kept.size());
+    kept.push_back(mesh.node_m[i]);
+  }
+  mesh.node_m = std::move(kept);
+  for (Tet& tet : mesh.tet)
+    for (std::int32_t& i : tet.node)
+      if (i >= 0) i = number[at(i)];
+}
+
 std::vector<char> elements_near(const TetMesh& mesh, const std::function<bool(Vec3)>& inside, std::int32_t layers) {
   std::vector<char> node_in(mesh.node_m.size(), 0), element(mesh.tet.size(), 0);
   for (std::size_t i = 0; i < node_in.size(); ++i) node_in[i] = inside(mesh.node_m[i]);

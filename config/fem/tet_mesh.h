@@ -46,6 +46,10 @@ using EdgeProjection = std::function<Vec3(Vec3 middle_m, std::int32_t node_a, st
 // elements). `wanted` holds one flag per element; empty means all. Existing middle nodes stay.
 void add_middle_nodes(TetMesh& mesh, const std::vector<char>& wanted = {}, const EdgeProjection& project = {});
 
+// Takes the middle nodes away that no edge of the chosen elements has; the nodes are numbered anew, in their order. The
+// elements around the chosen ones are transition elements then. None chosen: a linear mesh.
+void keep_middle_nodes(TetMesh& mesh, const std::vector<char>& wanted);
+
 // Flags of the elements within `layers` layers of elements (neighbours by a shared node) of a node that `inside`
 // accepts: the zone of contact and the band around it that p-refinement needs.
 std::vector<char> elements_near(const TetMesh& mesh, const std::function<bool(Vec3)>& inside, std::int32_t layers);

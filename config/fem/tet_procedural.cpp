@@ -98,6 +98,40 @@ void mirror_x(PlaneMesh& plane) {
   }
 }
 
+// Appends the mirror image of a mesh of corners in the plane where `axis` is zero; nodes on the plane are shared.
+void mirror(TetMesh& mesh, double Vec3::*axis) {
+  const std::size_t nodes = mesh.node_m.size(), tets = mesh.tet.size();
+  std::vector<std::int32_t> image(nodes);
+  for (std::size_t i = 0; i < nodes; ++i) {
+    Vec3 p = mesh.node_m[i];
+    image[i] = static_cast<std::int32_t>(p.*axis == 0 ? i : mesh.node_m.size());
+    if (p.*axis == 0) continue;
+    p.*axis = -(p.*axis);
+    mesh.node_m.push_back(p);
+  }
+  for (std::size_t t = 0; t < tets; ++t) {
+    Tet tet = mesh.tet[t];
+    for (std::size_t k = 0; k < 4; ++k) tet.node[k] = image[at(tet.node[k])];
+    std::swap(tet.node[1], tet.node[2]);
+    mesh.tet.push_back(tet);
+  }
+}
+
+// Corners of boxes of six tetrahedra between the given planes; the diagonals of the faces across z lean towards x = 0.
+TetMesh box_corners(const std::vector<double>& x, const std::vector<double>& y, const std::vector<double>& z) {
+  PlaneMesh plane;
+  for (const double v : y)
+    for (const double u : x) plane.node_m.push_back({u, v, 0});
+  const auto columns = static_cast<std::int32_t>(x.size());
+  const auto node = [&](std::size_t i, std::size_t j) {
+    return static_cast<std::int32_t>(j) * columns + static_cast<std::int32_t>(i);
+  };
+  for (std::size_t j = 0; j + 1 < y.size(); ++j)
+    for (std::size_t i = 0; i + 1 < x.size(); ++i)
+      add_quad(plane, {node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)}, x[i] < -1e-9 * x.back());
+  return extrude(plane, z);
+}
+
 struct ClipLevel {
   std::int32_t foot, arm, across, sectors, along;
 };
@@ -146,16 +180,20 @@ TetMesh extrude(const PlaneMesh& plane, const std::vector<double>& height_m) {
 }
 
 TetMesh make_box_tets(Vec3 size_m, std::array<std::int32_t, 3> cells) {
-  PlaneMesh plane;
-  const std::vector<double> x = equal_steps(-0.5 * size_m.x, 0.5 * size_m.x, cells[0]);
-  const std::vector<double> y = equal_steps(0, size_m.y, cells[1]);
-  for (const double v : y)
-    for (const double u : x) plane.node_m.push_back({u, v, 0});
-  const auto node = [&](std::int32_t i, std::int32_t j) { return j * (cells[0] + 1) + i; };
-  for (std::int32_t j = 0; j < cells[1]; ++j)
-    for (std::int32_t i = 0; i < cells[0]; ++i)
-      add_quad(plane, {node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)}, 2 * i < cells[0]);
-  TetMesh mesh = extrude(plane, equal_steps(-0.5 * size_m.z, 0.5 * size_m.z, cells[2]));
+  TetMesh mesh = box_corners(equal_steps(-0.5 * size_m.x, 0.5 * size_m.x, cells[0]), equal_steps(0, size_m.y, cells[1]),
+                             equal_steps(-0.5 * size_m.z, 0.5 * size_m.z, cells[2]));
+  add_middle_nodes(mesh);
+  return mesh;
+}
+
+TetMesh make_mirrored_box_tets(Vec3 size_m, std::array<std::int32_t, 3> cells) {
+  const auto half_if_even = [](double side_m, std::int32_t count) {
+    return count % 2 == 0 ? equal_steps(0, 0.5 * side_m, count / 2) : equal_steps(-0.5 * side_m, 0.5 * side_m, count);
+  };
+  TetMesh mesh = box_corners(half_if_even(size_m.x, cells[0]), equal_steps(0, size_m.y, cells[1]),
+                             half_if_even(size_m.z, cells[2]));
+  if (cells[0] % 2 == 0) mirror(mesh, &Vec3::x);
+  if (cells[2] % 2 == 0) mirror(mesh, &Vec3::z);
   add_middle_nodes(mesh);
   return mesh;
 }

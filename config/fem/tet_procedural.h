@@ -23,6 +23,9 @@ std::vector<double> equal_steps(double from_m, double to_m, std::int32_t steps);
 
 // Box centred at x = z = 0 standing on y = 0, `cells` boxes of six tetrahedra along x, y, z.
 TetMesh make_box_tets(Vec3 size_m, std::array<std::int32_t, 3> cells);
+// The same, but where the number of cells along x or z is even the mesh is its own mirror image there, element by
+// element and to the last bit: tools that press it symmetrically feel the same forces.
+TetMesh make_mirrored_box_tets(Vec3 size_m, std::array<std::int32_t, 3> cells);
 // Ring around the z axis, symmetric about z = 0; `cells` around, across the wall, along z.
 TetMesh make_ring_tets(double inner_m, double outer_m, double width_m, std::array<std::int32_t, 3> cells);
 

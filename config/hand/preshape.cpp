@@ -74,6 +74,12 @@ class Planner {
     return depth;
   }
 
+  static void warn_of_miss(std::int32_t finger, std::string& warning) {
+    constexpr const char* kNames[] = {"thumb", "index", "middle", "ring", "little"};
+    warning += warning.empty() ? "fingertips that do not reach the body: " : ", ";
+    warning += kNames[finger];
+  }
+
   void close(std::int32_t finger, Preshape& plan) {
     const FingerJoints joints = finger_joints(finger);
     for (const std::int32_t j : joints.flexion) q_[static_cast<std::size_t>(j)] = extended(j);
@@ -87,8 +93,7 @@ class Planner {
         q_[j] = high;
       }
       if (depth_from(finger, part, grasp()) < hand_.squeeze_m) {
-        if (part == 2 && depth_from(finger, 2, grasp()) < 0)
-          plan.warning = "finger " + std::to_string(finger) + " (0 thumb, 4 little) closes without touching the body";
+        if (part == 2 && depth_from(finger, 2, grasp()) < 0) warn_of_miss(finger, plan.warning);
         continue;
       }
       for (int i = 0; i < kBisections; ++i) {

@@ -9,6 +9,7 @@
 
 #include "config/config_error.h"
 #include "config/contact_fit.h"
+#include "config/fem/series_fit.h"
 #include "config/schema.h"
 
 namespace palpate {
@@ -126,28 +127,18 @@ PressSeries press_top(const SceneDesc& scene, const PlaceTips& tips, const Press
   }
 }
 
-// Indentation e with e + far(F(e)) + extra F(e) = depth, by bisection: the left side grows with e.
-double indentation_at(const LocalLaw& local, const FarSeries& far, double extra, double depth) {
-  const auto travel = [&](double e) {
-    const double f = local_at(local, e).force_N;
-    return e + far.travel_m(f) + extra * f;
-  };
-  double low = 0, high = depth;
-  for (int i = 0; i < 8 && travel(high) < depth; ++i) high *= 2;
-  for (int i = 0; i < 100 && high - low > 1e-16 * high; ++i) {
-    const double middle = 0.5 * (low + high);
-    (travel(middle) < depth ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
-}
-
 }  // namespace
 
 std::vector<ResponseKnot> press_row(const LocalLaw& local, const FarSeries& far, double extra_m_per_N,
                                     const std::vector<double>& knot) {
   std::vector<ResponseKnot> row(knot.size(), ResponseKnot{});
+  const auto travel_m = [&](double indentation_m) {
+    const double force_N = local_at(local, indentation_m).force_N;
+    return indentation_m + far.travel_m(force_N) + extra_m_per_N * force_N;
+  };
+  const auto indentation_of = fem::inverse_of(travel_m, knot.back() * knot.back());
   for (std::size_t k = 1; k < knot.size(); ++k) {
-    const LawPoint point = local_at(local, indentation_at(local, far, extra_m_per_N, knot[k] * knot[k]));
+    const LawPoint point = local_at(local, indentation_of(knot[k] * knot[k]));
     const double share = 1 + (far.slope_m_per_N(point.force_N) + extra_m_per_N) * point.tangent_N_per_m;
     if (!(share >= kLeastStiffness && point.force_N > row[k - 1].force_N))
       throw ConfigError("at " + mm_text(knot[k] * knot[k]) + " the body would give way faster than it is pressed");

@@ -1,13 +1,10 @@
 #include "rt_core/deform/beam_table.h"
 
 #include "rt_core/cholesky.h"
-#include "rt_core/collide/closest_point.h"
 #include "rt_core/deform/ratio_scales.h"
 
 namespace palpate {
 namespace {
-
-constexpr Real kUnlimited_m = 2e9;
 
 // First element of the beams of one vertex.
 std::size_t first_beam(const Model& model, const SurfaceSpot& spot, int corner) PALPATE_RT {
@@ -103,14 +100,6 @@ SurfaceSpot spot_of(const Model& model, std::int32_t triangle, const Real (&weig
 }
 
 }  // namespace
-
-SurfaceSpot locate_on_surface(const Model& model, Vec3 point_w, std::int32_t warm_triangle) PALPATE_RT {
-  const SurfacePoint at = closest_surface_point(model, point_w, kUnlimited_m, warm_triangle);
-  if (!at.found || at.triangle < 0) return {};
-  Real weight[3];
-  barycentric(model, at.closest_w, at.triangle, weight);
-  return spot_of(model, at.triangle, weight);
-}
 
 SurfaceSpot locate_from(const Model& model, Vec3 point_w, std::int32_t triangle) PALPATE_RT {
   const auto triangles = static_cast<std::int64_t>(model.triangle.size());

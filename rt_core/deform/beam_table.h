@@ -21,9 +21,6 @@ struct SurfaceSpot {
   Real weight[3] = {0, 0, 0};
   bool found = false;
 };
-// The rest-surface point nearest to `point_w`. Bound: one closest-point query. Not for the tick: from a cold start it
-// may cost more than the rest of it.
-SurfaceSpot locate_on_surface(const Model& model, Vec3 point_w, std::int32_t warm_triangle) PALPATE_RT;
 // Where `point_w`, which lies on the surface or close to it, is seen from `triangle`: walks over edges towards it.
 // Where it ends between two triangles, or after kLocateSteps, the last triangle's nearest weights. Bound: kLocateSteps.
 inline constexpr std::int32_t kLocateSteps = 24;  // a region's centre lies within a few triangles of its contacts

@@ -40,7 +40,7 @@ const char* const kScenes[] = {"grasp_cylinder_2", "grasp_cylinder_3", "grasp_cy
 TEST(Grasp, FiveFingersHoldTheCylinderByFifteenRegions) {
   const GraspRun& run = played("grasp_cylinder_5");
   EXPECT_EQ(run.regions, kHandParts);
-  for (std::size_t part = 1; part <= kHandParts; ++part) EXPECT_GT(run.region_force_N[part], 0) << part;
+  for (std::size_t part = 1; part <= kHandParts; ++part) EXPECT_GT(run.part_force_N[part], 0) << part;
   EXPECT_EQ(played("grasp_cylinder_2").regions, 6);
   EXPECT_EQ(played("grasp_cylinder_3").regions, 9);
 }
@@ -49,7 +49,7 @@ TEST(Grasp, OnlyTheFingersThatTakePartTouch) {
   const GraspRun& run = played("grasp_cylinder_2");
   for (std::size_t part = 1; part <= kHandParts; ++part) {
     const bool index_or_thumb = part <= 3 || part >= 13;
-    EXPECT_EQ(run.region_force_N[part] > 0, index_or_thumb) << part;
+    EXPECT_EQ(run.part_force_N[part] > 0, index_or_thumb) << part;
   }
 }
 

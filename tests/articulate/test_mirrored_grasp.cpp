@@ -56,8 +56,8 @@ void expect_mirror_images(const std::string& name, double hand_N_per_m) {
   const GraspRun a = run_grasp(baked.model(), right, options), b = run_grasp(image.model(), left, options);
   ASSERT_EQ(a.regions, b.regions);
   ASSERT_GT(a.regions, 5);
-  for (std::size_t part = 0; part < a.region_force_N.size(); ++part)
-    EXPECT_NEAR(a.region_force_N[part], b.region_force_N[part], 1e-9) << name << " part " << part;
+  for (std::size_t part = 0; part < a.part_force_N.size(); ++part)
+    EXPECT_NEAR(a.part_force_N[part], b.part_force_N[part], 1e-9) << name << " part " << part;
   EXPECT_LE(norm(a.contact_w.force_N - mirrored(b.contact_w.force_N)), 1e-9) << name;
   EXPECT_LE(norm(a.contact_w.torque_Nm + mirrored(b.contact_w.torque_Nm)), 1e-9) << name;  // turns mirror the other way
   EXPECT_LE(norm(a.palm_w.force_N - mirrored(b.palm_w.force_N)), 1e-9) << name;

@@ -1,4 +1,4 @@
-#include "rt_core/collide/convex_distance.h"
+#include "tests/support/convex_distance.h"
 
 #include <gtest/gtest.h>
 

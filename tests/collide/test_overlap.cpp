@@ -4,8 +4,8 @@
 
 #include <limits>
 
-#include "rt_core/collide/convex_distance.h"
 #include "tests/collide/pieces.h"
+#include "tests/support/convex_distance.h"
 
 namespace palpate::test {
 namespace {

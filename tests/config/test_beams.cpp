@@ -275,8 +275,13 @@ TEST(BeamRows, ContactAtTheAnchorTakesItAlong) {
   EXPECT_NEAR(before, 1, 1e-9);
 }
 
-// --- A ring, pressed
-// --------------------------------------------------------------------------------------------------
+// --- A ring, pressed --------------------------------------------------------------------------------------------
+
+// The rest-surface point nearest to p, by the closest-point query instead of the walk.
+SurfaceSpot nearest_spot(const Model& model, Vec3 p) {
+  const SurfacePoint at = closest_surface_point(model, p, kHuge, -1);
+  return locate_from(model, at.closest_w, at.triangle);
+}
 
 struct Press {
   BeamTableSkeleton skeleton;
@@ -284,7 +289,7 @@ struct Press {
 };
 Press press_at(const Model& model, Vec3 point, Vec3 force) {
   Press p;
-  EXPECT_TRUE(solve_beam_table(model, locate_on_surface(model, point, -1), force, p.skeleton));
+  EXPECT_TRUE(solve_beam_table(model, nearest_spot(model, point), force, p.skeleton));
   for (std::int32_t a = 0; a < p.skeleton.count; ++a) p.anchor.push_back(beam_table_anchor(model, p.skeleton, a));
   return p;
 }
@@ -325,7 +330,7 @@ TEST(PressedRing, WalkEndsWhereTheNearestPointIs) {
         middle += (1.0 / 3) * model.vertex_m[static_cast<std::size_t>(corner)];
       std::int32_t start = t;
       for (int k = 0; k < 4; ++k) start = model.triangle[static_cast<std::size_t>(start)].adjacent[k % 3];
-      const SurfaceSpot walked = locate_from(model, middle, start), nearest = locate_on_surface(model, middle, -1);
+      const SurfaceSpot walked = locate_from(model, middle, start), nearest = nearest_spot(model, middle);
       ASSERT_TRUE(walked.found);
       for (int k = 0; k < 3; ++k) {
         EXPECT_EQ(walked.vertex[k], nearest.vertex[k]);

@@ -40,6 +40,37 @@ TEST(TetMesh, BoxIsSound) {
   EXPECT_TRUE(std::is_sorted(surface.node.begin(), surface.node.end()));
 }
 
+// An even number of cells along x or z makes the mirrored box its own mirror image there, element by element and bit by
+// bit.
+TEST(TetMesh, MirroredBoxIsItsOwnMirrorImageToTheBit) {
+  using Place = std::array<double, 3>;
+  const auto elements = [](const TetMesh& mesh, Vec3 sign) {
+    std::set<std::vector<Place>> all;
+    for (const Tet& tet : mesh.tet) {
+      std::vector<Place> places;
+      for (const std::int32_t i : tet.node) {
+        const Vec3 p = mesh.node_m[static_cast<std::size_t>(i)];
+        places.push_back({sign.x * p.x, p.y, sign.z * p.z});
+      }
+      std::sort(places.begin(), places.end());
+      all.insert(places);
+    }
+    return all;
+  };
+  for (const std::array<std::int32_t, 3> cells : {std::array{4, 3, 2}, {3, 1, 4}, {2, 2, 5}, {3, 2, 1}, {1, 1, 1}}) {
+    const TetMesh mesh = make_mirrored_box_tets({0.024, 0.031, 0.017}, cells);
+    check_tet_mesh(mesh, "box");
+    EXPECT_NEAR(volume_of(mesh), 0.024 * 0.031 * 0.017, 1e-18);
+    EXPECT_EQ(mesh.tet.size(), static_cast<std::size_t>(6 * cells[0] * cells[1] * cells[2]));
+    EXPECT_EQ(mesh.node_m.size(),
+              static_cast<std::size_t>((2 * cells[0] + 1) * (2 * cells[1] + 1) * (2 * cells[2] + 1)));
+    const auto as_made = elements(mesh, {1, 1, 1});
+    EXPECT_EQ(as_made.size(), mesh.tet.size());
+    EXPECT_EQ(elements(mesh, {-1, 1, 1}) == as_made, cells[0] % 2 == 0);
+    EXPECT_EQ(elements(mesh, {1, 1, -1}) == as_made, cells[2] % 2 == 0);
+  }
+}
+
 // Any choice of quadratic elements must give a closed surface with every boundary node on it.
 TEST(TetMesh, MixedOrderHasAClosedBoundaryWithAllItsNodes) {
   TetMesh linear = block();

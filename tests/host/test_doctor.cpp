@@ -21,6 +21,7 @@ class MadeUpMachine : public testing::Test {
     put("proc/sys/kernel/sched_rt_runtime_us", "-1");
     put("proc/sys/kernel/watchdog", "1");
     put("proc/sys/kernel/watchdog_cpumask", "0-1");
+    put("proc/zoneinfo", "cpu: 3\n count: 234\n high: 252\n batch: 63");
     put("sys/devices/system/cpu/cpu3/cpufreq/scaling_governor", "performance");
     put("sys/devices/system/cpu/cpu3/topology/thread_siblings_list", "3");
     put("dev/cpu_dma_latency", "");
@@ -72,6 +73,8 @@ TEST_F(MadeUpMachine, EachSpoiledItemFailsWithARemedy) {
       {"proc/cmdline", "quiet nohz_full=2", "boot option rcu_nocbs"},
       {"proc/sys/kernel/sched_rt_runtime_us", "950000", "real-time throttling off"},
       {"proc/sys/kernel/watchdog_cpumask", "0-3", "lockup watchdog off the real-time CPU"},
+      {"proc/zoneinfo", "high: 18\n batch: 1\n high: 1186\n batch: 63", "short lists of free pages"},
+      {"proc/zoneinfo", "high: 252\n batch: 63\n high_min: 252\n high_max: 30000", "short lists of free pages"},
       {"sys/fs/cgroup/cpu/cpu.rt_runtime_us", "0", "real-time group scheduling"},
       {"sys/devices/system/cpu/cpu3/cpufreq/scaling_governor", "powersave", "CPU governor"},
       {"sys/devices/system/cpu/cpu3/topology/thread_siblings_list", "3,7", "no SMT sibling on the real-time CPU"},

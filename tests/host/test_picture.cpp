@@ -7,6 +7,8 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <span>
+#include <vector>
 
 #include "sim_host/picture.h"
 #include "sim_host/png_file.h"
@@ -138,6 +140,56 @@ TEST(Picture, RefinementKeepsTheShape) {
     const double q = p.x * p.x / 1.6e-3 + p.y * p.y / 9e-4 + p.z * p.z / 6.25e-4;
     EXPECT_NEAR(q, 1, 4e-3);  // flat facets of this mesh are 1.5e-2 off
     EXPECT_EQ(fine.displacement_m[i], Vec3{});
+  }
+}
+
+// The lids of a cylinder stay flat and its rims round, and no normal averages over a rim.
+TEST(Picture, RefinementKeepsCreases) {
+  const SceneModel scene(std::string(PALPATE_SOURCE_DIR) + "/config/scenes/grasp_cylinder_2.toml");
+  const auto state = std::make_unique<State>();
+  reset(*state);
+  state->tool_w.position_m = {-1, 0, 0};  // the palm, which flattens what lies against it, out of the way
+  const DeformedSurface fine = refined_surface(scene.model(), *state, 50'000);
+  EXPECT_EQ(fine.position_m.size(), fine.triangle.size() / 2 + 2);
+  ASSERT_EQ(fine.corner_normal.size(), fine.triangle.size());
+  for (std::size_t t = 0; t < fine.triangle.size(); ++t) {
+    Vec3 p[3];
+    for (std::size_t k = 0; k < 3; ++k) p[k] = fine.rest_m[static_cast<std::size_t>(fine.triangle[t][k])];
+    const Vec3 face = unit_or(cross(p[1] - p[0], p[2] - p[0]), {});
+    const bool lid = std::abs(face.y) > 0.5;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 n = fine.corner_normal[t][k];
+      if (lid) {
+        EXPECT_NEAR(p[k].y, p[k].y > 0.06 ? 0.12 : 0, 1e-12);
+        EXPECT_NEAR(std::abs(n.y), 1, 1e-9);
+      } else {
+        EXPECT_NEAR(std::hypot(p[k].x, p[k].z), 0.022, 2e-6);  // chords of the model's mesh sag by 6e-5 m
+        EXPECT_NEAR(n.y, 0, 1e-9);
+      }
+    }
+  }
+}
+
+TEST(Picture, EverythingIsInTheFrameBesideTitleAndLegend) {
+  for (const char* name : {"ellipsoid_mallet", "grasp_sphere_5", "snap_in"}) {
+    const SceneModel scene(std::string(PALPATE_SOURCE_DIR) + "/config/scenes/" + name + ".toml");
+    const auto state = std::make_unique<State>();
+    reset(*state);
+    const Vec3 arrow{0.05, 0.12, -0.03};
+    const Camera camera = default_camera(scene.model(), *state, std::span<const Vec3>(&arrow, 1), 4.0 / 3);
+    const Projection projection(camera, 1200, 900);
+    std::vector<Vec3> points(scene.model().vertex_m.begin(), scene.model().vertex_m.end());
+    points.push_back(arrow);
+    double left = 1200, right = 0, top = 900, bottom = 0;
+    for (const Vec3 v : points) {
+      const Vec3 at = projection(v);
+      left = std::min(left, at.x), right = std::max(right, at.x);
+      top = std::min(top, at.y), bottom = std::max(bottom, at.y);
+    }
+    EXPECT_GE(left, 0) << name;
+    EXPECT_LE(right, 1076) << name;  // where the word "displacement" begins
+    EXPECT_GE(top, 95) << name;      // below the title's two lines
+    EXPECT_LE(bottom, 900) << name;
   }
 }
 

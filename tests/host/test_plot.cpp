@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 
+#include "sim_host/line_plot.h"
 #include "sim_host/plot.h"
 #include "tests/host/xml_check.h"
 
@@ -70,6 +71,27 @@ double ink(const Canvas& canvas) {
     for (int x = 0; x < canvas.width(); ++x) sum += 1 - static_cast<double>(canvas.pixel(x, y).r);
   }
   return sum;
+}
+
+TEST(LinePlot, ACurveUponAnotherIsDashed) {
+  const PlotCurve first{"first", {0, 1, 2}, {0, 1, 4}}, same{"same", {0, 1, 2}, {0, 1, 4}},
+      other{"other", {0, 1, 2}, {0, 2, 3}};
+  const auto lines = [](const PlotCurve& a, const PlotCurve& b) {
+    const std::string svg = line_plot({a, b}, {"title", "x", "y"}, false).svg();
+    int count = 0;
+    for (std::size_t at = svg.find("<polyline"); at != std::string::npos; at = svg.find("<polyline", at + 1)) ++count;
+    return count;
+  };
+  EXPECT_GT(lines(first, same), lines(first, other) + 20);
+}
+
+// However long the names are, the legend ends within the page: the plot gives way.
+TEST(LinePlot, LongNamesNarrowThePlot) {
+  std::vector<PlotCurve> curves;
+  for (int k = 0; k < 8; ++k) curves.push_back({"a_scene_with_quite_a_long_name", {0, 1}, {0, 1.0 + k}});
+  const Canvas canvas = line_plot(curves, {"title", "x", "y"}, true).raster(1);
+  for (int y = 0; y < canvas.height(); ++y)
+    for (int x = canvas.width() - 10; x < canvas.width(); ++x) EXPECT_EQ(canvas.pixel(x, y), canvas.pixel(0, 0));
 }
 
 TEST(Raster, LinesAndRectanglesCoverTheirArea) {

@@ -129,7 +129,7 @@ TEST_F(Run, MissingPathUnknownDeviceAndBrokenSceneAreNamed) {
               o.scene = (folder_ / "broken.pal").string();
               o.path = (folder_ / "p.csv").string();
               std::ofstream(o.path) << "0,0,0,45\n";
-            }).find("controller did not start"),
+            }).find("broken.pal: "),
             std::string::npos);
 }
 

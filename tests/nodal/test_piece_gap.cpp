@@ -3,8 +3,8 @@
 
 #include <random>
 
-#include "rt_core/collide/convex_distance.h"
 #include "rt_core/nodal/piece_gap.h"
+#include "tests/support/convex_distance.h"
 
 namespace palpate::test {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "rt_core/vec.h"
 
-namespace palpate {
+namespace palpate::test {
 
 struct SupportPoint {
   Vec3 difference;  // on_a - on_b
@@ -27,4 +27,4 @@ struct Simplex {
 // when the origin lies inside a tetrahedron (all four points kept).
 bool reduce(Simplex& simplex) PALPATE_RT;
 
-}  // namespace palpate
+}  // namespace palpate::test

@@ -1,11 +1,15 @@
-// Distance between the core of a tool piece and a triangle, by closed form where there is one and GJK otherwise.
+// Distance between the core of a tool piece and a triangle, by closed form where there is one and GJK otherwise: what
+// the overlap test and the closed-form gaps of the core are checked against.
 #pragma once
 
 #include <cstdint>
 
 #include "rt_core/model.h"
 
-namespace palpate {
+namespace palpate::test {
+
+// Convex pairs here converge in fewer than 20.
+inline constexpr std::int32_t kClosestPointIterations = 32;
 
 struct ConvexDistance {
   double distance_m = 0;     // between the cores; 0 when they overlap
@@ -24,4 +28,4 @@ struct ConvexDistance {
 ConvexDistance distance_piece_triangle(const Model& model, const ToolPiece& piece, const Pose& piece_pose,
                                        const Vec3 (&triangle)[3]) PALPATE_RT;
 
-}  // namespace palpate
+}  // namespace palpate::test

@@ -1,8 +1,8 @@
-#include "rt_core/collide/simplex.h"
+#include "tests/support/simplex.h"
 
 #include "rt_core/collide/triangle.h"
 
-namespace palpate {
+namespace palpate::test {
 
 namespace {
 
@@ -135,4 +135,4 @@ bool reduce(Simplex& simplex) PALPATE_RT {
   }
 }
 
-}  // namespace palpate
+}  // namespace palpate::test

@@ -1,10 +1,10 @@
-#include "rt_core/collide/convex_distance.h"
+#include "tests/support/convex_distance.h"
 
-#include "rt_core/collide/simplex.h"
 #include "rt_core/collide/support.h"
 #include "rt_core/collide/triangle.h"
+#include "tests/support/simplex.h"
 
-namespace palpate {
+namespace palpate::test {
 
 namespace {
 
@@ -86,4 +86,4 @@ ConvexDistance distance_piece_triangle(const Model& model, const ToolPiece& piec
   return result;
 }
 
-}  // namespace palpate
+}  // namespace palpate::test

@@ -1,0 +1,34 @@
+// Checks of option values that CLI11 does not bring, with messages a person can act on.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+// A file name with one of these endings: the ending decides what is written.
+inline CLI::Validator ends_in(std::vector<std::string> endings) {
+  return CLI::Validator(
+      [endings = std::move(endings)](const std::string& name) {
+        std::string known;
+        for (const std::string& ending : endings) {
+          if (name.ends_with(ending)) return std::string();
+          known += (known.empty() ? "" : " or ") + ending;
+        }
+        return name + ": the name must end in " + known;
+      },
+      "");
+}
+
+// CLI::PositiveNumber names the largest double as the upper limit.
+inline CLI::Validator above_zero() {
+  return CLI::Validator(
+      [](const std::string& text) {
+        double value = 0;
+        return CLI::detail::lexical_cast(text, value) && value > 0 ? std::string() : text + " is not a number above 0";
+      },
+      "");
+}
+
+}  // namespace palpate
