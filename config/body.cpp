@@ -9,6 +9,29 @@
 
 namespace palpate {
 
+namespace {
+
+// `label` becomes what messages about the mesh begin with.
+SurfaceMesh mesh_from_file(const SceneDesc& scene, std::string& label, std::vector<std::string>& warnings) {
+  const BodyDesc& body = scene.body;
+  const std::filesystem::path file(body.mesh);
+  const std::string path = file.is_absolute() ? body.mesh : scene.source.directory + body.mesh;
+  label = scene.source.where("body.mesh") + ": " + path;
+  MeshFile read;
+  try {
+    read = read_mesh(path, body.scale);
+  } catch (const ConfigError& error) {
+    throw ConfigError(scene.source.where("body.mesh") + ": " + error.what());
+  }
+  if (read.collapsed_triangles > 0)
+    warnings.push_back(path + ": dropped " + std::to_string(read.collapsed_triangles) +
+                       " triangles whose corners coincide");
+  if (body.fix_orientation) orient_mesh(read.mesh);
+  return std::move(read.mesh);
+}
+
+}  // namespace
+
 SurfaceMesh make_body(const SceneDesc& scene, std::vector<std::string>& warnings) {
   const BodyDesc& body = scene.body;
   SurfaceMesh mesh;
@@ -47,23 +70,9 @@ SurfaceMesh make_body(const SceneDesc& scene, std::vector<std::string>& warnings
     case BodyShape::kTets:
       mesh = surface_of(make_tet_mesh(scene, warnings)).mesh;
       break;
-    case BodyShape::kMesh: {
-      const std::filesystem::path file(body.mesh);
-      const std::string path = file.is_absolute() ? body.mesh : scene.source.directory + body.mesh;
-      label = scene.source.where("body.mesh") + ": " + path;
-      MeshFile read;
-      try {
-        read = read_mesh(path, body.scale);
-      } catch (const ConfigError& error) {
-        throw ConfigError(scene.source.where("body.mesh") + ": " + error.what());
-      }
-      mesh = std::move(read.mesh);
-      if (read.collapsed_triangles > 0)
-        warnings.push_back(path + ": dropped " + std::to_string(read.collapsed_triangles) +
-                           " triangles whose corners coincide");
-      if (body.fix_orientation) orient_mesh(mesh);
+    case BodyShape::kMesh:
+      mesh = mesh_from_file(scene, label, warnings);
       break;
-    }
   }
   check_mesh(mesh, label);
   return mesh;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "rt_core/collide/closest_point.h"
 #include "rt_core/collide/ring.h"

@@ -1,7 +1,6 @@
 #include "config/contact_fit.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 
 #include "rt_core/math.h"

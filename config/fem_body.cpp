@@ -113,7 +113,8 @@ FemBody make_fem_body(const SceneDesc& scene, std::vector<std::string>& warnings
   body.mesh = make_tet_mesh(scene, warnings);
   const FemMaterial material{scene.material.youngs_modulus_Pa, scene.material.poisson_ratio};
   const Supports supports = supports_of(scene, body.mesh);
-  body.condensed = condense(body.mesh, material, supports, label, progress);
+  const LinearBody solver = factor_for_table(body.mesh, material, supports, label, progress);
+  body.condensed = condense(solver, body.mesh, supports, label, progress);
   const PrecisionReport report = single_precision_error(body.condensed);
   body.precision_error = report.total_error;
   const bool single = scene.fem.precision == FemPrecision::kSingle ||
@@ -122,7 +123,6 @@ FemBody make_fem_body(const SceneDesc& scene, std::vector<std::string>& warnings
   if (scene.fem.precision == FemPrecision::kSingle && !single_precision_suffices(report))
     warnings.push_back(scene.source.where("body.fem.precision") +
                        ": single precision changes forces by more than 1e-4; use \"auto\"");
-  const LinearBody solver(body.mesh, material, supports, label, progress);
   add_gauges(scene, solver, body, progress);
   return body;
 }

@@ -1,6 +1,5 @@
 // The checks of check_mesh, from the cheapest to the one that needs all others to hold.
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 
 #include "config/config_error.h"

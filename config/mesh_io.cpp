@@ -1,7 +1,6 @@
 #include "config/mesh_io.h"
 
 #include <assimp/scene.h>
-#include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cmath>
 #include <filesystem>

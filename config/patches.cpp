@@ -1,7 +1,6 @@
 #include "config/patches.h"
 
 #include <algorithm>
-#include <array>
 
 #include "config/tool_surface.h"
 

@@ -1,8 +1,6 @@
 // Breaks what a device sends, sample by sample (one call of send() is one sample, of one or two frames).
 #pragma once
 
-#include <cstdint>
-
 #include "hal/transport.h"
 
 namespace palpate {

@@ -7,9 +7,7 @@
 #include <ctime>
 #include <filesystem>
 #include <fstream>
-#include <memory>
 #include <stdexcept>
-#include <utility>
 
 #include "sim_host/host_load.h"
 #include "sim_host/image_file.h"

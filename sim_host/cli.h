@@ -2,6 +2,8 @@
 // examples; its callback stores the process exit code.
 #pragma once
 
+#include <string>
+
 namespace CLI {
 class App;
 }
@@ -9,6 +11,11 @@ class App;
 namespace palpate {
 
 struct JointOptions;
+
+// `what`, beginning with the file it is about.
+inline std::string about_file(const std::string& file, const std::string& what) {
+  return what.starts_with(file) ? what : file + ": " + what;
+}
 
 // Exit codes of every command (sysexits style, kept small).
 inline constexpr int kExitOk = 0;

@@ -226,8 +226,7 @@ void add_latency_command(CLI::App& app, int& exit_code) {
                   : !options->certify.empty() ? run_certify(*options)
                                               : run_latency(*options);
     } catch (const RecordingError& error) {
-      const std::string what = error.what();
-      throw std::runtime_error(what.starts_with(options->recording) ? what : options->recording + ": " + what);
+      throw std::runtime_error(about_file(options->recording, error.what()));
     }
   });
 }

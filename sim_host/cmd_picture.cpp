@@ -112,7 +112,12 @@ int draw_scene(const DrawOptions& options) {
   const auto state = std::make_unique<State>();
   reset(*state);
   if (scene.scene() && !scene.scene()->path.point.empty()) {
-    state->tool_w = scripted_poses(scene.scene()->path, scene.model().params.period_s).front().tool_w;
+    Input input;
+    input.drive = Drive::kTool;
+    input.pose_w = scripted_poses(scene.scene()->path, scene.model().params.period_s).front().tool_w;
+    const auto scratch = std::make_unique<Scratch>();
+    Output output;
+    tick(scene.model(), *state, *scratch, input, output);  // a hand's joints go to where they begin
   }
   PictureOptions picture;
   picture.width = options.width;
@@ -152,8 +157,7 @@ void add_picture_command(CLI::App& app, int& exit_code) {
     try {
       exit_code = run_picture(*options);
     } catch (const RecordingError& error) {
-      const std::string what = error.what();
-      throw std::runtime_error(what.starts_with(options->source) ? what : options->source + ": " + what);
+      throw std::runtime_error(about_file(options->source, error.what()));
     }
   });
 }

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
 #include <cstring>
 #include <memory>
 
@@ -84,8 +83,7 @@ void add_replay_command(CLI::App& app, int& exit_code) {
     try {
       exit_code = run_replay(*options);
     } catch (const std::exception& error) {
-      const std::string what = error.what();
-      throw std::runtime_error(what.starts_with(options->recording) ? what : options->recording + ": " + what);
+      throw std::runtime_error(about_file(options->recording, error.what()));
     }
   });
 }

@@ -92,7 +92,8 @@ bool is_at_rest(const Model& model, const State& state, const Output& output) {
 
 GraspRun run_grasp(const Model& model, const SceneDesc& scene, const GraspOptions& options) {
   if (scene.path.point.empty()) throw std::runtime_error(scene.name + ": no [[path.point]]: nothing to play");
-  if (scene.articulation != Articulation::kHand) throw std::runtime_error(scene.name + ": no [hand]");
+  if (scene.articulation != Articulation::kHand)
+    throw std::runtime_error(scene.name + ": no [hand]; this command plays hand scenes, `palpate press` plays any");
   const std::vector<TimedPose> poses = delayed_poses(scene, model.params.period_s, options);
   const std::size_t hold_end = end_of_hold(poses);
   const auto watched = static_cast<std::size_t>(0.2 / model.params.period_s);

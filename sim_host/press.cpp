@@ -8,6 +8,7 @@
 #include <chrono>
 #include <memory>
 
+#include "rt_core/nodal/nodal.h"
 #include "rt_core/tick.h"
 
 namespace palpate {
@@ -53,6 +54,16 @@ Vec3 solve_with_hand(const double (&stiffness)[36], double h, Vec3 b) {
   return (1 / determinant) * Vec3{dot(b, cross(c1, c2)), dot(c0, cross(b, c2)), dot(c0, cross(c1, b))};
 }
 
+// The scene as a hand's spring holds its tool, without the limits of a device.
+Model held_by_hand(const Model& model, double hand_N_per_m) {
+  Model held = model;
+  held.params.coupling_N_per_m = hand_N_per_m;
+  held.params.coupling_Nm_per_rad = 1e4;  // the stiffest there is: orientation as given
+  held.params.speed_max_m_per_s = kHuge;  // poses may jump
+  held.params.ramp_in_s = 0;
+  return held;
+}
+
 }  // namespace
 
 void press(const Model& model, std::span<const TimedPose> poses, const PressDrive& drive, State& state,
@@ -62,14 +73,18 @@ void press(const Model& model, std::span<const TimedPose> poses, const PressDriv
   PressRow row;
   std::uint64_t sequence = 0;
   Output output;
+  // A nodal body's tick finds pushes, friction and the tool's place in one problem. One Newton step per tick outside of
+  // it would throw a slipping tool, which has no mass, from one sense of sliding to the other for ever.
+  const bool held_in_tick = drive.hand_N_per_m > 0 && is_nodal(model);
+  const Model held = held_in_tick ? held_by_hand(model, drive.hand_N_per_m) : model;
   for (const TimedPose& pose : poses) {
     row = {};
     row.time_s = pose.time_s;
     Input input;
-    input.drive = Drive::kTool;
+    input.drive = held_in_tick ? Drive::kDevice : Drive::kTool;
     input.pose_w = pose.tool_w;
     input.joints = pose.joints;
-    if (drive.hand_N_per_m > 0 && sequence > 0) {
+    if (drive.hand_N_per_m > 0 && !held_in_tick && sequence > 0) {
       const Vec3 from = state.tool_w.position_m;
       const Vec3 pull = drive.hand_N_per_m * (pose.tool_w.position_m - from) + output.contact_w.force_N;
       input.pose_w.position_m = from + solve_with_hand(state.contact_stiffness, drive.hand_N_per_m, pull);
@@ -77,7 +92,7 @@ void press(const Model& model, std::span<const TimedPose> poses, const PressDriv
     input.commands = sequence == 0 ? Command::kArm : 0;
     const auto begin = std::chrono::steady_clock::now();
     if (counter != nullptr) counter->start();
-    tick(model, state, *scratch, input, output);
+    tick(held, state, *scratch, input, output);
     if (counter != nullptr) row.instructions = counter->stop();
     row.compute_ns = std::chrono::nanoseconds(std::chrono::steady_clock::now() - begin).count();
     fill_record(model, state, input, output, row.record);

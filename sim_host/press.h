@@ -39,13 +39,15 @@ using PressListener = std::function<void(const PressRow& row, const State& state
 // How the poses move the tool.
 struct PressDrive {
   // 0: the poses are the tool's own. Otherwise they are where a hand pulls the tool with this spring: each tick moves
-  // the tool to where spring and contact balance, by one Newton step with the last tick's tangent (massless,
-  // quasi-static; orientation as given). For motions scripted for a hand, which aim deep below the surface.
+  // the tool to where spring and contact balance, by one Newton step with the last tick's tangent, and on a
+  // nodal body in the tick itself (massless, quasi-static; orientation as given). For motions scripted for a hand,
+  // which aim deep below the surface.
   double hand_N_per_m = 0;
 };
 
 // Resets `state`, then renders one tick per pose with Drive::kTool: the virtual coupling is bypassed, so
-// output.contact_w is the wrench of the object on the tool held at that pose. `counter` may be null.
+// output.contact_w is the wrench of the object on the tool held at that pose. (A nodal body's tool on a hand: with
+// Drive::kDevice, the hand's spring in place of the coupling.) `counter` may be null.
 void press(const Model& model, std::span<const TimedPose> poses, const PressDrive& drive, State& state,
            InstructionCounter* counter, const PressListener& listen);
 

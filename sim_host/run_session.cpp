@@ -10,7 +10,6 @@
 #include <mutex>
 #include <optional>
 #include <thread>
-#include <utility>
 
 #include "hal/bus_budget.h"
 #include "hal/device_address.h"

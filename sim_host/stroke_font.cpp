@@ -1,7 +1,6 @@
 #include "sim_host/stroke_font.h"
 
 #include <algorithm>
-#include <array>
 
 namespace palpate {
 

@@ -136,20 +136,68 @@ BeamCurve BeamSelector::turned(Vec3 tip, Vec3 anchor, Vec3 inside, Vec3 up) cons
   return best;
 }
 
+// Along the section curve, where it reaches the anchor.
+BeamSelector::BothWays BeamSelector::along_section(const SectionCurves& section, Vec3 tip, Vec3 anchor,
+                                                   Vec3 inside) const {
+  BothWays ways;
+  if (!section.reaches) return ways;
+  const double c = norm(anchor - tip);
+  for (int way = 0; way < 2; ++way) {
+    const SectionCurve& curve = section.way[way];
+    // The centre lies opposite to the bulge of the curve. Between neighbouring vertices the mesh shows none.
+    const Vec3 centre_side = dot(curve.middle_m - 0.5 * (tip + anchor), inside) <= 1e-6 * c ? inside : -inside;
+    BeamCurve& side = ways.side[way];
+    side = by_rule(tip, anchor, centre_side, curve);
+    ways.length_m[way] = curve.length_m;
+    const bool usable = side.path != BeamPath::kNone && (rule_.paper || fits(side));
+    if (!usable) side = {};
+  }
+  if (rule_.paper) ways.side[ways.length_m[0] <= ways.length_m[1] ? 1 : 0] = {};
+  return ways;
+}
+
+// Circles to either side of the chord, in the section's plane or, where none stays inside there, in one turned.
+BeamSelector::BothWays BeamSelector::through_body(Vec3 tip, Vec3 anchor, Vec3 inside, Vec3 up) const {
+  BothWays ways;
+  ways.side[0] = roomiest(tip, anchor, inside);
+  ways.side[1] = roomiest(tip, anchor, -inside);
+  if (ways.none()) {
+    ways.side[0] = turned(tip, anchor, inside, up);
+    ways.side[1] = turned(tip, anchor, inside, -up);
+    ways.turned = true;
+  }
+  for (int way = 0; way < 2; ++way) ways.length_m[way] = ways.side[way].length_m;
+  return ways;
+}
+
+BeamChoice BeamSelector::share(const BothWays& ways) const {
+  double weight[2] = {ways.side[0].path != BeamPath::kNone ? 1.0 : 0.0,
+                      ways.side[1].path != BeamPath::kNone ? 1.0 : 0.0};
+  if (weight[0] + weight[1] > 1.5) {
+    // Turned planes go by room, so that mirror images of a body get mirror images of a beam.
+    const double* length = ways.length_m;
+    const double difference = ways.turned ? (ways.side[0].clearance_m - ways.side[1].clearance_m) / tolerance_m_
+                                          : (length[1] - length[0]) / (kSharedUpTo * 0.5 * (length[0] + length[1]));
+    weight[0] = std::clamp(0.5 + 0.5 * difference, 0.0, 1.0);
+    weight[1] = 1 - weight[0];
+  }
+  BeamChoice choice;
+  for (int way = 0; way < 2; ++way) {
+    if (!(weight[way] > 0)) continue;
+    choice.curve[choice.count] = ways.side[way];
+    choice.weight[choice.count++] = weight[way];
+  }
+  return choice;
+}
+
 BeamChoice BeamSelector::choose(std::int32_t vertex, Vec3 anchor, Vec3 anchor_normal) const {
   const auto v = static_cast<std::size_t>(vertex);
   const Vec3 tip = surface_.vertex_m[v], normal = surface_.vertex_normal[v];
-  BeamChoice choice;
-  const auto take = [&](const BeamCurve& curve) {
-    choice.curve[choice.count] = curve;
-    choice.weight[choice.count++] = 1;
-  };
   const double c = norm(anchor - tip);
   if (!(c > 1e-6)) {
     BeamCurve point = straight_through(tip, anchor, normal);
     point.path = BeamPath::kPoint;
-    take(point);
-    return choice;
+    return {1, {point}, {1, 0}};
   }
   const Vec3 along = (1.0 / c) * (anchor - tip);
   Vec3 inside = -normal_to(along, normal);
@@ -159,51 +207,13 @@ BeamChoice BeamSelector::choose(std::int32_t vertex, Vec3 anchor, Vec3 anchor_no
 
   const SectionCurves section = curves_between(trace_section(surface_, first_triangle_, vertex, up), anchor,
                                                3 * mean_edge_m_, 0.5 * mean_edge_m_, up, normal);
-  BeamCurve side[2];
-  double length[2] = {0, 0};
-  bool turn = false;
-  if (section.reaches) {
-    for (int way = 0; way < 2; ++way) {
-      const SectionCurve& curve = section.way[way];
-      // The centre lies opposite to the bulge of the curve. Between neighbouring vertices the mesh shows none.
-      const Vec3 centre_side = dot(curve.middle_m - 0.5 * (tip + anchor), inside) <= 1e-6 * c ? inside : -inside;
-      side[way] = by_rule(tip, anchor, centre_side, curve);
-      length[way] = curve.length_m;
-      const bool usable = side[way].path != BeamPath::kNone && (rule_.paper || fits(side[way]));
-      if (!usable) side[way] = {};
-    }
-    if (rule_.paper) side[length[0] <= length[1] ? 1 : 0] = {};
-  }
-  if (side[0].path == BeamPath::kNone && side[1].path == BeamPath::kNone) {
+  BothWays ways = along_section(section, tip, anchor, inside);
+  if (ways.none()) {
     BeamCurve straight = straight_through(tip, anchor, -inside);
-    if (fits(straight)) {
-      take(straight);
-      return choice;
-    }
-    side[0] = roomiest(tip, anchor, inside);
-    side[1] = roomiest(tip, anchor, -inside);
-    if (side[0].path == BeamPath::kNone && side[1].path == BeamPath::kNone) {
-      side[0] = turned(tip, anchor, inside, up);
-      side[1] = turned(tip, anchor, inside, -up);
-      turn = true;
-    }
-    length[0] = side[0].length_m;
-    length[1] = side[1].length_m;
+    if (fits(straight)) return {1, {straight}, {1, 0}};
+    ways = through_body(tip, anchor, inside, up);
   }
-  double weight[2] = {side[0].path != BeamPath::kNone ? 1.0 : 0.0, side[1].path != BeamPath::kNone ? 1.0 : 0.0};
-  if (weight[0] + weight[1] > 1.5) {
-    // Turned planes go by room, so that mirror images of a body get mirror images of a beam.
-    const double difference = turn ? (side[0].clearance_m - side[1].clearance_m) / tolerance_m_
-                                   : (length[1] - length[0]) / (kSharedUpTo * 0.5 * (length[0] + length[1]));
-    weight[0] = std::clamp(0.5 + 0.5 * difference, 0.0, 1.0);
-    weight[1] = 1 - weight[0];
-  }
-  for (int way = 0; way < 2; ++way) {
-    if (!(weight[way] > 0)) continue;
-    choice.curve[choice.count] = side[way];
-    choice.weight[choice.count++] = weight[way];
-  }
-  return choice;
+  return share(ways);
 }
 
 }  // namespace palpate

@@ -1,7 +1,6 @@
 // Which curve the beam from a surface vertex to an anchor follows: the selection rules for objects with holes.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "config/beams/distance_grid.h"
@@ -66,6 +65,16 @@ class BeamSelector {
   double clearance_m(const BeamCurve& curve) const;
 
  private:
+  // A curve to either side of the chord, or kNone, and how long that way is.
+  struct BothWays {
+    BeamCurve side[2];
+    double length_m[2] = {0, 0};
+    bool turned = false;  // out of the section's plane
+    bool none() const { return side[0].path == BeamPath::kNone && side[1].path == BeamPath::kNone; }
+  };
+  BothWays along_section(const SectionCurves& section, Vec3 tip, Vec3 anchor, Vec3 inside) const;
+  BothWays through_body(Vec3 tip, Vec3 anchor, Vec3 inside, Vec3 up) const;
+  BeamChoice share(const BothWays& ways) const;
   bool fits(BeamCurve& curve) const;
   BeamCurve by_rule(Vec3 tip, Vec3 anchor, Vec3 inside, const SectionCurve& way) const;
   BeamCurve roomiest(Vec3 tip, Vec3 anchor, Vec3 inside) const;

@@ -23,12 +23,18 @@ void check_size(std::size_t surface_nodes, const CondenseLimits& limits, const s
 
 }  // namespace
 
-CondensedBody condense(const TetMesh& mesh, const FemMaterial& material, const Supports& supports,
-                       const std::string& label, const Progress& progress, const CondenseLimits& limits) {
+LinearBody factor_for_table(const TetMesh& mesh, const FemMaterial& material, const Supports& supports,
+                            const std::string& label, const Progress& progress, const CondenseLimits& limits) {
   check_material(material, label);
   check_tet_mesh(mesh, label);
   check_size(surface_of(mesh).node.size(), limits, label);  // before the minutes of a mesh that is too large
-  return condense(LinearBody(mesh, material, supports, label, progress), mesh, supports, label, progress, limits);
+  return LinearBody(mesh, material, supports, label, progress);
+}
+
+CondensedBody condense(const TetMesh& mesh, const FemMaterial& material, const Supports& supports,
+                       const std::string& label, const Progress& progress, const CondenseLimits& limits) {
+  return condense(factor_for_table(mesh, material, supports, label, progress, limits), mesh, supports, label, progress,
+                  limits);
 }
 
 CondensedBody condense(const LinearBody& solver, const TetMesh& mesh, const Supports& supports,

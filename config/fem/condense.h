@@ -30,14 +30,18 @@ struct CondenseLimits {
   std::size_t surface_nodes = kMaxNodalVertices;
 };
 
-// Factors the stiffness once and solves for the surface columns; interior nodes carry no force, so this equals the
-// inverse of the Schur complement (Duriez, Andriot & Kheddar 2003, section 3.1). Checks mesh, material and supports.
-// Throws ConfigError naming `label`.
-CondensedBody condense(const TetMesh& mesh, const FemMaterial& material, const Supports& supports,
+// Checks mesh, material, supports and the size of the table, and factors the stiffness. Throws ConfigError naming
+// `label`.
+LinearBody factor_for_table(const TetMesh& mesh, const FemMaterial& material, const Supports& supports,
+                            const std::string& label, const Progress& progress = {}, const CondenseLimits& limits = {});
+
+// Solves for the surface columns; interior nodes carry no force, so this equals the inverse of the Schur complement
+// (Duriez, Andriot & Kheddar 2003, section 3.1). `solver` is of the same mesh and supports.
+CondensedBody condense(const LinearBody& solver, const TetMesh& mesh, const Supports& supports,
                        const std::string& label, const Progress& progress = {}, const CondenseLimits& limits = {});
 
-// The same from a body already factored, of the same mesh and supports.
-CondensedBody condense(const LinearBody& solver, const TetMesh& mesh, const Supports& supports,
+// Both at once.
+CondensedBody condense(const TetMesh& mesh, const FemMaterial& material, const Supports& supports,
                        const std::string& label, const Progress& progress = {}, const CondenseLimits& limits = {});
 
 // Bytes of the compliance table of n surface nodes, in doubles.

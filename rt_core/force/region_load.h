@@ -1,8 +1,6 @@
 // Normal load of one contact region: the sum of its points' forces, their resultant, moment, centre and stiffness.
 #pragma once
 
-#include <span>
-
 #include "rt_core/force/contact_stiffness.h"
 #include "rt_core/force/cubic_law.h"
 #include "rt_core/state.h"

@@ -185,7 +185,7 @@ class Balance {
     }
     for (std::int32_t i = 0; i < p_.count; ++i) {  // bound: kMaxContacts
       p_.node[i].push.normal_N = normal.push_N[i];
-      cut_to_cone(p_.node[i].push);
+      cut_to_cone(p_.node[i]);
     }
     set_forces();
   }
@@ -221,14 +221,20 @@ class Balance {
     }
   }
 
-  // The last step changed normal pushes only: friction beyond their limit is cut.
-  void cut_to_cone(Push& push) const PALPATE_RT {
+  // The last step changed normal pushes only. Friction beyond their limit becomes that of a slipping contact which
+  // alone keeps its gap closed.
+  void cut_to_cone(ContactNode& node) const PALPATE_RT {
+    const Push& push = node.push;
     const Real limit = mu_ * push.normal_N;
     const Real size2 = push.tangent_N[0] * push.tangent_N[0] + push.tangent_N[1] * push.tangent_N[1];
     if (!(size2 > limit * limit)) return;
-    push.slips = true;
-    const Real share = limit / square_root(size2);
-    for (Real& t : push.tangent_N) t *= share;
+    Real own[3];
+    own_displacement(node.block, push, own);
+    if (!(own[0] > 0 && limit > 0)) {
+      node.push.tangent_N[0] = node.push.tangent_N[1] = 0;
+      return;
+    }
+    node.push = slip_along(node.block, mu_, -own[0], push.tangent_N[0], push.tangent_N[1]);
   }
 
   void measure() PALPATE_RT {

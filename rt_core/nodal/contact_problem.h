@@ -28,6 +28,16 @@ struct ContactNode {
   Vec3 force_w;  // of the push, on the body: push_w() once it has been carried over to motion_m
 };
 
+// Four vertices that follow one another, some of them near the tool: what the search leaves for the choice of the
+// problem's nodes. Meanings as in ContactNode; `position_w` is where a node and the tool meet.
+struct NearFour {
+  Vec3x4 carry_w, bend_w, position_w, normal_w;
+  Double4 gap_m;
+  std::int32_t piece[4];
+  std::int32_t first;   // vertex
+  std::uint32_t lanes;  // bit k: vertex first + k is near
+};
+
 // Normals of the nodes and their turns, arm x normal, as rows: for several nodes at a time. Zero past the last one.
 struct Directions {
   alignas(32) double normal[3][kContactStride];
@@ -35,6 +45,8 @@ struct Directions {
   alignas(32) float narrow[3][kContactStride];  // both in single precision
   alignas(32) float narrow_turn[3][kContactStride];
 };
+
+inline constexpr std::int32_t kMaxNearFours = whole_lanes(kMaxNodalVertices, 4) / 4;
 
 struct ContactProblem {
   std::int32_t count = 0;
@@ -48,11 +60,14 @@ struct ContactProblem {
   alignas(32) float motion_m[3][kContactStride];  // displacement of every node by the pushes so far
   Vec3 force_N, torque_Nm;                        // sum of the pushes on the body, about the tool's origin
   double per_N = 0, per_Nm = 0;                   // compliance of the virtual coupling; 0: the tool is held
-  // Which entry of State::nodal, and which node, a vertex is; -1: none. Valid up to n_vertex.
-  std::int8_t memory_of[kMaxNodalVertices];
-  std::int8_t node_of[kMaxNodalVertices];
+  // Nodes within the margin of the tool, in the order of the vertices for a tool of one piece.
+  std::int32_t near_count = 0;
+  NearFour near[kMaxNearFours + 1];  // and one that is looked at
+  // Which entry of State::nodal a vertex is, and which of `near` four vertices are; -1: none. Valid up to n_vertex.
+  std::int8_t memory_of[4 * kMaxNearFours];
+  std::int16_t near_of[kMaxNearFours];
 };
-static_assert(kMaxContacts <= 127, "nodes are numbered in 8 bits");
+static_assert(kMaxContacts <= 127 && kMaxNodalVertices <= 32767, "numbered in 8 and 16 bits");
 
 // What its push does to the body.
 inline Vec3 push_w(const ContactNode& node) PALPATE_RT {

@@ -4,41 +4,16 @@ namespace palpate {
 
 namespace {
 
-// to[a][b][i] = row a [index[i] + b] of three rows, for whole lanes of nodes (the rest of the index is 0). One
-// instruction fetches eight numbers where there is one; left to itself gcc 12 loads them one by one, at four times the
-// instructions.
-void pick(const float* row, std::size_t row_length, const std::int32_t* index, std::int32_t n,
+// to[a][b][i] = row a [index[i] + b] of three rows, for whole lanes of nodes (the rest of the index is 0).
+template <class Number>
+void pick(const Number* row, std::size_t row_length, const std::int32_t* index, std::int32_t n,
           float (*to)[3][kContactStride]) PALPATE_RT {
-#if defined(__AVX2__)
-  using Int8 [[gnu::vector_size(32)]] = std::int32_t;
-  const Float8 all = __builtin_bit_cast(Float8, Int8{-1, -1, -1, -1, -1, -1, -1, -1});
-  const float* rows[3] = {row, row + row_length, row + 2 * row_length};
-  Float8 v{};
   for (std::int32_t i = 0; i < n; i += 8) {  // bound: kMaxContacts / 8
-    Int8 at;
-    __builtin_memcpy(&at, index + i, sizeof at);
-    for (int a = 0; a < 3; ++a) {  // bound: 3 x 3
-      for (int b = 0; b < 3; ++b) {
-#if defined(__clang__)
-        v = __builtin_ia32_gatherd_ps256(v, rows[a] + b, at, all, 4);
-#else
-        v = __builtin_ia32_gathersiv8sf(v, rows[a] + b, at, all, 4);
-#endif
-        store(to[a][b] + i, v);
-      }
+    const Number* from = row;
+    for (int a = 0; a < 3; ++a, from += row_length) {  // bound: 3 x 3
+      for (int b = 0; b < 3; ++b) store(to[a][b] + i, gather8(from + b, index + i));
     }
   }
-#else
-  for (int a = 0; a < 3; ++a, row += row_length)
-    for (int b = 0; b < 3; ++b)
-      for (std::int32_t i = 0; i < n; ++i) to[a][b][i] = row[index[i] + b];  // bound: 9 kMaxContacts
-#endif
-}
-void pick(const double* row, std::size_t row_length, const std::int32_t* index, std::int32_t n,
-          float (*to)[3][kContactStride]) PALPATE_RT {
-  for (int a = 0; a < 3; ++a, row += row_length)
-    for (int b = 0; b < 3; ++b)
-      for (std::int32_t i = 0; i < n; ++i) to[a][b][i] = static_cast<float>(row[index[i] + b]);  // 9 kMaxContacts
 }
 
 template <class Number>
@@ -144,30 +119,50 @@ void add_push(ContactProblem& p, std::int32_t j, Vec3 force) PALPATE_RT {
   p.torque_Nm += cross(p.node[j].arm_w, force);
 }
 
-// One pass over all influences, with the sums in registers: half the instructions of as many add_push().
-void add_pushes(ContactProblem& p, const float (&force)[3 * kMaxContacts]) PALPATE_RT {
-  for (std::int32_t i = 0; i < p.count; i += 16) {  // bound: kMaxContacts / 16; the stride is whole sixteens
-    Float8 u[3][2];
-    for (int b = 0; b < 3; ++b) {
-      u[b][0] = load8(p.motion_m[b] + i);
-      u[b][1] = load8(p.motion_m[b] + i + 8);
-    }
-    const float* from = p.influence[0][0][0] + i;
-    const float* f = force;
-    for (std::int32_t j = 0; j < p.count; ++j, from += 9 * kContactStride, f += 3) {  // bound: kMaxContacts
-      for (int a = 0; a < 3; ++a) {                                                   // bound: 3 x 3
-        const Float8 s = splat8(f[a]);
-        for (int b = 0; b < 3; ++b) {
-          u[b][0] += load8(from + (3 * a + b) * kContactStride) * s;
-          u[b][1] += load8(from + (3 * a + b) * kContactStride + 8) * s;
-        }
+namespace {
+
+// Adds their displacements to the nodes from i on, so many lanes of eight.
+template <int lanes>
+void add_to_lanes(ContactProblem& p, const std::int32_t* row, const float* force, std::int32_t count,
+                  std::int32_t i) PALPATE_RT {
+  Float8 u[3][lanes];
+  for (int b = 0; b < 3; ++b) {  // bound: 3 x 2
+    for (int l = 0; l < lanes; ++l) u[b][l] = load8(p.motion_m[b] + i + 8 * l);
+  }
+  const float* first = p.influence[0][0][0] + i;
+  for (std::int32_t k = 0; k < count; ++k, force += 3) {  // bound: kMaxContacts
+    const float* from = first + row[k];
+    for (int a = 0; a < 3; ++a) {  // bound: 3 x 3 x 2
+      const Float8 s = splat8(force[a]);
+      for (int b = 0; b < 3; ++b) {
+        for (int l = 0; l < lanes; ++l) u[b][l] += load8(from + (3 * a + b) * kContactStride + 8 * l) * s;
       }
     }
-    for (int b = 0; b < 3; ++b) {
-      store(p.motion_m[b] + i, u[b][0]);
-      store(p.motion_m[b] + i + 8, u[b][1]);
-    }
   }
+  for (int b = 0; b < 3; ++b) {  // bound: 3 x 2
+    for (int l = 0; l < lanes; ++l) store(p.motion_m[b] + i + 8 * l, u[b][l]);
+  }
+}
+
+}  // namespace
+
+// One pass over the influences of all pushes that there are, with the sums in registers: half the instructions of as
+// many add_push().
+void add_pushes(ContactProblem& p, const float (&force)[3 * kMaxContacts]) PALPATE_RT {
+  std::int32_t row[kMaxContacts], count = 0;  // of the influences
+  float some[3 * kMaxContacts];
+  for (std::int32_t j = 0; j < p.count; ++j) {  // bound: kMaxContacts
+    const float x = force[3 * j], y = force[3 * j + 1], z = force[3 * j + 2];
+    if (x == 0 && y == 0 && z == 0) continue;
+    row[count] = j * 9 * kContactStride;
+    some[3 * count] = x;
+    some[3 * count + 1] = y;
+    some[3 * count + 2] = z;
+    count += 1;
+  }
+  std::int32_t i = 0;
+  for (; i + 8 < p.count; i += 16) add_to_lanes<2>(p, row, some, count, i);  // bound: kMaxContacts / 16
+  if (i < p.count) add_to_lanes<1>(p, row, some, count, i);
 }
 
 // With the tool's own motion F / k + (T x arm) / k_turn: T x arm . n = T . (arm x n).
@@ -218,11 +213,6 @@ Double4 of_four(const ContactProblem& p, std::int32_t i, Get&& get) PALPATE_RT {
   return Double4{at(0), at(1), at(2), at(3)};
 }
 
-struct Vec3x4 {
-  Double4 x, y, z;
-};
-Double4 dot4(const Vec3x4& a, const Vec3x4& b) PALPATE_RT { return a.x * b.x + a.y * b.y + a.z * b.z; }
-
 // Compliance of four nodes to their own push, in world axes.
 struct OwnCompliance {
   Double4 xx, xy, xz, yy, yz, zz;
@@ -238,7 +228,7 @@ OwnCompliance own_compliance(const ContactProblem& p, std::int32_t i) PALPATE_RT
                  of_four(p, i, [&](std::int32_t k) PALPATE_RT { return p.node[k].arm_w.y; }),
                  of_four(p, i, [&](std::int32_t k) PALPATE_RT { return p.node[k].arm_w.z; })};
   const Vec3x4 turn{p.per_Nm * r.x, p.per_Nm * r.y, p.per_Nm * r.z};
-  const Double4 stretch = p.per_N + dot4(turn, r);  // (r x f) x r = r.r f - r.f r
+  const Double4 stretch = p.per_N + dot(turn, r);  // (r x f) x r = r.r f - r.f r
   return {entry(0, 0) + stretch - turn.x * r.x, entry(0, 1) - turn.x * r.y, entry(0, 2) - turn.x * r.z,
           entry(1, 1) + stretch - turn.y * r.y, entry(1, 2) - turn.y * r.z, entry(2, 2) + stretch - turn.z * r.z};
 }
@@ -270,7 +260,7 @@ void make_frames(const Model& model, ContactProblem& p, Real mu) PALPATE_RT {
     Double4 w[3][3];
     for (int a = 0; a < 3; ++a) {  // bound: 3 x 3
       const Vec3x4 u = own.times(frame[a]);
-      for (int b = 0; b <= a; ++b) w[a][b] = w[b][a] = dot4(u, frame[b]);
+      for (int b = 0; b <= a; ++b) w[a][b] = w[b][a] = dot(u, frame[b]);
       w[a][a] = w[a][a] * (1.0 + model.params.regularisation) + wall;
     }
     const FrictionBlockOf<Double4> block = make_friction_block(w, mu);

@@ -97,33 +97,27 @@ void label(State& state, Scratch& scratch, const Clusters& clusters) PALPATE_RT 
   }
 }
 
-// The region a candidate moves with: its own, or the nearest in contact.
-std::int32_t region_of(const State& state, const ContactNode& node) PALPATE_RT {
-  if (node.push.normal_N > 0) return node.region;
-  std::int32_t found = -1;
-  Real nearest = kHuge;
-  for (std::int32_t s = 0; s < kMaxRegions; ++s) {  // bound: kMaxRegions
-    const Region& region = state.region[s];
-    if (region.id == 0 || region.lost_ticks > 0) continue;
-    const Real distance2 = squared_norm(node.rest_w - region.centre_w);
-    if (!(distance2 < nearest)) continue;
-    nearest = distance2;
-    found = s;
-  }
-  return found;
-}
-
-// How the surface around each region has moved as a whole.
+// How the surface around each region has moved as a whole: its nodes, and those near it that do not push.
 void fit_motions(const Model& model, State& state, const Scratch& scratch) PALPATE_RT {
   const ContactProblem& p = scratch.nodal;
   MotionFit fit[kMaxRegions];
   Real reach2[kMaxRegions] = {};
+  std::int32_t touching[kMaxRegions], count = 0;
+  for (std::int32_t s = 0; s < kMaxRegions; ++s) {  // bound: kMaxRegions
+    if (state.region[s].id != 0 && state.region[s].lost_ticks == 0) touching[count++] = s;
+  }
+  const Real near = 2 * model.params.cluster_distance_m;
   for (std::int32_t i = 0; i < p.count; ++i) {  // bound: kMaxContacts
-    const std::int32_t slot = region_of(state, p.node[i]);
+    const bool pushes = p.node[i].push.normal_N > 0;
+    std::int32_t slot = pushes ? p.node[i].region : -1;
+    Real distance2 = pushes && slot >= 0 ? squared_norm(p.node[i].rest_w - state.region[slot].centre_w) : near * near;
+    for (std::int32_t k = 0; !pushes && k < count; ++k) {  // bound: kMaxRegions
+      const Real to_region2 = squared_norm(p.node[i].rest_w - state.region[touching[k]].centre_w);
+      if (!(to_region2 < distance2)) continue;
+      distance2 = to_region2;
+      slot = touching[k];
+    }
     if (slot < 0) continue;
-    const Real distance2 = squared_norm(p.node[i].rest_w - state.region[slot].centre_w);
-    const Real near = 2 * model.params.cluster_distance_m;
-    if (!(p.node[i].push.normal_N > 0) && distance2 > near * near) continue;
     fit[slot].add(p.node[i].rest_w, motion_of(p, i));
     reach2[slot] = max_of(reach2[slot], distance2);
   }

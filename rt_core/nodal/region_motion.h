@@ -2,7 +2,7 @@
 // carried the nodes, never on their own dents.
 #pragma once
 
-#include "rt_core/vec.h"
+#include "rt_core/nodal/lanes.h"
 
 namespace palpate {
 
@@ -15,8 +15,9 @@ struct RegionMotion {
   double finite = 0;   // 1: finite rotation counts, 0: it does not
 };
 
-inline Vec3 carry_at(const RegionMotion& motion, Vec3 rest_w) PALPATE_RT {
-  return motion.translation_m + cross(motion.rotation_rad, rest_w - motion.centre_w);
+// Of four rest points, `arm` away from the centre.
+inline Vec3x4 carry_at(const RegionMotion& motion, const Vec3x4& arm) PALPATE_RT {
+  return splat4(motion.translation_m) + cross(splat4(motion.rotation_rad), arm);
 }
 
 // What finite rotation adds to the linear motion, to second order. A body that turns by r about a root at -d under a
@@ -24,8 +25,9 @@ inline Vec3 carry_at(const RegionMotion& motion, Vec3 rest_w) PALPATE_RT {
 // changes with the turn, which makes k into k + f . d and all the motion grow by -f . d / k = f . (r x t) / (f . t).
 // Both follow from the complementary energy f . t / 2 + f . (r x t) / 2. An arm that bends instead has 0.8 of the first
 // for a load at its end, 2/3 when bent evenly.
-inline Vec3 bend_of(const RegionMotion& motion, Vec3 carry) PALPATE_RT {
-  return motion.finite * (0.5 * cross(motion.rotation_rad, carry) + motion.growth * carry);
+inline Vec3x4 bend_of(const RegionMotion& motion, const Vec3x4& carry) PALPATE_RT {
+  const Vec3x4 turned = cross(splat4(motion.rotation_rad), carry);
+  return splat4(motion.finite) * (splat4(0.5) * turned + splat4(motion.growth) * carry);
 }
 // The growth under a force on the body. Beyond this no linear body is meant: a clip on its tube needs 0.2.
 inline constexpr double kMostGrowth = 0.25;

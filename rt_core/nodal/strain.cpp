@@ -6,21 +6,31 @@ namespace palpate {
 
 namespace {
 
-// Components of one pass over the pushing nodes: what the registers hold.
-constexpr std::int32_t kPass = 96;
-static_assert(6 * kMaxStrainGauges % kPass == 0, "passes are whole");
+constexpr std::int32_t kMostVectors = whole_lanes(6 * kMaxStrainGauges, 8) / 8;
 
-// Adds kPass strain components of all pushes, eight of them for each k. Single precision, as the gauges are.
-template <int... k>
-void add_pass(const float* gauges, const std::int32_t* row, const float* force, std::int32_t rows, float* strain,
-              std::integer_sequence<int, k...>) PALPATE_RT {
-  Float8 sum[] = {load8(strain + 8 * k)...};
+// Strain components of all pushes, sizeof...(k) vectors of eight: what the registers hold. The last vector ends with
+// the last component; what it shares with the one before comes out the same twice. Single precision, as the gauges are.
+template <std::int32_t... k>
+void add_strains(const float* gauges, const std::int32_t* row, const float* force, std::int32_t rows,
+                 std::int32_t components, float* strain, std::integer_sequence<std::int32_t, k...>) PALPATE_RT {
+  const std::int32_t end = components - 8;
+  Float8 sum[] = {(static_cast<void>(k), Float8{})...};
   for (std::int32_t r = 0; r < rows; ++r) {  // bound: 3 kMaxContacts
     const Float8 f = splat8(force[r]);
     const float* from = gauges + row[r];
-    ((sum[k] += load8(from + 8 * k) * f), ...);
+    ((sum[k] += load8(from + (k + 1 == sizeof...(k) ? end : 8 * k)) * f), ...);
   }
-  (store(strain + 8 * k, sum[k]), ...);
+  (store(strain + (k + 1 == sizeof...(k) ? end : 8 * k), sum[k]), ...);
+}
+
+// Picks the number of vectors, from `most` down to 1.
+template <std::int32_t most>
+void add_strains(const float* gauges, const std::int32_t* row, const float* force, std::int32_t rows,
+                 std::int32_t components, float* strain) PALPATE_RT {
+  if constexpr (most > 1) {
+    if (components <= 8 * (most - 1)) return add_strains<most - 1>(gauges, row, force, rows, components, strain);
+  }
+  add_strains(gauges, row, force, rows, components, strain, std::make_integer_sequence<std::int32_t, most>());
 }
 
 }  // namespace
@@ -40,13 +50,13 @@ Real largest_strain(const Model& model, const ContactProblem& p) PALPATE_RT {
     }
   }
   alignas(32) float strain[6 * kMaxStrainGauges] = {};
-  std::int32_t done = 0;
-  for (; done + kPass <= components; done += kPass)  // bound: 1
-    add_pass(model.strain_gauge.data() + done, row, force, rows, strain + done,
-             std::make_integer_sequence<int, kPass / 8>());
-  for (std::int32_t r = 0; r < rows && done < components; ++r) {  // bound: 3 kMaxContacts, kPass components each
-    const float* from = model.strain_gauge.data() + row[r];
-    for (std::int32_t c = done; c < components; ++c) strain[c] += from[c] * force[r];
+  if (components >= 8) {
+    add_strains<kMostVectors>(model.strain_gauge.data(), row, force, rows, components, strain);
+  } else {
+    for (std::int32_t r = 0; r < rows; ++r) {  // bound: 3 kMaxContacts, of one gauge
+      for (std::int32_t c = 0; c < components; ++c)
+        strain[c] += model.strain_gauge[static_cast<std::size_t>(row[r] + c)] * force[r];
+    }
   }
   Real largest2 = 0;
   for (std::int32_t c = 0; c < components; c += 6) {  // bound: kMaxStrainGauges

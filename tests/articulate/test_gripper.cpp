@@ -1,7 +1,6 @@
 // Two jaws on a rubber block: motion of the joints, their limits and stops, symmetry, and what hostile commands do.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <limits>
 
 #include "config/config_error.h"

@@ -1,12 +1,15 @@
 #!/usr/bin/env bash
 # Gate on instruction counts, which are the same on every run: the worst tick of each scene against its budget, and the
-# same ellipsoid meshed three ways; and a tick with sixty nodes that push and slip. Usage:
+# same ellipsoid meshed three ways; and a tick with sixty nodes that push and slip. `scenes` plays the scripted hand,
+# `paths` the scene's own path as `palpate run` and the laboratory do. Usage:
 #   tick_instructions.sh scenes PROGRAM IMAGE_DIR
+#   tick_instructions.sh paths PATH_PROGRAM IMAGE_DIR SCENE_DIR
 #   tick_instructions.sh meshes PROGRAM PALPATE SCENE.toml
 #   tick_instructions.sh nodal NODAL_PROGRAM
 #   tick_instructions.sh overlays PROGRAM PALPATE SCENE_DIR
 set -euo pipefail
-usage="usage: tick_instructions.sh scenes PROGRAM IMAGE_DIR | meshes PROGRAM PALPATE SCENE.toml |"
+usage="usage: tick_instructions.sh scenes PROGRAM IMAGE_DIR | paths PROGRAM IMAGE_DIR SCENE_DIR |"
+usage+=" meshes PROGRAM PALPATE SCENE.toml |"
 usage+=" overlays PROGRAM PALPATE SCENE_DIR | nodal PROGRAM"
 mode=${1:?$usage} program=${2:?$usage}
 here=$(cd "$(dirname "$0")" && pwd)
@@ -25,6 +28,8 @@ hollow_cylinder 60000
 grasp_cylinder_5 250000
 snap_in 300000
 pinch_block 300000'
+# The scenes in which a path reaches states that the scripted hand does not: a tube seated in its clip, a block tugged at.
+path_scenes='snap_in pinch_block'
 # Every tool on the softest and the stiffest material in the two tool scenes.
 tools_budget=20000
 # Largest ratio between the meshes: cost may grow with the hierarchy's depth only. 115 % for the worst tick and 101 % for
@@ -38,11 +43,20 @@ count() {
   awk -f "$here/worst_tick.awk" "$work/counts" >"$work/table" || { cat "$work/table"; exit 1; }
   grep -v '^summary ' "$work/table"
   read -r _ worst mean ticks in_contact < <(grep '^summary ' "$work/table")
-  [ "$in_contact" -gt $((ticks / 2)) ] || { echo "only $in_contact of $ticks ticks touch the body: this proves nothing"; exit 1; }
+  [ "$in_contact" -gt $((ticks / least_contact)) ] || { echo "only $in_contact of $ticks ticks touch the body: this proves nothing"; exit 1; }
 }
 
-status=0
-if [ "$mode" = scenes ]; then
+status=0 least_contact=2
+if [ "$mode" = paths ]; then
+  images=${3:?$usage} scenes=${4:?$usage} least_contact=3
+  for scene in $path_scenes; do
+    echo "== $scene, its own path"
+    budget=$(awk -v scene="$scene" '$1 == scene { print $2 }' <<<"$budgets")
+    count "$images/$scene.pal" "$scenes/$scene.toml"
+    if [ "$worst" -le "$budget" ]; then verdict=ok; else verdict="OVER BUDGET" status=1; fi
+    echo "worst tick $worst of $budget instructions: $verdict"
+  done
+elif [ "$mode" = scenes ]; then
   images=${3:?$usage}
   while read -r scene budget; do
     echo "== $scene"
@@ -68,12 +82,11 @@ elif [ "$mode" = meshes ]; then
   [ "$ratio_worst" -le "$mesh_ratio_percent" ] && [ "$ratio_mean" -le "$mesh_ratio_percent" ] || status=1
   echo "largest over smallest: worst tick $ratio_worst %, mean in contact $ratio_mean % (at most $mesh_ratio_percent %)"
 elif [ "$mode" = nodal ]; then
-  # The goal is 300,000; 315,700 in both, 2026-11-21.
   for part in slide rock; do
     echo "== $part"
     count "$part"
-    if [ "$worst" -le 320000 ]; then verdict=ok; else verdict="OVER BUDGET" status=1; fi
-    echo "worst tick $worst of 320000 instructions: $verdict"
+    if [ "$worst" -le 300000 ]; then verdict=ok; else verdict="OVER BUDGET" status=1; fi
+    echo "worst tick $worst of 300000 instructions: $verdict"
   done
 elif [ "$mode" = overlays ]; then
   palpate=${3:?$usage} scenes=${4:?$usage}

@@ -1,7 +1,6 @@
 // Sense and safety around a contact that is a linear spring wall, so that the coupled equilibrium is known exactly.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <limits>
 
 #include "rt_core/coupling/virtual_coupling.h"

@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <array>
 #include <limits>
 
 #include "rt_core/deform/skeleton.h"

@@ -3,7 +3,6 @@
 
 #include <cstring>
 #include <memory>
-#include <vector>
 
 #include "rt_core/stages.h"
 

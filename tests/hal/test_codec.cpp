@@ -1,7 +1,6 @@
 // The wire codec: published vectors, round trips, every single-bit error, random bytes, and the database file.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <fstream>
 #include <random>
 #include <sstream>

@@ -10,7 +10,6 @@
 #include <memory>
 #include <string>
 #include <thread>
-#include <vector>
 
 #include "hal/device_sim.h"
 #include "hal/loop.h"

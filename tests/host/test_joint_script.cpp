@@ -1,9 +1,7 @@
 // Joint commands typed at the command line: what they mean, what is refused with which words, and that a run obeys.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <fstream>
-#include <iterator>
 #include <regex>
 #include <sstream>
 #include <stdexcept>

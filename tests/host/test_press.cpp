@@ -164,6 +164,32 @@ TEST(Press, HandSpringSettlesInEquilibrium) {
   EXPECT_LT(left_N, 1e-9);  // Newton converges quadratically; the target has rested for 100 ticks
 }
 
+// A tube slides between the arms of a clip, with friction along its axis and across. Held by a hand's spring it must
+// neither swing from one sense of sliding to the other nor be thrown into the clip.
+TEST(Press, HandOnANodalBodyIsSteadyAndInEquilibrium) {
+  const SceneModel scene(scene_path("snap_in"));
+  auto poses = scripted_poses(scene.scene()->path, scene.model().params.period_s);
+  poses.resize(2300);  // pressing in, before the clip snaps
+  const double hand_N_per_m = scene.scene()->path.hand_stiffness_N_per_m;
+  const auto state = std::make_unique<State>();
+  Vec3 before;
+  double largest_step_N = 0, left_N = 0, force_N = 0;
+  std::uint32_t seen = 0;
+  press(scene.model(), poses, {hand_N_per_m}, *state, nullptr, [&](const PressRow& row, const State&, const Scratch&) {
+    const Output& output = row.record.output;
+    const Vec3 pull = hand_N_per_m * (poses[row.record.tick].tool_w.position_m - output.tool_w.position_m);
+    left_N = std::max(left_N, norm(pull + output.contact_w.force_N));
+    force_N = norm(output.contact_w.force_N);
+    largest_step_N = std::max(largest_step_N, norm(output.contact_w.force_N - before));
+    before = output.contact_w.force_N;
+    seen |= output.status;
+  });
+  EXPECT_GT(force_N, 5.0);
+  EXPECT_LT(left_N, 0.1);          // 1 % of the force: contact is linearised at the pose the tick predicts
+  EXPECT_LT(largest_step_N, 0.3);  // 10 N grow within 0.7 s, facets included; swinging made steps of 5 N
+  EXPECT_EQ(seen & (Status::kRamping | Status::kForceClamped | Status::kInputRejected), 0u);
+}
+
 TEST(Press, TheSamePosesGiveTheSameBits) {
   const SceneModel scene(scene_path("heart_compass"));
   const auto poses = scripted_poses(scene.scene()->path, 5e-3);

@@ -3,7 +3,6 @@
 // argument in telemetry.h is for. They are run under ThreadSanitizer as well.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstring>
 #include <memory>
 #include <random>

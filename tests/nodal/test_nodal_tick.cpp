@@ -248,11 +248,60 @@ TEST(NodalTick, StrainBeyondTheLinearRangeIsReported) {
   EXPECT_TRUE(beyond);
 }
 
+// A face of 169 nodes under a plate: the problem fills tick by tick, says each time that it leaves out nodes that
+// penetrate, and never holds more than its capacity.
 TEST(NodalTick, DroppedNodesAreReported) {
   NodalScene scene(block(0.45, {6, 2, 6}), {box_piece({0.060, 0.010, 0.060})}, soft());
-  scene.tick_at({0, kTop_m + 0.004, 0});
-  EXPECT_NE(scene.output().status & Status::kContactsDropped, 0u);
-  EXPECT_EQ(scene.scratch().nodal.count, kMaxContacts);
+  int most = 0;
+  for (int k = 0; k < 10; ++k) {
+    scene.tick_at({0, kTop_m + 0.004, 0});
+    EXPECT_NE(scene.output().status & Status::kContactsDropped, 0u) << k;
+    EXPECT_LE(scene.scratch().nodal.count, kMaxContacts);
+    most = std::max(most, scene.scratch().nodal.count);
+  }
+  EXPECT_GT(most, kMaxContacts - 8);
+}
+
+// More near nodes than a problem holds, but few that push: all those are found, and no other one penetrates by more
+// than a thirtieth of an encoder's step. The gaps of all nodes, from the whole compliance.
+TEST(NodalTick, LeavesOutOnlyNodesThatDoNotPenetrate) {
+  NodalSceneOptions options = soft();
+  options.carry = NodalCarry::kRest;
+  NodalScene scene(block(0.45, {6, 2, 6}), {sphere_piece(0.010)}, options);
+  scene.params().contact_margin_m = 0.012;
+  scene.reopen();
+  int near = 0;
+  for (int k = 1; k <= 60; ++k) {
+    const Vec3 tool = sphere_at(5e-5 * k);
+    scene.tick_at(tool);
+    if (k % 10 != 0) continue;
+    scene.settle_at(tool, 3);
+    EXPECT_EQ(scene.output().status & Status::kContactsDropped, 0u) << k;
+    const ContactProblem& p = scene.scratch().nodal;
+    EXPECT_LT(p.count, kMaxContacts);
+    near = 0;
+    const Model& model = scene.model();
+    const std::size_t n = model.sizes.n_vertex;
+    for (std::size_t v = 0; v < n; ++v) {
+      const Vec3 x = model.vertex_m[v];
+      near += norm(x - tool) - 0.010 < 0.012 && x.y > 0.023 ? 1 : 0;
+      if (norm(x - tool) > 0.020 || x.y < 0.023) continue;
+      Real u[3] = {};
+      for (std::int32_t i = 0; i < p.count; ++i) {
+        const Vec3 force = push_w(p.node[i]);
+        const Real f[3] = {force.x, force.y, force.z};
+        for (std::size_t a = 0; a < 3; ++a) {
+          const double* row =
+              model.compliance_f64.data() + (3 * static_cast<std::size_t>(p.node[i].vertex) + a) * 3 * n;
+          for (std::size_t b = 0; b < 3; ++b) u[b] += f[a] * row[3 * v + b];
+        }
+      }
+      const Vec3 normal = unit_or(x - tool, {});
+      EXPECT_GT(norm(x - tool) - 0.010 + dot(normal, {u[0], u[1], u[2]}), -1e-6) << k << " vertex " << v;
+    }
+  }
+  EXPECT_GT(near, kMaxContacts);
+  EXPECT_GT(scene.output().contact_w.force_N.y, 1);
 }
 
 TEST(NodalTick, NotANumberFaultsAndRecovers) {

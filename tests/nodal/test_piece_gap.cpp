@@ -48,6 +48,23 @@ TEST(PieceGap, IsTheDistanceOutside) {
   }
 }
 
+// The search looks at four nodes at a time: the same bits as one by one, also on axes and bisectors.
+TEST(PieceGap, FourAtATimeHaveTheBitsOfOne) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> any(-0.02, 0.02);
+  for (const ToolPiece& piece : kPieces) {
+    for (int trial = 0; trial < 500; ++trial) {
+      Vec3 p[4] = {{any(random), any(random), any(random)}, {0, 0, any(random)}, {}, {any(random), any(random), 0}};
+      const PieceGapOf<Vec3x4> four = piece_gap(piece, load4(p));
+      for (std::uint32_t k = 0; k < 4; ++k) {
+        const PieceGap one = piece_gap(piece, p[k]);
+        EXPECT_EQ(four.gap_m[k], one.gap_m) << piece.shape;
+        EXPECT_EQ(four.normal[k], one.normal) << piece.shape;
+      }
+    }
+  }
+}
+
 TEST(PieceGap, NormalIsItsSlopeInsideAndOutside) {
   std::mt19937 random(6);
   std::uniform_real_distribution<double> any(-0.02, 0.02);

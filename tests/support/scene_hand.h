@@ -1,0 +1,96 @@
+// The simulated device and hand of a scene, as `palpate run` starts them: same plant, same path, same wire.
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "config/scene.h"
+#include "hal/device_bus.h"
+#include "hal/device_node.h"
+#include "hal/loopback.h"
+#include "sim_host/device_process.h"
+#include "sim_host/hand_path_file.h"
+
+namespace palpate::test {
+
+// From the very arguments that palpate-device is started with.
+inline PlantOptions plant_of(const SceneDesc& scene) {
+  PlantOptions plant;
+  const std::map<std::string, double PlantOptions::*> members{
+      {"mass_kg", &PlantOptions::mass_kg},
+      {"damping_N_s_per_m", &PlantOptions::damping_N_s_per_m},
+      {"friction_N", &PlantOptions::friction_N},
+      {"inertia_kg_m2", &PlantOptions::inertia_kg_m2},
+      {"damping_Nm_s_per_rad", &PlantOptions::damping_Nm_s_per_rad},
+      {"friction_Nm", &PlantOptions::friction_Nm},
+      {"encoder_m", &PlantOptions::encoder_m},
+      {"force_max_N", &PlantOptions::force_max_N},
+      {"torque_max_Nm", &PlantOptions::torque_max_Nm},
+      {"hand_stiffness_N_per_m", &PlantOptions::hand_stiffness_N_per_m},
+      {"hand_damping_N_s_per_m", &PlantOptions::hand_damping_N_s_per_m},
+      {"hand_stiffness_Nm_per_rad", &PlantOptions::hand_stiffness_Nm_per_rad},
+      {"hand_damping_Nm_s_per_rad", &PlantOptions::hand_damping_Nm_s_per_rad},
+      {"period_s", &PlantOptions::period_s}};
+  for (const std::string& argument : plant_arguments(scene)) {
+    const std::size_t equals = argument.find('=');
+    if (equals == std::string::npos) continue;  // --set
+    const std::string name = argument.substr(0, equals);
+    const double value = std::stod(argument.substr(equals + 1));
+    if (name == "delay_ticks") {
+      plant.delay_ticks = static_cast<int>(value);
+    } else {
+      plant.*members.at(name) = value;
+    }
+  }
+  return plant;
+}
+
+inline HandPath path_of(const SceneDesc& scene) {
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() / ("palpate_path_" + std::to_string(getpid()) + ".csv");
+  std::ofstream(file) << path_csv(scene.path);
+  std::vector<HandPose> poses;
+  std::string error;
+  const bool read = read_hand_path(file.string(), poses, error);
+  std::filesystem::remove(file);
+  if (!read) throw std::runtime_error(error);
+  return HandPath(std::move(poses));
+}
+
+// A Device in virtual time: each receive() first lets the node live up to the clock.
+class SceneHand {
+ public:
+  SceneHand(const SceneDesc& scene, const VirtualClock& clock)
+      : clock_(clock), ends_(open_loopback_pair(error_)), period_ns_(std::llround(1e9 * scene.device.period_s)) {
+    if (!ends_.first) throw std::runtime_error(error_);
+    node_ = std::make_unique<DeviceNode>(*ends_.second, NodeOptions{}, plant_of(scene), path_of(scene));
+    bus_ = std::make_unique<DeviceBus>(*ends_.first, WireProfile::kFd);
+    due_ns_ = period_ns_;
+  }
+  void receive(DeviceSample& sample) noexcept {
+    for (; due_ns_ <= clock_.now_ns(); due_ns_ += period_ns_) node_->step(due_ns_);
+    bus_->receive(sample);
+  }
+  bool transmit(const DeviceCommand& command) noexcept { return bus_->transmit(command); }
+
+ private:
+  const VirtualClock& clock_;
+  std::string error_;
+  std::pair<std::unique_ptr<Transport>, std::unique_ptr<Transport>> ends_;
+  std::unique_ptr<DeviceNode> node_;
+  std::unique_ptr<DeviceBus> bus_;
+  std::int64_t period_ns_, due_ns_ = 0;
+};
+struct ArmedHost {
+  std::uint32_t poll() noexcept { return Command::kArm; }
+};
+struct NoSink {
+  void publish(const TickRecord&) noexcept {}
+};
+
+}  // namespace palpate::test
