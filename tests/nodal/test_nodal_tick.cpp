@@ -316,6 +316,33 @@ TEST(NodalTick, NotANumberFaultsAndRecovers) {
   EXPECT_TRUE(is_finite(scene.output().device_w.force_N));
 }
 
+// Far below an encoder's step: two sweeps of a cold press say that they have not converged, pivoting never does.
+TEST(NodalTick, SweepsThatDoNotConvergeAreReported) {
+  for (const bool sweeps : {false, true}) {
+    NodalScene scene(block(), {sphere_piece(0.010)}, soft());
+    if (sweeps) {
+      scene.params().nodal_solver = static_cast<std::int32_t>(NodalSolver::kGaussSeidel);
+      scene.params().nodal_sweeps = 2;
+      scene.reopen();
+    }
+    scene.tick_at(sphere_at(3e-3));
+    EXPECT_EQ((scene.output().status & Status::kNotConverged) != 0, sweeps);
+    EXPECT_EQ(scene.output().residual_m > 1e-7, sweeps);
+  }
+}
+
+// Back at full depth in one tick, friction leaves more than an encoder's step: that tick says so, a resting one does
+// not.
+TEST(NodalTick, FrictionThatDoesNotConvergeIsReported) {
+  NodalScene scene(block(0.45, {4, 2, 4}), {box_piece({0.060, 0.010, 0.060})}, soft(0.5));
+  scene.tick_at({0, kTop_m + 0.005 - 0.003, 0});
+  EXPECT_GT(scene.output().residual_m, 30e-6);
+  EXPECT_LT(scene.scratch().nodal.normal.residual_m, 1e-7);
+  EXPECT_NE(scene.output().status & Status::kNotConverged, 0u);
+  scene.settle_at({0, kTop_m + 0.005 - 0.003, 0}, 20);
+  EXPECT_EQ(scene.output().status & Status::kNotConverged, 0u);
+}
+
 TEST(NodalTick, GaussSeidelApproachesTheExactSolver) {
   NodalScene exact(block(), {sphere_piece(0.010)}, soft());
   double before = 1;
