@@ -281,7 +281,7 @@ TEST(NodalTick, LeavesOutOnlyNodesThatDoNotPenetrate) {
     EXPECT_LT(p.count, kMaxContacts);
     near = 0;
     const Model& model = scene.model();
-    const std::size_t n = model.sizes.n_vertex;
+    const auto n = static_cast<std::size_t>(model.sizes.n_vertex);
     for (std::size_t v = 0; v < n; ++v) {
       const Vec3 x = model.vertex_m[v];
       near += norm(x - tool) - 0.010 < 0.012 && x.y > 0.023 ? 1 : 0;
