@@ -21,6 +21,7 @@
 #include "hal/loopback.h"
 #include "hal/rt_linux.h"
 #include "sim_host/hand_path_file.h"
+#include "sim_host/plant_options.h"
 
 namespace palpate {
 namespace {
@@ -40,25 +41,6 @@ constexpr char kHelp[] =
     "  --priority P       SCHED_FIFO priority 1..98; default 0: ordinary scheduling\n"
     "  --cpu N            pin to this CPU\n"
     "  --set NAME=VALUE   a property of device or hand, repeatable; SI units:\n";
-
-// X(name): members of PlantOptions that --set reaches.
-#define PALPATE_PLANT_OPTIONS(X) \
-  X(mass_kg)                     \
-  X(damping_N_s_per_m)           \
-  X(friction_N)                  \
-  X(inertia_kg_m2)               \
-  X(damping_Nm_s_per_rad)        \
-  X(friction_Nm)                 \
-  X(encoder_m)                   \
-  X(noise_m)                     \
-  X(force_max_N)                 \
-  X(torque_max_Nm)               \
-  X(hand_mass_kg)                \
-  X(hand_stiffness_N_per_m)      \
-  X(hand_damping_N_s_per_m)      \
-  X(hand_stiffness_Nm_per_rad)   \
-  X(hand_damping_Nm_s_per_rad)   \
-  X(period_s)
 
 struct Failure {
   int exit_code;

@@ -12,6 +12,8 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "sim_host/plant_options.h"
+
 namespace palpate {
 
 namespace {
@@ -53,28 +55,38 @@ std::string path_csv(const PathDesc& path) {
   return text;
 }
 
-std::vector<std::string> plant_arguments(const SceneDesc& scene) {
+PlantOptions plant_of(const SceneDesc& scene) {
   const DeviceDesc& device = scene.device;
   const PathDesc& hand = scene.path;
+  PlantOptions plant;
+  plant.mass_kg = device.mass_kg;
+  plant.damping_N_s_per_m = device.damping_Ns_per_m;
+  plant.friction_N = device.friction_N;
+  plant.inertia_kg_m2 = device.inertia_kg_m2;
+  plant.damping_Nm_s_per_rad = device.damping_Nms_per_rad;
+  plant.friction_Nm = device.friction_Nm;
+  plant.encoder_m = device.encoder_step_m;
+  plant.force_max_N = device.force_max_N;
+  plant.torque_max_Nm = device.torque_max_Nm;
+  plant.hand_stiffness_N_per_m = hand.hand_stiffness_N_per_m;
+  plant.hand_damping_N_s_per_m = hand.hand_damping_Ns_per_m;
+  plant.hand_stiffness_Nm_per_rad = hand.hand_stiffness_Nm_per_rad;
+  plant.hand_damping_Nm_s_per_rad = hand.hand_damping_Nms_per_rad;
+  plant.period_s = device.period_s;
+  plant.delay_ticks = static_cast<int>(std::clamp(std::round(device.delay_s / device.period_s), 0.0, 15.0));
+  return plant;
+}
+
+std::vector<std::string> plant_arguments(const SceneDesc& scene) {
+  const PlantOptions plant = plant_of(scene);
   std::vector<std::string> arguments;
-  const auto set = [&](const char* name, double value) {
+  const auto set = [&](const char* name, auto value) {
     arguments.insert(arguments.end(), {"--set", fmt::format("{}={}", name, value)});
   };
-  set("mass_kg", device.mass_kg);
-  set("damping_N_s_per_m", device.damping_Ns_per_m);
-  set("friction_N", device.friction_N);
-  set("inertia_kg_m2", device.inertia_kg_m2);
-  set("damping_Nm_s_per_rad", device.damping_Nms_per_rad);
-  set("friction_Nm", device.friction_Nm);
-  set("encoder_m", device.encoder_step_m);
-  set("force_max_N", device.force_max_N);
-  set("torque_max_Nm", device.torque_max_Nm);
-  set("hand_stiffness_N_per_m", hand.hand_stiffness_N_per_m);
-  set("hand_damping_N_s_per_m", hand.hand_damping_Ns_per_m);
-  set("hand_stiffness_Nm_per_rad", hand.hand_stiffness_Nm_per_rad);
-  set("hand_damping_Nm_s_per_rad", hand.hand_damping_Nms_per_rad);
-  set("period_s", device.period_s);
-  set("delay_ticks", std::clamp(std::round(device.delay_s / device.period_s), 0.0, 15.0));
+#define PALPATE_SET(member) set(#member, plant.member);
+  PALPATE_PLANT_OPTIONS(PALPATE_SET)
+#undef PALPATE_SET
+  set("delay_ticks", plant.delay_ticks);
   return arguments;
 }
 

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "hal/device_sim.h"
 #include "sim_host/process.h"
 #include "sim_host/scene_image.h"
 
@@ -29,7 +30,9 @@ class DeviceProcess {
 
 // The hand's motion of a scene as the CSV palpate-device reads (see hand_path_file.h).
 std::string path_csv(const PathDesc& path);
-// Properties of the scene's device and hand as palpate-device takes them: --set NAME=VALUE...
+// The scene's device and hand.
+PlantOptions plant_of(const SceneDesc& scene);
+// Their properties as palpate-device takes them: --set NAME=VALUE...
 std::vector<std::string> plant_arguments(const SceneDesc& scene);
 
 }  // namespace palpate

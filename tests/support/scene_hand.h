@@ -1,9 +1,11 @@
 // The simulated device and hand of a scene, as `palpate run` starts them: same plant, same path, same wire.
 #pragma once
 
+#include <unistd.h>
+
+#include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <map>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -17,38 +19,6 @@
 #include "sim_host/hand_path_file.h"
 
 namespace palpate::test {
-
-// From the very arguments that palpate-device is started with.
-inline PlantOptions plant_of(const SceneDesc& scene) {
-  PlantOptions plant;
-  const std::map<std::string, double PlantOptions::*> members{
-      {"mass_kg", &PlantOptions::mass_kg},
-      {"damping_N_s_per_m", &PlantOptions::damping_N_s_per_m},
-      {"friction_N", &PlantOptions::friction_N},
-      {"inertia_kg_m2", &PlantOptions::inertia_kg_m2},
-      {"damping_Nm_s_per_rad", &PlantOptions::damping_Nm_s_per_rad},
-      {"friction_Nm", &PlantOptions::friction_Nm},
-      {"encoder_m", &PlantOptions::encoder_m},
-      {"force_max_N", &PlantOptions::force_max_N},
-      {"torque_max_Nm", &PlantOptions::torque_max_Nm},
-      {"hand_stiffness_N_per_m", &PlantOptions::hand_stiffness_N_per_m},
-      {"hand_damping_N_s_per_m", &PlantOptions::hand_damping_N_s_per_m},
-      {"hand_stiffness_Nm_per_rad", &PlantOptions::hand_stiffness_Nm_per_rad},
-      {"hand_damping_Nm_s_per_rad", &PlantOptions::hand_damping_Nm_s_per_rad},
-      {"period_s", &PlantOptions::period_s}};
-  for (const std::string& argument : plant_arguments(scene)) {
-    const std::size_t equals = argument.find('=');
-    if (equals == std::string::npos) continue;  // --set
-    const std::string name = argument.substr(0, equals);
-    const double value = std::stod(argument.substr(equals + 1));
-    if (name == "delay_ticks") {
-      plant.delay_ticks = static_cast<int>(value);
-    } else {
-      plant.*members.at(name) = value;
-    }
-  }
-  return plant;
-}
 
 inline HandPath path_of(const SceneDesc& scene) {
   const std::filesystem::path file =
