@@ -1,6 +1,6 @@
 #include "rt_core/image_check.h"
 
-#include "rt_core/response/response_check.h"
+#include "rt_core/contact/tips/response_check.h"
 
 namespace palpate {
 

@@ -31,7 +31,7 @@ enum class NeighbourhoodLaw : std::int32_t { kNone = 0, kLog = 1, kLogC1 = 2, kP
 enum class CouplingLaw : std::int32_t { kNone = 0, kCoupled = 1, kTemporal = 2 };
 enum class Articulation : std::int32_t { kRigid = 0, kGripper = 1, kHand = 2 };
 // Who measures contact and makes force. Response: tool points on the rest surface, one law per region. Nodal: surface
-// nodes of a finite-element body against the tool's pieces (rt_core/nodal).
+// nodes of a finite-element body against the tool's pieces (rt_core/contact/nodes).
 enum class Backend : std::int32_t { kResponse = 0, kNodal = 1 };
 enum class NodalSolver : std::int32_t { kPivoting = 0, kGaussSeidel = 1 };
 // Where the tool's gap and normal are taken: at the node carried by the body's far field, or at rest.
@@ -199,8 +199,9 @@ struct NodalVertex {
   double round_cosine = 1;
 };
 
-// Law of one tool tip, travel = local + c0 F + c1 F^2 (rt_core/response/tip_law.h): F(e) = coefficient e^(half_power/2)
-// S(sqrt(e / depth_max_m)), e the local indentation; S, the exact factor of a layer or of a sphere, is a table.
+// Law of one tool tip, travel = local + c0 F + c1 F^2 (rt_core/contact/tips/tip_law.h): F(e) = coefficient
+// e^(half_power/2) S(sqrt(e / depth_max_m)), e the local indentation; S, the exact factor of a layer or of a sphere, is
+// a table.
 struct TipLaw {
   double coefficient;         // N/m^(half_power/2)
   double depth_max_m;         // of e; beyond it everything continues by its tangent

@@ -5,11 +5,11 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "rt_core/contact/nodes/contact_problem.h"
+#include "rt_core/contact/nodes/region_motion.h"
 #include "rt_core/io.h"
 #include "rt_core/limits.h"
 #include "rt_core/model.h"
-#include "rt_core/nodal/contact_problem.h"
-#include "rt_core/nodal/region_motion.h"
 
 namespace palpate {
 
@@ -147,7 +147,7 @@ struct Contact {
   double force_N = 0;  // normal force on the tool
 };
 
-// Where a tool point's centre stands over the smooth surface (rt_core/response/smooth_foot.h). Written by collide when
+// Where a tool point's centre stands over the smooth surface (rt_core/surface/smooth_foot.h). Written by collide when
 // the model has corner normals; indexed by piece: such tools have one point per piece at most.
 struct SurfaceFoot {
   Vec3 centre_w;  // of the tool point

@@ -1,7 +1,7 @@
 #include "rt_core/tick.h"
 
-#include "rt_core/articulate/articulate.h"
-#include "rt_core/articulate/carrier.h"
+#include "rt_core/tool/articulate.h"
+#include "rt_core/tool/carrier.h"
 
 namespace palpate {
 

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 
 #include "config/beams/beam_selection.h"
-#include "rt_core/deform/circular_beam.h"
+#include "config/beams/circular_beam.h"
 #include "rt_core/model.h"
 
 namespace palpate {

@@ -3,10 +3,10 @@
 #include <Eigen/LU>
 #include <algorithm>
 
-#include "config/config_error.h"
-#include "config/mesh.h"
-#include "config/scene.h"
-#include "config/schema.h"
+#include "config/body/mesh.h"
+#include "config/scene/config_error.h"
+#include "config/scene/scene.h"
+#include "config/scene/schema.h"
 
 namespace palpate {
 

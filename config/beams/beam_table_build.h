@@ -4,8 +4,8 @@
 #include <array>
 #include <vector>
 
+#include "config/bake/image_writer.h"
 #include "config/beams/beam_rows.h"
-#include "config/image_writer.h"
 
 namespace palpate {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "rt_core/collide/closest_point.h"
+#include "rt_core/surface/closest_point.h"
 
 namespace palpate {
 

@@ -3,7 +3,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "config/config_error.h"
+#include "config/scene/config_error.h"
 
 namespace palpate::fem {
 

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <string>
 
-#include "config/config_error.h"
+#include "config/scene/config_error.h"
 
 namespace palpate::fem {
 

@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-#include "config/config_error.h"
+#include "config/scene/config_error.h"
 
 namespace palpate {
 

@@ -9,7 +9,7 @@
 #include "config/fem/linear_body.h"
 #include "config/fem/material.h"
 #include "config/fem/tet_mesh.h"
-#include "config/progress.h"
+#include "config/scene/progress.h"
 #include "rt_core/limits.h"
 
 namespace palpate {

@@ -10,8 +10,8 @@
 #include <fstream>
 #include <iterator>
 
-#include "config/config_error.h"
 #include "config/fem/tet_io.h"
+#include "config/scene/config_error.h"
 
 extern char** environ;
 

@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "config/config_error.h"
+#include "config/scene/config_error.h"
 
 namespace palpate::fem {
 

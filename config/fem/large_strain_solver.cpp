@@ -4,10 +4,10 @@
 #include <cmath>
 #include <string>
 
-#include "config/config_error.h"
 #include "config/fem/contact_points.h"
 #include "config/fem/large_strain_assembly.h"
 #include "config/fem/supernodal_factor.h"
+#include "config/scene/config_error.h"
 
 namespace palpate::fem {
 

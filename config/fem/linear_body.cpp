@@ -5,9 +5,9 @@
 #include <cmath>
 #include <utility>
 
-#include "config/config_error.h"
 #include "config/fem/sparse_factor.h"
 #include "config/fem/tet_element.h"
+#include "config/scene/config_error.h"
 
 namespace palpate {
 

@@ -7,7 +7,7 @@
 
 #include "config/fem/material.h"
 #include "config/fem/tet_mesh.h"
-#include "config/progress.h"
+#include "config/scene/progress.h"
 
 namespace palpate {
 

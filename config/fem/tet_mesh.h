@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "config/mesh.h"
+#include "config/body/mesh.h"
 
 namespace palpate {
 

@@ -4,9 +4,9 @@
 #include <map>
 #include <utility>
 
-#include "config/config_error.h"
 #include "config/fem/tet_element.h"
 #include "config/fem/tet_mesh.h"
+#include "config/scene/config_error.h"
 
 namespace palpate {
 

@@ -7,9 +7,9 @@
 #include <iterator>
 #include <sstream>
 
-#include "config/config_error.h"
 #include "config/fem/tet_io.h"
 #include "config/fem/tet_numbering.h"
+#include "config/scene/config_error.h"
 
 namespace palpate {
 

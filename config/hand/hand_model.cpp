@@ -1,8 +1,8 @@
 #include "config/hand/hand_model.h"
 
-#include "config/tool_points.h"
-#include "rt_core/articulate/articulate.h"
+#include "config/bake/tool_points.h"
 #include "rt_core/math.h"
+#include "rt_core/tool/articulate.h"
 
 namespace palpate {
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-#include "config/scene.h"
+#include "config/scene/scene.h"
 #include "rt_core/model.h"
 
 namespace palpate {

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "config/bake/tool_points.h"
 #include "config/hand/hand_model.h"
-#include "config/tool_points.h"
-#include "rt_core/articulate/articulate.h"
-#include "rt_core/collide/closest_point.h"
+#include "rt_core/surface/closest_point.h"
+#include "rt_core/tool/articulate.h"
 
 namespace palpate {
 

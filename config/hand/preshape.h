@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "config/scene.h"
+#include "config/scene/scene.h"
 #include "rt_core/model.h"
 
 namespace palpate {

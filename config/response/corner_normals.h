@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "config/scene.h"
+#include "config/scene/scene.h"
 #include "rt_core/model.h"
 
 namespace palpate {

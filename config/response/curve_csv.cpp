@@ -3,9 +3,9 @@
 #include <fstream>
 #include <sstream>
 
-#include "config/config_error.h"
 #include "config/response/table_bake.h"
-#include "config/schema.h"
+#include "config/scene/config_error.h"
+#include "config/scene/schema.h"
 
 namespace palpate {
 

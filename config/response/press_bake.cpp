@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "config/config_error.h"
 #include "config/fem/pair_fit.h"
 #include "config/fem/series_fit.h"
 #include "config/response/press_shape.h"
-#include "config/schema.h"
-#include "rt_core/response/tip_law.h"
+#include "config/scene/config_error.h"
+#include "config/scene/schema.h"
+#include "rt_core/contact/tips/tip_law.h"
 
 namespace palpate {
 

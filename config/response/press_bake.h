@@ -2,7 +2,7 @@
 #pragma once
 
 #include "config/response/tip_bake.h"
-#include "config/scene.h"
+#include "config/scene/scene.h"
 
 namespace palpate {
 

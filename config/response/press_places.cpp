@@ -5,11 +5,11 @@
 #include <cmath>
 #include <map>
 
-#include "config/body.h"
-#include "config/contact_fit.h"
+#include "config/bake/contact_fit.h"
+#include "config/bake/fem_body.h"
+#include "config/body/body.h"
 #include "config/fem/linear_body.h"
 #include "config/fem/tet_procedural.h"
-#include "config/fem_body.h"
 
 namespace palpate {
 

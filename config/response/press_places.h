@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "config/progress.h"
-#include "config/scene.h"
+#include "config/scene/progress.h"
+#include "config/scene/scene.h"
 
 namespace palpate {
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "config/config_error.h"
-#include "config/schema.h"
+#include "config/scene/config_error.h"
+#include "config/scene/schema.h"
 
 namespace palpate {
 

@@ -8,7 +8,7 @@
 #include "config/fem/series_fit.h"
 #include "config/response/press_shape.h"
 #include "config/response/tip_bake.h"
-#include "rt_core/response/tip_law.h"
+#include "rt_core/contact/tips/tip_law.h"
 
 namespace palpate {
 

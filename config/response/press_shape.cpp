@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "config/config_error.h"
-#include "config/contact_fit.h"
+#include "config/bake/contact_fit.h"
+#include "config/scene/config_error.h"
 
 namespace palpate {
 

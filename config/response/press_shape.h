@@ -5,7 +5,7 @@
 
 #include "config/fem/axisymmetric_press.h"
 #include "config/response/layer_contact.h"
-#include "config/scene.h"
+#include "config/scene/scene.h"
 
 namespace palpate {
 

@@ -7,10 +7,10 @@
 #include <cstdio>
 #include <map>
 
-#include "config/config_error.h"
-#include "config/contact_fit.h"
+#include "config/bake/contact_fit.h"
 #include "config/fem/series_fit.h"
-#include "config/schema.h"
+#include "config/scene/config_error.h"
+#include "config/scene/schema.h"
 
 namespace palpate {
 

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "config/progress.h"
 #include "config/response/press_places.h"
 #include "config/response/press_series.h"
 #include "config/response/table_bake.h"
+#include "config/scene/progress.h"
 
 namespace palpate {
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <filesystem>
 
-#include "config/config_error.h"
 #include "config/response/press_table.h"
-#include "config/schema.h"
+#include "config/scene/config_error.h"
+#include "config/scene/schema.h"
 
 namespace palpate {
 

@@ -4,14 +4,14 @@
 #include <cmath>
 #include <cstdio>
 
-#include "config/config_error.h"
-#include "config/contact_fit.h"
+#include "config/bake/contact_fit.h"
 #include "config/response/corner_normals.h"
 #include "config/response/press_bake.h"
 #include "config/response/table_bake.h"
-#include "config/schema.h"
+#include "config/scene/config_error.h"
+#include "config/scene/schema.h"
+#include "rt_core/contact/tips/travel.h"
 #include "rt_core/math.h"
-#include "rt_core/response/travel.h"
 
 namespace palpate {
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "config/image_writer.h"
+#include "config/bake/image_writer.h"
 #include "config/response/layer_contact.h"
-#include "config/scene.h"
+#include "config/scene/scene.h"
 
 namespace palpate {
 

@@ -1,9 +1,9 @@
 // The last stage of every tick, in every mode, for every model:
 //   virtual coupling -> finite? -> magnitude -> mode gain -> rate.
-#include "rt_core/coupling/virtual_coupling.h"
-#include "rt_core/nodal/nodal.h"
+#include "rt_core/contact/nodes/nodal.h"
 #include "rt_core/safety/mode_machine.h"
 #include "rt_core/stages.h"
+#include "rt_core/tool/virtual_coupling.h"
 
 namespace palpate {
 

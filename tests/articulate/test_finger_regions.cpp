@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "rt_core/regions/clusters.h"
+#include "rt_core/contact/regions/clusters.h"
 
 namespace palpate {
 namespace {

@@ -9,9 +9,9 @@
 #include <set>
 
 #include "config/hand/hand_model.h"
-#include "rt_core/articulate/carrier.h"
-#include "sim_host/grasp_run.h"
-#include "sim_host/scene_model.h"
+#include "rt_core/tool/carrier.h"
+#include "sim_host/bake/scene_model.h"
+#include "sim_host/press/grasp_run.h"
 #include "tests/support/baked_scene.h"
 
 namespace palpate::test {

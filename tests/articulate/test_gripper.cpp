@@ -3,9 +3,9 @@
 
 #include <limits>
 
-#include "config/config_error.h"
-#include "rt_core/articulate/carrier.h"
+#include "config/scene/config_error.h"
 #include "rt_core/image_check.h"
+#include "rt_core/tool/carrier.h"
 #include "tests/support/baked_scene.h"
 
 namespace palpate::test {

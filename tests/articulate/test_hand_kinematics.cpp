@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "config/hand/hand_model.h"
-#include "rt_core/articulate/articulate.h"
+#include "rt_core/tool/articulate.h"
 
 namespace palpate {
 namespace {

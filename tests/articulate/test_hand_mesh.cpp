@@ -1,9 +1,9 @@
 // The drawn hand: closed surfaces of the promised size that cover the contact shapes.
 #include <gtest/gtest.h>
 
+#include "config/bake/tool_points.h"
 #include "config/hand/hand_model.h"
-#include "config/tool_points.h"
-#include "sim_host/hand_mesh.h"
+#include "sim_host/view/hand_mesh.h"
 
 namespace palpate {
 namespace {

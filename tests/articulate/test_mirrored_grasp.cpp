@@ -3,11 +3,11 @@
 
 #include <cmath>
 
+#include "config/bake/tool_points.h"
 #include "config/hand/hand_model.h"
-#include "config/tool_points.h"
-#include "rt_core/articulate/articulate.h"
-#include "sim_host/grasp_run.h"
-#include "sim_host/hand_mesh.h"
+#include "rt_core/tool/articulate.h"
+#include "sim_host/press/grasp_run.h"
+#include "sim_host/view/hand_mesh.h"
 #include "tests/support/baked_scene.h"
 
 namespace palpate::test {

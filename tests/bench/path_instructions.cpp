@@ -8,7 +8,7 @@
 #include <exception>
 #include <memory>
 
-#include "hal/loop.h"
+#include "hal/loop/loop.h"
 #include "tests/support/image_file.h"
 #include "tests/support/scene_hand.h"
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "config/bvh_build.h"
+#include "config/bake/bvh_build.h"
 #include "rt_core/model.h"
 #include "rt_core/state.h"
 

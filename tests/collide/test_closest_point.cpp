@@ -1,5 +1,5 @@
 // The closest-point query against brute force over all triangles, and its behaviour at the edges of its domain.
-#include "rt_core/collide/closest_point.h"
+#include "rt_core/surface/closest_point.h"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 #include <limits>
 #include <memory>
 
-#include "rt_core/collide/closest_point.h"
 #include "rt_core/stages.h"
+#include "rt_core/surface/closest_point.h"
 #include "tests/collide/pieces.h"
 
 namespace palpate::test {

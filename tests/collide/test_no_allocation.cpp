@@ -5,9 +5,9 @@
 
 #include <memory>
 
-#include "rt_core/collide/overlap.h"
 #include "rt_core/stages.h"
-#include "sim_host/heap_count.h"
+#include "rt_core/surface/overlap.h"
+#include "sim_host/run/heap_count.h"
 #include "tests/collide/pieces.h"
 
 namespace palpate::test {

@@ -1,4 +1,4 @@
-#include "rt_core/collide/overlap.h"
+#include "rt_core/surface/overlap.h"
 
 #include <gtest/gtest.h>
 

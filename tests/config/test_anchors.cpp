@@ -4,8 +4,8 @@
 #include <cmath>
 #include <random>
 
-#include "config/anchors.h"
-#include "config/patches.h"
+#include "config/body/anchors.h"
+#include "config/body/patches.h"
 
 namespace palpate {
 namespace {

@@ -6,12 +6,12 @@
 #include <cmath>
 #include <set>
 
+#include "config/bake/compile.h"
 #include "config/beams/beam_rows.h"
-#include "config/compile.h"
-#include "config/config_error.h"
-#include "rt_core/collide/closest_point.h"
-#include "rt_core/deform/beam_table.h"
+#include "config/scene/config_error.h"
 #include "rt_core/image.h"
+#include "rt_core/skeleton/beam_table.h"
+#include "rt_core/surface/closest_point.h"
 
 namespace palpate {
 namespace {

@@ -9,8 +9,8 @@
 #include <fstream>
 #include <memory>
 
-#include "config/compile.h"
-#include "config/config_error.h"
+#include "config/bake/compile.h"
+#include "config/scene/config_error.h"
 #include "rt_core/image.h"
 #include "tests/config/generated_docs.h"
 

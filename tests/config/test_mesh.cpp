@@ -8,10 +8,10 @@
 #include <limits>
 #include <map>
 
-#include "config/config_error.h"
-#include "config/mesh.h"
-#include "config/mesh_io.h"
-#include "config/procedural.h"
+#include "config/body/mesh.h"
+#include "config/body/mesh_io.h"
+#include "config/body/procedural.h"
+#include "config/scene/config_error.h"
 
 namespace palpate {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <fstream>
 
-#include "config/compile.h"
-#include "config/config_error.h"
+#include "config/bake/compile.h"
+#include "config/scene/config_error.h"
 
 namespace palpate {
 namespace {

@@ -5,10 +5,10 @@
 #include <fstream>
 #include <iterator>
 
-#include "config/config_error.h"
-#include "config/contact_fit.h"
-#include "config/scene.h"
-#include "config/schema.h"
+#include "config/bake/contact_fit.h"
+#include "config/scene/config_error.h"
+#include "config/scene/scene.h"
+#include "config/scene/schema.h"
 #include "tests/config/generated_docs.h"
 
 namespace palpate {

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "config/config_error.h"
-#include "config/tool_points.h"
+#include "config/bake/tool_points.h"
+#include "config/scene/config_error.h"
 
 namespace palpate {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <limits>
 
-#include "rt_core/coupling/virtual_coupling.h"
 #include "rt_core/tick.h"
+#include "rt_core/tool/virtual_coupling.h"
 #include "tests/support/tiny_image.h"
 
 namespace palpate::test {

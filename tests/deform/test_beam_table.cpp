@@ -5,8 +5,8 @@
 #include <random>
 #include <vector>
 
-#include "rt_core/deform/beam_table.h"
-#include "rt_core/deform/circular_beam.h"
+#include "config/beams/circular_beam.h"
+#include "rt_core/skeleton/beam_table.h"
 #include "rt_core/status.h"
 #include "tests/deform/deform_scene.h"
 

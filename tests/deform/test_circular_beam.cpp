@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 
-#include "rt_core/deform/circular_beam.h"
+#include "config/beams/circular_beam.h"
 
 namespace palpate {
 namespace {

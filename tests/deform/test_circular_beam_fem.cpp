@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "rt_core/deform/circular_beam.h"
+#include "config/beams/circular_beam.h"
 
 namespace palpate {
 namespace {

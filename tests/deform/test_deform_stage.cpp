@@ -3,9 +3,9 @@
 #include <cstring>
 #include <limits>
 
-#include "rt_core/deform/skeleton.h"
-#include "rt_core/deform/temporal_order.h"
-#include "rt_core/deform/transfer.h"
+#include "rt_core/skeleton/skeleton.h"
+#include "rt_core/skeleton/temporal_order.h"
+#include "rt_core/skeleton/transfer.h"
 #include "rt_core/stages.h"
 #include "tests/deform/deform_scene.h"
 

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "rt_core/deform/rbf.h"
+#include "rt_core/skeleton/rbf.h"
 #include "tests/deform/deform_scene.h"
 
 namespace palpate {

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "rt_core/deform/skeleton.h"
+#include "rt_core/skeleton/skeleton.h"
 #include "tests/deform/deform_scene.h"
 
 namespace palpate {

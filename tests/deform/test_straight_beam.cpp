@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "rt_core/deform/straight_beam.h"
+#include "rt_core/skeleton/straight_beam.h"
 #include "tests/deform/deform_scene.h"
 
 namespace palpate {

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "rt_core/deform/surface.h"
+#include "rt_core/skeleton/surface.h"
 #include "rt_core/stages.h"
 #include "tests/deform/deform_scene.h"
 

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
+#include "config/body/procedural.h"
 #include "config/fem/tet_element.h"
-#include "config/procedural.h"
 #include "tests/fem/expect_error.h"
 #include "tests/fem/temporary_folder.h"
 

@@ -10,11 +10,11 @@
 #include <utility>
 
 #include "force_scene.h"
-#include "rt_core/deform/rbf_system.h"
-#include "rt_core/deform/transfer.h"
-#include "rt_core/force/coupled_regions.h"
-#include "rt_core/force/cubic_law.h"
-#include "rt_core/force/far_field.h"
+#include "rt_core/contact/cubic_law.h"
+#include "rt_core/contact/far_field.h"
+#include "rt_core/contact/points/coupled_regions.h"
+#include "rt_core/skeleton/rbf_system.h"
+#include "rt_core/skeleton/transfer.h"
 
 namespace palpate {
 namespace {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "rt_core/cholesky.h"
-#include "rt_core/force/coupled_regions.h"
-#include "rt_core/force/far_field.h"
+#include "rt_core/contact/far_field.h"
+#include "rt_core/contact/points/coupled_regions.h"
 
 namespace palpate {
 namespace {

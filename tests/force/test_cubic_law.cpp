@@ -5,8 +5,8 @@
 #include <limits>
 #include <random>
 
-#include "rt_core/force/cubic_law.h"
-#include "rt_core/force/duffing.h"
+#include "rt_core/contact/cubic_law.h"
+#include "rt_core/contact/points/duffing.h"
 
 namespace palpate {
 namespace {

@@ -6,8 +6,8 @@
 #include <limits>
 #include <random>
 
-#include "rt_core/force/friction.h"
-#include "rt_core/force/presliding.h"
+#include "rt_core/contact/friction/friction.h"
+#include "rt_core/contact/friction/presliding.h"
 
 namespace palpate {
 namespace {

@@ -5,8 +5,8 @@
 #include <random>
 #include <vector>
 
-#include "rt_core/force/friction.h"
-#include "rt_core/force/region_load.h"
+#include "rt_core/contact/friction/friction.h"
+#include "rt_core/contact/points/region_load.h"
 
 namespace palpate {
 namespace {

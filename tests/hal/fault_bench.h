@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
-#include "hal/bus_model.h"
-#include "hal/fault_player.h"
-#include "hal/loop.h"
-#include "hal/loopback.h"
-#include "sim_host/host_port.h"
+#include "hal/bus/bus_model.h"
+#include "hal/bus/loopback.h"
+#include "hal/device/fault_player.h"
+#include "hal/loop/loop.h"
+#include "sim_host/run/host_port.h"
 #include "tests/support/tiny_image.h"
 
 namespace palpate::test {

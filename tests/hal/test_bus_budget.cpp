@@ -1,7 +1,7 @@
 // Frame times against the figures of the literature, and refusals.
 #include <gtest/gtest.h>
 
-#include "hal/bus_budget.h"
+#include "hal/bus/bus_budget.h"
 
 namespace palpate {
 namespace {

@@ -1,7 +1,7 @@
 // Serialisation delay: frames leave when their last bit would have, one behind the other.
 #include <gtest/gtest.h>
 
-#include "hal/bus_model.h"
+#include "hal/bus/bus_model.h"
 
 namespace palpate {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "hal/codec.h"
-#include "hal/dbc.h"
+#include "hal/bus/codec.h"
+#include "hal/bus/dbc.h"
 
 namespace palpate::wire {
 namespace {

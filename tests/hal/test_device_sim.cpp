@@ -8,8 +8,8 @@
 #include <csignal>
 #include <random>
 
-#include "hal/device_sim.h"
-#include "hal/rt_linux.h"
+#include "hal/device/device_sim.h"
+#include "hal/system/rt_linux.h"
 
 namespace palpate {
 namespace {

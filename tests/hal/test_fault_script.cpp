@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "hal/fault_script.h"
+#include "hal/device/fault_script.h"
 
 namespace palpate {
 namespace {

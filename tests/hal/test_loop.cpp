@@ -5,10 +5,10 @@
 #include <functional>
 #include <vector>
 
-#include "hal/device_node.h"
-#include "hal/fault_transport.h"
-#include "hal/loop.h"
-#include "hal/loopback.h"
+#include "hal/bus/loopback.h"
+#include "hal/device/device_node.h"
+#include "hal/loop/loop.h"
+#include "tests/hal/fault_transport.h"
 
 namespace palpate {
 namespace {

@@ -8,8 +8,8 @@
 #include <csignal>
 #include <thread>
 
-#include "hal/report_writer.h"
-#include "hal/usb_hid.h"
+#include "hal/bus/usb_hid.h"
+#include "hal/loop/report_writer.h"
 
 namespace palpate {
 namespace {

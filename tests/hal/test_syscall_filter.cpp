@@ -9,7 +9,7 @@
 #include <cerrno>
 #include <thread>
 
-#include "hal/syscall_filter.h"
+#include "hal/system/syscall_filter.h"
 
 namespace palpate::test {
 namespace {

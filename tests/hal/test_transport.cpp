@@ -6,11 +6,11 @@
 
 #include <thread>
 
-#include "hal/device_address.h"
-#include "hal/device_node.h"
-#include "hal/fault_transport.h"
-#include "hal/loopback.h"
-#include "hal/socketcan.h"
+#include "hal/bus/device_address.h"
+#include "hal/bus/loopback.h"
+#include "hal/bus/socketcan.h"
+#include "hal/device/device_node.h"
+#include "tests/hal/fault_transport.h"
 
 namespace palpate {
 namespace {

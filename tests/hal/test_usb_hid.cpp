@@ -1,6 +1,6 @@
 // The USB transport's report format and its bookkeeping, over a socket pair that keeps record boundaries as hidraw
 // does.
-#include "hal/usb_hid.h"
+#include "hal/bus/usb_hid.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

@@ -11,8 +11,8 @@
 #include <regex>
 
 #include "rt_core/tick.h"
-#include "sim_host/black_box.h"
-#include "sim_host/replay.h"
+#include "sim_host/record/black_box.h"
+#include "sim_host/record/replay.h"
 #include "tests/support/tiny_image.h"
 
 namespace palpate {

@@ -11,10 +11,10 @@
 #include <string>
 #include <thread>
 
-#include "hal/device_sim.h"
-#include "hal/loop.h"
-#include "hal/syscall_filter.h"
-#include "sim_host/host_port.h"
+#include "hal/device/device_sim.h"
+#include "hal/loop/loop.h"
+#include "hal/system/syscall_filter.h"
+#include "sim_host/run/host_port.h"
 
 namespace palpate {
 namespace {

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "sim_host/certify.h"
+#include "sim_host/doctor/certify.h"
 
 namespace palpate {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <fstream>
 
-#include "sim_host/doctor.h"
+#include "sim_host/doctor/doctor.h"
 
 namespace palpate::test {
 namespace {

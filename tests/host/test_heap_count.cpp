@@ -6,7 +6,7 @@
 #include <string>
 #include <thread>
 
-#include "sim_host/heap_count.h"
+#include "sim_host/run/heap_count.h"
 
 namespace palpate {
 namespace {

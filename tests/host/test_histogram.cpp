@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "sim_host/histogram.h"
+#include "sim_host/latency/histogram.h"
 
 namespace palpate {
 namespace {

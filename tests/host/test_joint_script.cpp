@@ -6,10 +6,10 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "sim_host/joint_script.h"
-#include "sim_host/process.h"
-#include "sim_host/recording.h"
-#include "sim_host/scene_model.h"
+#include "sim_host/bake/scene_model.h"
+#include "sim_host/record/recording.h"
+#include "sim_host/run/joint_script.h"
+#include "sim_host/run/process.h"
 #include "tests/support/ball_run.h"
 
 namespace palpate {

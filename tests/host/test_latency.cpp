@@ -7,8 +7,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "sim_host/latency.h"
-#include "sim_host/recording.h"
+#include "sim_host/latency/latency.h"
+#include "sim_host/record/recording.h"
 
 namespace palpate {
 namespace {

@@ -6,8 +6,8 @@
 #include <fstream>
 #include <memory>
 
-#include "sim_host/live_table.h"
-#include "sim_host/recording_follower.h"
+#include "sim_host/latency/live_table.h"
+#include "sim_host/record/recording_follower.h"
 
 namespace palpate {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "sim_host/cyclictest_read.h"
-#include "sim_host/latency.h"
+#include "sim_host/latency/cyclictest_read.h"
+#include "sim_host/latency/latency.h"
 #include "tests/host/xml_check.h"
 
 namespace palpate {

@@ -10,9 +10,9 @@
 #include <span>
 #include <vector>
 
-#include "sim_host/picture.h"
-#include "sim_host/png_file.h"
-#include "sim_host/scene_model.h"
+#include "sim_host/bake/scene_model.h"
+#include "sim_host/view/picture.h"
+#include "sim_host/view/png_file.h"
 
 namespace palpate {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <memory>
 
-#include "sim_host/line_plot.h"
-#include "sim_host/plot.h"
+#include "sim_host/view/line_plot.h"
+#include "sim_host/view/plot.h"
 #include "tests/host/xml_check.h"
 
 namespace palpate {

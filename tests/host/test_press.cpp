@@ -7,9 +7,9 @@
 #include <fstream>
 #include <memory>
 
-#include "sim_host/force_csv.h"
-#include "sim_host/press.h"
-#include "sim_host/scene_model.h"
+#include "sim_host/bake/scene_model.h"
+#include "sim_host/press/force_csv.h"
+#include "sim_host/press/press.h"
 
 namespace palpate {
 namespace {

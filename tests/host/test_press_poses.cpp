@@ -3,7 +3,7 @@
 
 #include <sstream>
 
-#include "sim_host/pose_csv.h"
+#include "sim_host/press/pose_csv.h"
 
 namespace palpate {
 namespace {

@@ -9,8 +9,8 @@
 #include <memory>
 #include <random>
 
-#include "sim_host/press.h"
-#include "sim_host/scene_model.h"
+#include "sim_host/bake/scene_model.h"
+#include "sim_host/press/press.h"
 
 namespace palpate {
 namespace {

@@ -8,8 +8,8 @@
 #include <memory>
 #include <sstream>
 
-#include "sim_host/scene_model.h"
-#include "sim_host/vtu.h"
+#include "sim_host/bake/scene_model.h"
+#include "sim_host/view/vtu.h"
 #include "tests/host/xml_check.h"
 
 namespace palpate {

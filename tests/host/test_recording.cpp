@@ -11,8 +11,8 @@
 #include <iterator>
 #include <memory>
 
-#include "sim_host/recorder.h"
-#include "sim_host/recording.h"
+#include "sim_host/record/recorder.h"
+#include "sim_host/record/recording.h"
 
 namespace palpate {
 namespace {

@@ -9,8 +9,8 @@
 #include <functional>
 
 #include "rt_core/tick.h"
-#include "sim_host/image_file.h"
-#include "sim_host/replay.h"
+#include "sim_host/bake/image_file.h"
+#include "sim_host/record/replay.h"
 #include "tests/support/tiny_image.h"
 
 namespace palpate {

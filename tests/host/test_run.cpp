@@ -12,13 +12,13 @@
 #include <fstream>
 #include <thread>
 
-#include "sim_host/controller_link.h"
-#include "sim_host/device_process.h"
-#include "sim_host/hand_path_file.h"
-#include "sim_host/image_file.h"
-#include "sim_host/recorder.h"
-#include "sim_host/replay.h"
-#include "sim_host/run_session.h"
+#include "sim_host/bake/image_file.h"
+#include "sim_host/record/recorder.h"
+#include "sim_host/record/replay.h"
+#include "sim_host/run/controller_link.h"
+#include "sim_host/run/device_process.h"
+#include "sim_host/run/hand_path_file.h"
+#include "sim_host/run/run_session.h"
 #include "tests/support/ball_run.h"
 
 namespace palpate {

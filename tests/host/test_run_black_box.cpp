@@ -7,9 +7,9 @@
 #include <fstream>
 #include <string>
 
-#include "sim_host/image_file.h"
-#include "sim_host/replay.h"
-#include "sim_host/run_session.h"
+#include "sim_host/bake/image_file.h"
+#include "sim_host/record/replay.h"
+#include "sim_host/run/run_session.h"
 #include "tests/support/ball_run.h"
 
 namespace palpate {

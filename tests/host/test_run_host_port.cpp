@@ -3,7 +3,7 @@
 
 #include <new>
 
-#include "sim_host/host_port.h"
+#include "sim_host/run/host_port.h"
 
 namespace palpate {
 namespace {

@@ -10,7 +10,7 @@
 #include <csignal>
 #include <cstring>
 
-#include "hal/shared_memory.h"
+#include "hal/system/shared_memory.h"
 #include "rt_core/telemetry.h"
 
 namespace palpate {

@@ -5,7 +5,7 @@
 #include <memory>
 #include <random>
 
-#include "sim_host/worst_ticks.h"
+#include "sim_host/latency/worst_ticks.h"
 
 namespace palpate {
 namespace {

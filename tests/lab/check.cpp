@@ -8,8 +8,8 @@
 #include <exception>
 #include <string>
 
-#include "sim_host/image_file.h"
-#include "sim_host/recording.h"
+#include "sim_host/bake/image_file.h"
+#include "sim_host/record/recording.h"
 #include "sim_host/status_text.h"
 
 namespace palpate {

@@ -17,10 +17,10 @@
 #include <thread>
 
 #include "rt_core/io.h"
-#include "sim_host/controller_link.h"
-#include "sim_host/cyclictest_read.h"
-#include "sim_host/latency.h"
-#include "sim_host/recorder.h"
+#include "sim_host/latency/cyclictest_read.h"
+#include "sim_host/latency/latency.h"
+#include "sim_host/record/recorder.h"
+#include "sim_host/run/controller_link.h"
 
 namespace palpate {
 namespace {

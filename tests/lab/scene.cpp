@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "config/compile.h"
-#include "sim_host/device_process.h"
+#include "config/bake/compile.h"
+#include "sim_host/run/device_process.h"
 
 int main(int argc, char** argv) {
   if (argc != 3) return std::fputs("lab_scene SCENE.toml FOLDER\n", stderr), 2;

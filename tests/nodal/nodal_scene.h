@@ -6,9 +6,9 @@
 #include <stdexcept>
 #include <vector>
 
+#include "config/bake/nodal_body.h"
+#include "config/bake/tool_points.h"
 #include "config/fem/tet_procedural.h"
-#include "config/nodal_body.h"
-#include "config/tool_points.h"
 #include "rt_core/image.h"
 #include "rt_core/tick.h"
 #include "tests/support/tiny_image.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "rt_core/nodal/friction_block.h"
+#include "rt_core/contact/nodes/friction_block.h"
 
 namespace palpate::test {
 namespace {

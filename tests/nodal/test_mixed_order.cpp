@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "config/scene.h"
+#include "config/scene/scene.h"
 #include "tests/support/baked_scene.h"
 
 namespace palpate::test {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "config/scene.h"
+#include "config/scene/scene.h"
 #include "tests/support/baked_scene.h"
 
 namespace palpate::test {

@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "rt_core/nodal/pivoting.h"
+#include "rt_core/contact/nodes/pivoting.h"
 
 namespace palpate::test {
 namespace {

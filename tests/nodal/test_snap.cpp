@@ -9,7 +9,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "config/scene.h"
+#include "config/scene/scene.h"
 #include "tests/nodal/nodal_scene.h"
 #include "tests/support/baked_scene.h"
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "config/scene.h"
+#include "config/scene/scene.h"
 #include "tests/nodal/nodal_scene.h"
 #include "tests/support/baked_scene.h"
 

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <span>
 
-#include "config/compile.h"
-#include "config/config_error.h"
+#include "config/bake/compile.h"
 #include "config/response/press_bake.h"
-#include "rt_core/response/travel.h"
+#include "config/scene/config_error.h"
+#include "rt_core/contact/tips/travel.h"
 
 namespace palpate {
 namespace {

@@ -7,9 +7,9 @@
 #include <cstdio>
 #include <random>
 
-#include "config/config_error.h"
 #include "config/response/press_table.h"
-#include "rt_core/response/vertex_table.h"
+#include "config/scene/config_error.h"
+#include "rt_core/contact/tips/vertex_table.h"
 
 namespace palpate {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "rt_core/coupling/virtual_coupling.h"
+#include "rt_core/tool/virtual_coupling.h"
 #include "tests/support/baked_scene.h"
 
 namespace palpate {

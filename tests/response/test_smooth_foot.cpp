@@ -5,10 +5,10 @@
 #include <limits>
 #include <random>
 
-#include "config/procedural.h"
+#include "config/body/procedural.h"
 #include "config/response/corner_normals.h"
-#include "rt_core/collide/triangle.h"
-#include "rt_core/response/smooth_foot.h"
+#include "rt_core/surface/smooth_foot.h"
+#include "rt_core/surface/triangle.h"
 
 namespace palpate {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "config/config_error.h"
+#include "config/scene/config_error.h"
 #include "tests/support/baked_scene.h"
 
 namespace palpate {

@@ -7,9 +7,9 @@
 #include <fstream>
 #include <random>
 
-#include "config/config_error.h"
 #include "config/response/table_bake.h"
-#include "rt_core/response/vertex_table.h"
+#include "config/scene/config_error.h"
+#include "rt_core/contact/tips/vertex_table.h"
 
 namespace palpate {
 namespace {

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "config/config_error.h"
 #include "config/response/tip_bake.h"
-#include "rt_core/response/travel.h"
+#include "config/scene/config_error.h"
+#include "rt_core/contact/tips/travel.h"
 
 namespace palpate {
 namespace {

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "config/compile.h"
-#include "config/config_error.h"
+#include "config/bake/compile.h"
+#include "config/scene/config_error.h"
 
 namespace palpate {
 namespace {

@@ -11,12 +11,12 @@
 #include <string>
 #include <thread>
 
-#include "hal/device_bus.h"
-#include "hal/device_node.h"
-#include "hal/loop.h"
-#include "hal/loopback.h"
-#include "hal/rt_linux.h"
-#include "hal/syscall_filter.h"
+#include "hal/bus/device_bus.h"
+#include "hal/bus/loopback.h"
+#include "hal/device/device_node.h"
+#include "hal/loop/loop.h"
+#include "hal/system/rt_linux.h"
+#include "hal/system/syscall_filter.h"
 #include "rt_core/telemetry.h"
 #include "tests/rt_guard/guard.h"
 #include "tests/support/image_file.h"

@@ -1,11 +1,11 @@
-// The series law as the tick evaluates it (rt_core/response/travel.h), for one sphere with given coefficients.
+// The series law as the tick evaluates it (rt_core/contact/tips/travel.h), for one sphere with given coefficients.
 #pragma once
 
 #include <vector>
 
 #include "config/fem/series_fit.h"
 #include "config/response/tip_bake.h"
-#include "rt_core/response/travel.h"
+#include "rt_core/contact/tips/travel.h"
 
 namespace palpate::fem {
 

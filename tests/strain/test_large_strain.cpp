@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "config/config_error.h"
+#include "config/scene/config_error.h"
 #include "tests/strain/strain_scenes.h"
 
 namespace palpate::fem {

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "config/config_error.h"
 #include "config/fem/series_fit.h"
+#include "config/scene/config_error.h"
 #include "tests/strain/plane_scenes.h"
 #include "tests/strain/run_time_law.h"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "config/compile.h"
+#include "config/bake/compile.h"
 #include "rt_core/image.h"
 #include "rt_core/tick.h"
 

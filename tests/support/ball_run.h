@@ -8,7 +8,7 @@
 #include <fstream>
 #include <string>
 
-#include "sim_host/run_session.h"
+#include "sim_host/run/run_session.h"
 
 namespace palpate {
 

@@ -11,12 +11,12 @@
 #include <string>
 #include <utility>
 
-#include "config/scene.h"
-#include "hal/device_bus.h"
-#include "hal/device_node.h"
-#include "hal/loopback.h"
-#include "sim_host/device_process.h"
-#include "sim_host/hand_path_file.h"
+#include "config/scene/scene.h"
+#include "hal/bus/device_bus.h"
+#include "hal/bus/loopback.h"
+#include "hal/device/device_node.h"
+#include "sim_host/run/device_process.h"
+#include "sim_host/run/hand_path_file.h"
 
 namespace palpate::test {
 

@@ -1,6 +1,6 @@
 #include "tests/support/simplex.h"
 
-#include "rt_core/collide/triangle.h"
+#include "rt_core/surface/triangle.h"
 
 namespace palpate::test {
 

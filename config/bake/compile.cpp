@@ -1,0 +1,473 @@
+#include "config/bake/compile.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "config/bake/bvh_build.h"
+#include "config/bake/fem_body.h"
+#include "config/bake/tool_points.h"
+#include "config/body/anchors.h"
+#include "config/body/body.h"
+#include "config/body/patches.h"
+#include "config/hand/hand_model.h"
+#include "config/hand/preshape.h"
+#include "config/scene/config_error.h"
+#include "config/scene/schema.h"
+#include "rt_core/skeleton/rbf_system.h"
+
+namespace palpate {
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+// Whether pieces press with whole tips instead of many tool points.
+bool has_tips(const SceneDesc& scene) {
+  return scene.contact.law == ContactLaw::kTool || scene.contact.law == ContactLaw::kTable;
+}
+
+// One bake: fills `image` and `report` step by step; later steps use what earlier ones wrote.
+class Compiler {
+ public:
+  Compiler(const SceneDesc& scene, const Progress& progress) : scene_(scene), progress_(progress) {}
+
+  CompileResult run() {
+    check_scene(scene_);
+    report_.name = image_.name = scene_.name;
+    add_laws();
+    if (is_nodal()) {
+      add_finite_elements();
+    } else {
+      add_surface();
+    }
+    add_tool();
+    add_articulation();
+    add_distances();
+    bake_response(scene_, image_, report_.response, report_.warnings);
+    add_device();
+    add_skeleton();
+    report_.array = array_bytes(image_);
+    CompileResult result{write_image(image_), std::move(report_)};
+    result.report.image_bytes = result.bytes.size();
+    return result;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& key, const std::string& what) const {
+    throw ConfigError(scene_.source.where(key) + ": " + what);
+  }
+  void warn(const std::string& text) { report_.warnings.push_back(text); }
+
+  bool is_nodal() const { return scene_.contact.backend == Backend::kNodal; }
+
+  // Contact on finite elements: what the response back-end would use is left out.
+  void add_nodal_laws() {
+    ModelParams& p = image_.params;
+    p.backend = static_cast<std::int32_t>(Backend::kNodal);
+    p.skeleton_law = static_cast<std::int32_t>(SkeletonLaw::kNone);
+    p.neighbourhood_law = static_cast<std::int32_t>(NeighbourhoodLaw::kNone);
+    p.coupling_law = static_cast<std::int32_t>(CouplingLaw::kNone);
+    p.nodal_solver = static_cast<std::int32_t>(scene_.nodal.solver);
+    p.nodal_sweeps = scene_.nodal.sweeps;
+    p.friction_sweeps = scene_.nodal.friction_sweeps;
+    p.nodal_carry = static_cast<std::int32_t>(scene_.nodal.carry);
+    p.wall_N_per_m = scene_.nodal.wall_N_per_m;
+    p.strain_limit = scene_.nodal.strain_limit;
+    p.proxy_speed_max_m_per_s = scene_.nodal.proxy_speed_max_m_per_s;
+    p.friction_mu_dynamic = scene_.friction.law == FrictionLaw::kCoulomb
+                                ? (is_auto(scene_.friction.mu_ref) ? 0.5 : std::min(scene_.friction.mu_ref, 10.0))
+                                : 0.0;
+  }
+
+  void add_finite_elements() {
+    const FemBody body = make_fem_body(scene_, report_.warnings, progress_);
+    mesh_ = body.condensed.surface;
+    const BvhBuild bvh = add_nodal_body(body.condensed, body.precision, scene_.source.where("body.shape"), image_);
+    image_.strain_gauge = body.strain_gauge;
+    ModelParams& p = image_.params;
+    const double edge = mean_edge_m(mesh_);
+    p.contact_margin_m = is_auto(scene_.nodal.margin_m) ? 0.25 * edge : scene_.nodal.margin_m;
+    // Singular where nodes are redundant; the table's own rounding sets how much regularisation it takes.
+    p.regularisation = body.precision == CompliancePrecision::kDouble ? 1e-6 : 1e-5;
+    cluster_distance_m_ = 3 * edge;
+    report_surface(bvh);
+    report_.fem_nodes = static_cast<std::int64_t>(body.mesh.node_m.size());
+    report_.fem_elements = static_cast<std::int64_t>(body.mesh.tet.size());
+    report_.fem_gauges = body.gauges;
+    report_.compliance_bytes =
+        image_.compliance_f32.size() * sizeof(float) + image_.compliance_f64.size() * sizeof(double);
+    report_.single_precision = body.precision == CompliancePrecision::kSingle;
+    report_.precision_error = body.precision_error;
+  }
+
+  void report_surface(const BvhBuild& bvh) {
+    report_.volume_m3 = signed_volume_m3(mesh_);
+    report_.surface_m2 = surface_area_m2(mesh_);
+    report_.mass_kg = report_.volume_m3 * scene_.material.density_kg_per_m3;
+    report_.vertices = static_cast<std::int64_t>(image_.vertex_m.size());
+    report_.triangles = static_cast<std::int64_t>(image_.triangle.size());
+    report_.bvh_nodes = static_cast<std::int32_t>(image_.bvh.size());
+    report_.bvh_depth = bvh.depth;
+    report_.traversal_stack = bvh.stack_high_water;
+  }
+
+  void add_laws() {
+    ModelParams& p = image_.params;
+    p.contact_weight = static_cast<std::int32_t>(scene_.contact.weight);
+    p.friction_law = static_cast<std::int32_t>(scene_.friction.law);
+    p.tangential_law = static_cast<std::int32_t>(scene_.friction.tangential);
+    p.skeleton_law = static_cast<std::int32_t>(scene_.skeleton.law);
+    p.shape_law = static_cast<std::int32_t>(scene_.shape.interpolation);
+    p.neighbourhood_law = static_cast<std::int32_t>(scene_.shape.neighbourhood);
+    p.coupling_law = static_cast<std::int32_t>(scene_.coupling.law);
+    p.rbf_tail = scene_.shape.tail;
+    p.youngs_modulus_Pa = scene_.material.youngs_modulus_Pa;
+    p.poisson_ratio = effective_poisson_ratio(scene_.material);
+    p.density_kg_per_m3 = scene_.material.density_kg_per_m3;
+    if (scene_.material.poisson_ratio > 0.5) warn("poisson_ratio 1.0 is impossible; 0.47 is used instead");
+
+    report_.contact = contact_coefficients(scene_);
+    p.k1_N_per_m = report_.contact.k1_N_per_m;
+    p.k3_N_per_m3 = report_.contact.k3_N_per_m3;
+    if (!(p.k1_N_per_m <= 1e9 && p.k3_N_per_m3 <= 1e15))
+      fail("contact.law", "gives k1 = " + number_text(p.k1_N_per_m) + " N/m, k3 = " + number_text(p.k3_N_per_m3) +
+                              " N/m3; allowed up to 1e9 and 1e15: soften the law");
+    p.max_depth_m = scene_.contact.max_depth_m;
+    p.neighbourhood_radius_m = scene_.shape.radius_m;
+
+    report_.friction = friction_coefficients(scene_.friction);
+    p.friction_k_N = report_.friction.k_N;
+    p.friction_beta = report_.friction.beta;
+    p.friction_slip_m = scene_.friction.slip_m;
+    p.friction_mu_dynamic = report_.friction.mu_dynamic;
+    if (is_nodal()) add_nodal_laws();
+  }
+
+  void add_surface() {
+    mesh_ = make_body(scene_, report_.warnings);
+    report_.volume_m3 = signed_volume_m3(mesh_);
+    report_.surface_m2 = surface_area_m2(mesh_);
+    report_.mass_kg = report_.volume_m3 * scene_.material.density_kg_per_m3;
+    image_.vertex_m = mesh_.vertex_m;
+    image_.vertex_normal = vertex_normals(mesh_);
+    image_.params.surface_size_m = bounds_of(mesh_).largest_m();
+    const std::vector<Corners> adjacent = triangle_adjacency(mesh_);
+    std::vector<Triangle> triangle(mesh_.triangle.size());
+    for (std::size_t t = 0; t < triangle.size(); ++t) {
+      std::copy(mesh_.triangle[t].begin(), mesh_.triangle[t].end(), triangle[t].vertex);
+      std::copy(adjacent[t].begin(), adjacent[t].end(), triangle[t].adjacent);
+    }
+    BvhBuild bvh = build_bvh(image_.vertex_m, triangle);
+    if (bvh.stack_high_water > kMaxTraversalStack)
+      fail("body", "the hierarchy needs " + std::to_string(bvh.stack_high_water) + " stack entries; allowed " +
+                       std::to_string(kMaxTraversalStack) + ": remesh the body");
+    image_.triangle = std::move(bvh.triangle);
+    image_.bvh = std::move(bvh.node);
+    report_.vertices = static_cast<std::int64_t>(image_.vertex_m.size());
+    report_.triangles = static_cast<std::int64_t>(image_.triangle.size());
+    report_.bvh_nodes = static_cast<std::int32_t>(image_.bvh.size());
+    report_.bvh_depth = bvh.depth;
+    report_.traversal_stack = bvh.stack_high_water;
+  }
+
+  // A finger part touches with a strip of its palm's side, not all around: as long as the capsule's core and a
+  // rounding, and about as wide as its radius (at a third of the radius deep the exact width is 1.5 radii, at the first
+  // touch 0).
+  static void narrow_finger_areas(Tool& tool) {
+    for (ToolPoint& point : tool.point) {
+      const ToolPiece& piece = tool.piece[static_cast<std::size_t>(point.piece)];
+      point.area_m2 = piece.margin_m * (2 * piece.half_extent_m[2] + piece.margin_m) / piece.point_count;
+    }
+  }
+
+  bool is_hand() const { return scene_.articulation == Articulation::kHand; }
+
+  void add_tool() {
+    if (is_hand()) hand_ = make_hand(scene_.hand);
+    Tool tool;
+    try {
+      tool = make_tool(is_hand() ? hand_.piece : scene_.piece);
+    } catch (const ConfigError& error) {
+      throw ConfigError(scene_.source.file + ": " + error.what());
+    }
+    if (is_hand()) narrow_finger_areas(tool);
+    double total = 0;
+    for (const ToolPoint& point : tool.point) total += point.area_m2;
+    report_.reference_area_m2 = is_auto(scene_.contact.reference_area_m2)
+                                    ? total / static_cast<double>(tool.point.size())
+                                    : scene_.contact.reference_area_m2;
+    for (ToolPoint& point : tool.point) point.weight = point.area_m2 / report_.reference_area_m2;
+    report_.tool_points = static_cast<std::int32_t>(tool.point.size());
+    report_.gap_m = tool.gap_m;
+    for (std::size_t i = 0; i < tool.piece.size(); ++i) {
+      const std::string label = "tool.piece[" + std::to_string(i) + "]";
+      const ToolPiece& piece = tool.piece[i];
+      if (piece.point_count == 0 || is_nodal() || has_tips(scene_)) continue;  // nodal: the exact pieces touch
+      if (piece.margin_m < scene_.contact.max_depth_m)
+        warn(label + ": its margin of " + number_text(1e3 * piece.margin_m) +
+             " mm is below contact.max_depth_mm; deeper than the margin the direction of contact can jump");
+      if (tool.gap_m[i] > piece.margin_m)
+        warn(label + ": its surface is up to " + number_text(std::round(1e5 * tool.gap_m[i]) / 100) +
+             " mm away from its tool points' spheres; add points or a larger margin");
+    }
+    image_.piece = std::move(tool.piece);
+    image_.tool_point = std::move(tool.point);
+    image_.hull_vertex_m = std::move(tool.hull_vertex_m);
+  }
+
+  void add_articulation() {
+    image_.params.articulation = static_cast<std::int32_t>(scene_.articulation);
+    image_.params.body_mass_kg = report_.mass_kg;
+    const Vec3 centre = volume_centre_m(mesh_);
+    image_.params.body_centre_x_m = centre.x;
+    image_.params.body_centre_y_m = centre.y;
+    image_.params.body_centre_z_m = centre.z;
+    if (scene_.articulation == Articulation::kGripper) add_gripper();
+    if (is_hand()) add_hand();
+    report_.joints = static_cast<std::int32_t>(image_.joint.size());
+  }
+
+  // Each finger part is a piece on its joint; what contacts of different fingers must not do is share a region.
+  void add_hand() {
+    const HandDesc& desc = scene_.hand;
+    image_.params.closing_rate_per_s = 1 / desc.closing_s;
+    image_.params.stop_force_N = desc.stop_force_N;
+    for (std::size_t i = 0; i < image_.piece.size(); ++i) {
+      image_.piece[i].joint = hand_.piece_joint[i];
+      image_.piece[i].group = hand_.piece_finger[i];
+      const std::int32_t part = image_.piece[i].part;
+      if (part <= kHandParts && !scene_.source.has("shape.radius_mm"))
+        image_.piece[i].neighbourhood_m = hand_parts()[static_cast<std::size_t>(part - 1)].neighbourhood_radius_m;
+    }
+    image_.joint = hand_.joint;
+    image_.grasp_w.push_back({desc.grasp_position_m, rotation_of(desc.grasp_rotation_rad)});
+    std::vector<double> stretched;
+    for (const Joint& joint : image_.joint) stretched.push_back(joint.open);
+    Model model;  // what the planner needs of it
+    model.vertex_m = image_.vertex_m;
+    model.vertex_normal = image_.vertex_normal;
+    model.triangle = image_.triangle;
+    model.bvh = image_.bvh;
+    model.piece = image_.piece;
+    model.tool_point = image_.tool_point;
+    model.joint = image_.joint;
+    const Preshape plan = plan_preshape(model, desc, stretched);
+    for (std::size_t j = 0; j < image_.joint.size(); ++j) {
+      image_.joint[j].open = plan.open[j];
+      image_.joint[j].closed = plan.closed[j];
+    }
+    report_.parts_touching = plan.parts_touching;
+    report_.clearance_m = plan.clearance_m;
+    if (!plan.warning.empty()) warn("hand: " + plan.warning);
+  }
+
+  // One sliding joint per jaw: closed where the pieces are described, open a slide away.
+  void add_gripper() {
+    image_.params.closing_rate_per_s = 1 / scene_.gripper.closing_s;
+    image_.params.stop_force_N = scene_.gripper.stop_force_N;
+    std::vector<Vec3> slides;
+    for (std::size_t i = 0; i < image_.piece.size(); ++i) {
+      const Vec3 slide = scene_.piece[i].slide_m;
+      const auto known = std::ranges::find(slides, slide) - slides.begin();
+      const bool moves = norm(slide) > 0;
+      if (moves && known == std::ssize(slides)) slides.push_back(slide);
+      image_.piece[i].joint = moves ? static_cast<std::int32_t>(known) : -1;
+      image_.piece[i].group = image_.piece[i].joint;
+    }
+    for (const Vec3 slide : slides) {
+      Joint joint{};
+      joint.before.orientation = rotation_between({0, 0, 1}, unit_or(slide, {0, 0, 1}));
+      if (slide.z < 0 && slide.x == 0 && slide.y == 0) joint.before.orientation = {0, 1, 0, 0};  // half a turn
+      joint.zero_inverse = {{}, conjugate(joint.before.orientation)};
+      joint.highest = joint.open = norm(slide);
+      joint.speed_max = joint.open / scene_.gripper.closing_s;
+      joint.sign = 1;
+      joint.parent = -1;
+      joint.kind = static_cast<std::int32_t>(JointKind::kSlide);
+      image_.joint.push_back(joint);
+    }
+  }
+
+  // Mean distance of a piece's tool points to their nearest neighbours; the smallest over the pieces; 0 without pairs.
+  double point_spacing_m() const {
+    double spacing = 0;
+    for (const ToolPiece& piece : image_.piece) {
+      if (piece.point_count < 2) continue;
+      const auto first = image_.tool_point.begin() + piece.first_point, last = first + piece.point_count;
+      double sum = 0;
+      for (auto a = first; a != last; ++a) {
+        double nearest = kHuge;
+        for (auto b = first; b != last; ++b)
+          if (a != b) nearest = std::min(nearest, norm(a->position_tool_m - b->position_tool_m));
+        sum += nearest;
+      }
+      const double mean = sum / piece.point_count;
+      spacing = spacing > 0 ? std::min(spacing, mean) : mean;
+    }
+    return spacing;
+  }
+
+  // Tips are regions of their own: regions split at 1.5 times the distance within which they join.
+  double tip_distance_m() const {
+    double nearest = 0.020;
+    for (std::size_t a = 0; a < image_.tool_point.size(); ++a)
+      for (std::size_t b = 0; b < a; ++b)
+        nearest = std::min(nearest, norm(image_.tool_point[a].position_tool_m - image_.tool_point[b].position_tool_m));
+    return clamp_to(0.5 * nearest, 1e-6, 1.0);
+  }
+
+  void add_distances() {
+    ModelParams& p = image_.params;
+    const double spacing = point_spacing_m();
+    p.cluster_distance_m = !is_auto(scene_.contact.cluster_distance_m) ? scene_.contact.cluster_distance_m
+                           : has_tips(scene_)                          ? tip_distance_m()
+                           : is_nodal()                                ? clamp_to(cluster_distance_m_, 1e-6, 1.0)
+                           : spacing > 0                               ? clamp_to(2 * spacing, 1e-6, 1.0)
+                                                                       : 0.010;
+    report_.cluster_distance_m = p.cluster_distance_m;
+    p.far_field_radius_m = is_auto(scene_.coupling.radius_m)
+                               ? clamp_to(square_root(report_.reference_area_m2 / kPi), 1e-6, 1.0)
+                               : scene_.coupling.radius_m;
+  }
+
+  // The coupling a scene states, refused above the bound; or its share of the bound.
+  double coupling(double stated, const StiffnessBound& bound, double lowest, const char* key, const char* unit) const {
+    const std::string reason = bound.by_damping ? "2b / (T + 2 tau)" : "2 f_c / Delta";
+    const double value = is_auto(stated) ? kCouplingShare * bound.value : stated;
+    if (!(value <= bound.value))
+      fail(key, number_text(stated) + " " + unit + " is above what the device admits, " + number_text(bound.value) +
+                    " " + unit + " = " + reason + "; lower it, or state a device with more damping or less delay");
+    if (!(value >= lowest))
+      fail(key, "the device admits only " + number_text(bound.value) + " " + unit + " = " + reason +
+                    "; it cannot render this scene: check its damping, friction, encoder step and delay");
+    return std::min(value, 1e6);
+  }
+
+  void add_device() {
+    ModelParams& p = image_.params;
+    const DeviceDesc& d = scene_.device;
+    report_.bound = admissible_stiffness(d.damping_Ns_per_m, d.friction_N, d.encoder_step_m, d.period_s, d.delay_s);
+    report_.rotational_bound =
+        admissible_stiffness(d.damping_Nms_per_rad, d.friction_Nm, d.encoder_step_rad, d.period_s, d.delay_s);
+    p.coupling_N_per_m = coupling(d.coupling_N_per_m, report_.bound, 1, "device.coupling_N_per_m", "N/m");
+    p.coupling_Nm_per_rad = std::min(
+        coupling(d.coupling_Nm_per_rad, report_.rotational_bound, 1e-6, "device.coupling_Nm_per_rad", "N m/rad"), 1e4);
+    report_.coupling_N_per_m = p.coupling_N_per_m;
+    report_.coupling_Nm_per_rad = p.coupling_Nm_per_rad;
+    p.period_s = d.period_s;
+    p.force_max_N = d.force_max_N;
+    p.torque_max_Nm = d.torque_max_Nm;
+    p.force_rate_max_N_per_s = d.force_rate_max_N_per_s;
+    p.ramp_in_s = d.ramp_in_s;
+    p.ramp_out_s = d.ramp_out_s;
+    p.silence_hold_ticks = d.silence_hold_ticks;
+    p.silence_passive_ticks = d.silence_passive_ticks;
+    p.silence_fault_ticks = d.silence_fault_ticks;
+    p.speed_max_m_per_s = d.speed_max_m_per_s;
+  }
+
+  void add_skeleton() {
+    if (is_nodal() || scene_.skeleton.law == SkeletonLaw::kNone) return;
+    report_.exact_anchors = scene_.skeleton.anchors == AnchorSource::kShape && has_exact_anchors(scene_.body.shape) &&
+                            scene_.body.axis != BodyAxis::kX;
+    std::vector<AnchorPoint> anchors = report_.exact_anchors ? exact_anchors(scene_.body) : mesh_anchors(mesh_);
+    limit_anchors(mesh_, scene_.skeleton.anchors_min, scene_.skeleton.anchors_max, anchors);
+    add_anchors(anchors);
+    if (anchors.empty()) return;
+    add_beams();
+    add_interpolation(anchors);
+  }
+
+  // Circular beams: their table, and the anchors' sections from it.
+  void add_beams() {
+    const SkeletonLaw law = scene_.skeleton.law;
+    if (law != SkeletonLaw::kCircular && law != SkeletonLaw::kCircularPaper) return;
+    const BeamTableRule rule{law == SkeletonLaw::kCircularPaper, scene_.skeleton.beam_width_m,
+                             scene_.skeleton.beam_thickness_m, scene_.skeleton.beam_allowance_m};
+    try {
+      report_.beams = build_beam_table(rule, report_.volume_m3, image_);
+    } catch (const ConfigError& error) {
+      fail("skeleton.beam_width_mm", error.what());
+    }
+    report_.baked_beams = true;
+    report_.section_radius_m = image_.anchor[0].section_radius_m;
+    if (scene_.coupling.law == CouplingLaw::kTemporal)
+      warn("coupling.law = \"temporal\" displaces no anchor of circular beams: they are baked at rest");
+    const BeamTableReport& beams = report_.beams;
+    for (std::size_t a = 0; a < beams.dropped_by_anchor.size(); ++a)
+      if (beams.dropped_by_anchor[a] == report_.vertices)
+        warn("anchor " + std::to_string(a) + " at (" + position_text(image_.anchor[a].position_m) +
+             ") mm: no beam reaches it inside the body; lower skeleton.beam_width_mm or remove the anchor "
+             "(skeleton.anchors_max)");
+    if (beams.lonely_vertices > 0)
+      warn(std::to_string(beams.lonely_vertices) +
+           " surface vertices have no beam at all; contacts there move no anchor: lower skeleton.beam_width_mm");
+  }
+  static std::string position_text(Vec3 p) {
+    return number_text(std::round(1e4 * p.x) / 10) + ", " + number_text(std::round(1e4 * p.y) / 10) + ", " +
+           number_text(std::round(1e4 * p.z) / 10);
+  }
+
+  // Sections: the beams share the body's volume, S = V / sum of lengths, lengths from the volume's centre; release
+  // length s = pi r (1 - nu^2) / 2, which gives the beam's end the compliance of a rigid circular foot on a half space.
+  void add_anchors(const std::vector<AnchorPoint>& anchors) {
+    const Vec3 centre = volume_centre_m(mesh_);
+    const double base = bounds_of(mesh_).lower_m.y + scene_.fixed.base_height_m;
+    double length = 0;
+    for (const AnchorPoint& a : anchors) length += norm(a.position_m - centre);
+    const double radius = is_auto(scene_.skeleton.section_radius_m)
+                              ? square_root(report_.volume_m3 / (length > 0 ? length : 1.0) / kPi)
+                              : scene_.skeleton.section_radius_m;
+    const double area = kPi * radius * radius, nu = image_.params.poisson_ratio;
+    for (const AnchorPoint& a : anchors) {
+      Anchor anchor{};
+      anchor.position_m = a.position_m;
+      anchor.normal = a.normal;
+      anchor.section_area_m2 = area;
+      anchor.section_inertia_m4 = 0.25 * area * radius * radius;
+      anchor.section_radius_m = radius;
+      anchor.release_length_m = 0.5 * kPi * radius * (1 - nu * nu);
+      anchor.fixed = a.position_m.y <= base ? 1 : 0;
+      image_.anchor.push_back(anchor);
+      report_.fixed_anchors += anchor.fixed;
+    }
+    report_.anchors = static_cast<std::int32_t>(anchors.size());
+    report_.section_radius_m = radius;
+    if (report_.fixed_anchors == 0)
+      warn("no anchor lies on the fixed base; raise body.fixed.base_height_mm if the body should rest on it");
+    if (report_.fixed_anchors == report_.anchors)
+      warn("every anchor is fixed, so the drawn shape moves only near contacts; lower body.fixed.base_height_mm");
+  }
+
+  void add_interpolation(const std::vector<AnchorPoint>& anchors) {
+    std::vector<Vec3> position;
+    for (const AnchorPoint& a : anchors) position.push_back(a.position_m);
+    const auto n = static_cast<std::size_t>(report_.anchors + rbf_tail_size(scene_.shape.tail));
+    image_.rbf_inverse.resize(n * n);
+    if (!invert_rbf_system(position, scene_.shape.tail, image_.rbf_inverse))
+      fail("shape.tail", "the interpolation through " + std::to_string(report_.anchors) +
+                             " anchors is singular (coinciding, or coplanar with tail = \"linear\"); use \"constant\" "
+                             "or raise skeleton.anchors_min");
+    if (scene_.shape.interpolation != ShapeLaw::kDisplacementAngle) return;
+    if (report_.anchors < 3)
+      fail("shape.interpolation", "\"displacement_angle\" needs 3 anchors and the body has " +
+                                      std::to_string(report_.anchors) + "; raise skeleton.anchors_min");
+    image_.patch = make_patches(mesh_.vertex_m, anchors, volume_centre_m(mesh_));
+  }
+
+  const SceneDesc& scene_;
+  const Progress& progress_;
+  double cluster_distance_m_ = 0;  // nodal
+  SurfaceMesh mesh_;
+  ImageContents image_;
+  HandTool hand_;
+  CompileReport report_;
+};
+
+}  // namespace
+
+CompileResult compile_scene(const SceneDesc& scene, const Progress& progress) {
+  return Compiler(scene, progress).run();
+}
+
+}  // namespace palpate

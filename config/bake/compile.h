@@ -1,0 +1,56 @@
+// The scene compiler: a checked scene description in, the bytes of an image and a report out.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "config/bake/contact_fit.h"
+#include "config/bake/image_writer.h"
+#include "config/beams/beam_table_build.h"
+#include "config/response/tip_bake.h"
+#include "config/scene/progress.h"
+#include "config/scene/scene.h"
+
+namespace palpate {
+
+struct CompileReport {
+  std::string name;
+  std::size_t image_bytes = 0;
+  std::int64_t vertices = 0, triangles = 0;
+  std::int64_t fem_nodes = 0, fem_elements = 0;  // 0: no finite elements
+  std::int32_t fem_gauges = 0;
+  std::size_t compliance_bytes = 0;
+  bool single_precision = false;
+  double precision_error = 0;  // relative, of a press's force, by rounding the table to single precision
+  double volume_m3 = 0, surface_m2 = 0, mass_kg = 0;
+  std::int32_t bvh_nodes = 0, bvh_depth = 0, traversal_stack = 0;
+  bool exact_anchors = false;
+  std::int32_t anchors = 0, fixed_anchors = 0;
+  double section_radius_m = 0;
+  ContactCoefficients contact;
+  double reference_area_m2 = 0, cluster_distance_m = 0;
+  FrictionCoefficients friction;
+  ResponseReport response;
+  StiffnessBound bound, rotational_bound;  // N/m, N m/rad
+  double coupling_N_per_m = 0, coupling_Nm_per_rad = 0;
+  std::int32_t tool_points = 0;
+  std::vector<double> gap_m;  // per piece: largest distance from its touching surface to the nearest tool sphere
+  bool baked_beams = false;   // beams holds something
+  BeamTableReport beams;
+  std::vector<ArrayBytes> array;                // of the image, in its order
+  std::int32_t joints = 0, parts_touching = 0;  // of a hand: parts in contact when closed
+  double clearance_m = 0;                       // of the open hand on its way in
+  std::vector<std::string> warnings;
+};
+// The report as lines for a terminal.
+std::string report_text(const CompileReport& report);
+
+struct CompileResult {
+  std::vector<std::byte> bytes;
+  CompileReport report;
+};
+// Same scene, same bytes: nothing of paths, time or addresses goes into them. Throws ConfigError.
+CompileResult compile_scene(const SceneDesc& scene, const Progress& progress = {});
+
+}  // namespace palpate

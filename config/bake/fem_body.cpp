@@ -1,0 +1,130 @@
+#include "config/bake/fem_body.h"
+#include "config/body/body.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "config/bake/compile.h"
+#include "config/fem/compliance_precision.h"
+#include "config/fem/strain_gauges.h"
+#include "config/fem/tet_io.h"
+#include "config/fem/tet_procedural.h"
+#include "config/scene/config_error.h"
+#include "config/scene/schema.h"
+
+namespace palpate {
+
+namespace {
+
+double edge_m(const SceneDesc& scene, Vec3 size_m) {
+  return is_auto(scene.fem.edge_m) ? std::max({size_m.x, size_m.y, size_m.z}) / 8 : scene.fem.edge_m;
+}
+
+TetMesh box_mesh(const SceneDesc& scene) {
+  const Vec3 size = scene.body.size_m;
+  const double edge = edge_m(scene, size);
+  const auto cells = [&](double side) { return std::max(1, static_cast<std::int32_t>(std::lround(side / edge))); };
+  return make_mirrored_box_tets(size, {cells(size.x), cells(size.y), cells(size.z)});
+}
+
+TetMesh file_mesh(const SceneDesc& scene, std::vector<std::string>& warnings) {
+  const std::filesystem::path file(scene.body.mesh);
+  const std::string path = file.is_absolute() ? scene.body.mesh : scene.source.directory + scene.body.mesh;
+  TetFile read;
+  try {
+    read = read_tet_mesh(path, scene.body.scale);
+  } catch (const ConfigError& error) {
+    throw ConfigError(scene.source.where("body.mesh") + ": " + error.what());
+  }
+  if (read.unused_nodes > 0)
+    warnings.push_back(path + ": dropped " + std::to_string(read.unused_nodes) + " nodes that no tetrahedron uses");
+  return read.mesh;
+}
+
+std::string text_mm(Vec3 p) {
+  return "(" + number_text(1e3 * p.x) + ", " + number_text(1e3 * p.y) + ", " + number_text(1e3 * p.z) + ")";
+}
+
+// Flags of the elements that the scene's zone keeps quadratic.
+std::vector<char> zone_elements(const SceneDesc& scene, const TetMesh& mesh, std::vector<std::string>& warnings) {
+  const Vec3 from = scene.fem.zone_from_m, to = scene.fem.zone_to_m;
+  const auto inside = [&](Vec3 x) {
+    return x.x >= from.x && x.x <= to.x && x.y >= from.y && x.y <= to.y && x.z >= from.z && x.z <= to.z;
+  };
+  const std::vector<char> quadratic = elements_near(mesh, inside, scene.fem.zone_layers);
+  const auto count = std::count(quadratic.begin(), quadratic.end(), 1);
+  const std::string where = scene.source.where("body.fem.zone_from_mm") + ": ";
+  if (count == 0) {
+    const Bounds body = bounds_of(surface_of(mesh).mesh);
+    throw ConfigError(where + "no corner of a tetrahedron lies in the zone; the body reaches from " +
+                      text_mm(body.lower_m) + " to " + text_mm(body.upper_m) +
+                      " mm: move the zone there, or make it larger than an element");
+  }
+  if (count == static_cast<std::ptrdiff_t>(quadratic.size()))
+    warnings.push_back(where + "the zone makes all elements quadratic; order = \"quadratic\" says so");
+  return quadratic;
+}
+
+Supports supports_of(const SceneDesc& scene, const TetMesh& mesh) {
+  if (scene.body.shape == BodyShape::kClip) return clip_supports(mesh);
+  double lowest = kHuge;
+  for (const Vec3& x : mesh.node_m) lowest = std::min(lowest, x.y);
+  const double base = lowest + scene.fixed.base_height_m + 1e-9;
+  return hold_where(mesh, [base](Vec3 x) { return x.y <= base; });
+}
+
+void add_gauges(const SceneDesc& scene, const LinearBody& solver, FemBody& body, const Progress& progress) {
+  if (scene.fem.strain_gauges == 0) return;
+  const StrainGauges gauges = place_strain_gauges(solver, body.mesh, body.condensed,
+                                                  static_cast<std::size_t>(scene.fem.strain_gauges), progress);
+  for (const double e : gauges.strain_1pN) body.strain_gauge.push_back(static_cast<float>(e));
+  body.gauges = static_cast<std::int32_t>(gauges.tet.size());
+}
+
+}  // namespace
+
+TetMesh make_tet_mesh(const SceneDesc& scene, std::vector<std::string>& warnings) {
+  TetMesh mesh;
+  switch (scene.body.shape) {
+    case BodyShape::kClip:
+      mesh = make_clip_mesh(scene.fem.level);
+      break;
+    case BodyShape::kBox:
+      mesh = box_mesh(scene);
+      break;
+    case BodyShape::kTets:
+      mesh = file_mesh(scene, warnings);
+      break;
+    default: {
+      const SurfaceMesh surface = make_body(scene, warnings);
+      mesh = tetrahedralise(surface, edge_m(scene, bounds_of(surface).size_m()), scene.source.where("body.shape"));
+    }
+  }
+  add_middle_nodes(mesh);
+  if (scene.fem.order == FemOrder::kLinear) keep_middle_nodes(mesh, std::vector<char>(mesh.tet.size(), 0));
+  if (scene.fem.order == FemOrder::kMixed) keep_middle_nodes(mesh, zone_elements(scene, mesh, warnings));
+  return mesh;
+}
+
+FemBody make_fem_body(const SceneDesc& scene, std::vector<std::string>& warnings, const Progress& progress) {
+  const std::string label = scene.source.where("body.shape");
+  FemBody body;
+  body.mesh = make_tet_mesh(scene, warnings);
+  const FemMaterial material{scene.material.youngs_modulus_Pa, scene.material.poisson_ratio};
+  const Supports supports = supports_of(scene, body.mesh);
+  const LinearBody solver = factor_for_table(body.mesh, material, supports, label, progress);
+  body.condensed = condense(solver, body.mesh, supports, label, progress);
+  const PrecisionReport report = single_precision_error(body.condensed);
+  body.precision_error = report.total_error;
+  const bool single = scene.fem.precision == FemPrecision::kSingle ||
+                      (scene.fem.precision == FemPrecision::kByError && single_precision_suffices(report));
+  body.precision = single ? CompliancePrecision::kSingle : CompliancePrecision::kDouble;
+  if (scene.fem.precision == FemPrecision::kSingle && !single_precision_suffices(report))
+    warnings.push_back(scene.source.where("body.fem.precision") +
+                       ": single precision changes forces by more than 1e-4; use \"auto\"");
+  add_gauges(scene, solver, body, progress);
+  return body;
+}
+
+}  // namespace palpate

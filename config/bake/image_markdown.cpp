@@ -1,0 +1,28 @@
+// The image format's tables, from the same macros that lay it out.
+#include "config/bake/image_writer.h"
+#include "config/scene/schema.h"
+#include "rt_core/image.h"
+
+namespace palpate {
+
+std::string image_markdown() {
+  std::string text = "### Sizes\nAll 64-bit signed.\n\n| size | lowest | highest |\n|---|---|---|\n";
+#define PALPATE_FIELD(name, lowest, highest) \
+  text += "| `" #name "` | " + std::to_string(lowest) + " | " + std::to_string(highest) + " |\n";
+  PALPATE_MODEL_SIZES(PALPATE_FIELD)
+#undef PALPATE_FIELD
+  text += "\n### Parameters\n\n| parameter | type | unit | range | meaning |\n|---|---|---|---|---|\n";
+#define PALPATE_FIELD(type, name, unit, lowest, highest, meaning)                                         \
+  text += "| `" #name "` | " #type " | " unit " | " + number_text(static_cast<double>(lowest)) + " to " + \
+          number_text(static_cast<double>(highest)) + " | " meaning " |\n";
+  PALPATE_MODEL_PARAMS(PALPATE_FIELD)
+#undef PALPATE_FIELD
+  text += "\n### Arrays\n\n| array | element | bytes each | count | frame | meaning |\n|---|---|---|---|---|---|\n";
+#define PALPATE_FIELD(type, name, count, frame, meaning) \
+  text += "| `" #name "` | " #type " | " + std::to_string(sizeof(type)) + " | " #count " | " frame " | " meaning " |\n";
+  PALPATE_MODEL_ARRAYS(PALPATE_FIELD)
+#undef PALPATE_FIELD
+  return text;
+}
+
+}  // namespace palpate

@@ -1,0 +1,21 @@
+// Reads surface meshes (OBJ, STL, PLY) through assimp.
+#pragma once
+
+#include <string>
+
+#include "config/body/mesh.h"
+
+namespace palpate {
+
+struct MeshFile {
+  SurfaceMesh mesh;
+  std::int32_t welded_vertices = 0;      // vertices of the file that coincided with another
+  std::int32_t collapsed_triangles = 0;  // triangles dropped because two of their corners were welded together
+};
+
+// Reads `path`, multiplies coordinates by `scale` (file units to metres), welds vertices closer than 1e-7 of the
+// extent (STL repeats every vertex) and drops vertices no triangle uses. Does not check the surface: see check_mesh.
+// Throws ConfigError naming the file and the reason: missing, unreadable, truncated, unknown extension, no triangles.
+MeshFile read_mesh(const std::string& path, double scale);
+
+}  // namespace palpate

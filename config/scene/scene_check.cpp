@@ -1,0 +1,414 @@
+// Rules between keys: what one key's value allows or forbids for another.
+#include <algorithm>
+#include <cmath>
+
+#include "config/fem/material.h"
+#include "config/scene/config_error.h"
+#include "config/scene/scene.h"
+#include "config/scene/schema.h"
+
+namespace palpate {
+
+namespace {
+
+[[noreturn]] void fail(const SceneDesc& scene, const std::string& key, const std::string& what) {
+  throw ConfigError(scene.source.where(key) + ": " + what);
+}
+
+// Refuses the keys of `all` that are present in the file but not in `used`: they would have no effect.
+void check_effect(const SceneDesc& scene, const std::string& table, std::initializer_list<const char*> all,
+                  std::initializer_list<const char*> used, const std::string& because) {
+  for (const char* key : all) {
+    const bool is_used = std::any_of(used.begin(), used.end(), [&](const char* u) { return std::string(u) == key; });
+    if (!is_used && scene.source.has(table + "." + key))
+      fail(scene, table + "." + key, "has no effect " + because + "; remove it");
+  }
+}
+
+void check_body_keys(const SceneDesc& scene) {
+  const auto only = [&](std::initializer_list<const char*> used, const char* shape) {
+    check_effect(scene, "body",
+                 {"half_axes_mm", "radius_mm", "height_mm", "size_mm", "width_mm", "wall_mm", "axis", "profile_mm",
+                  "mesh", "scale", "fix_orientation", "triangles"},
+                 used, std::string("with shape = \"") + shape + "\"");
+  };
+  switch (scene.body.shape) {
+    case BodyShape::kEllipsoid:
+      return only({"half_axes_mm", "triangles"}, "ellipsoid");
+    case BodyShape::kSphere:
+      return only({"radius_mm", "triangles"}, "sphere");
+    case BodyShape::kCylinder:
+      return only({"radius_mm", "height_mm", "axis", "triangles"}, "cylinder");
+    case BodyShape::kBox:
+      return only({"size_mm", "triangles"}, "box");
+    case BodyShape::kRevolution:
+      return only({"profile_mm", "triangles"}, "revolution");
+    case BodyShape::kHeart:
+      return only({"width_mm", "triangles"}, "heart");
+    case BodyShape::kMesh:
+      return only({"mesh", "scale", "fix_orientation"}, "mesh");
+    case BodyShape::kHalfShell:
+      return only({"half_axes_mm", "wall_mm", "triangles"}, "half_shell");
+    case BodyShape::kRing:
+      return only({"radius_mm", "wall_mm", "axis", "triangles"}, "ring");
+    case BodyShape::kHollowCylinder:
+      return only({"radius_mm", "height_mm", "wall_mm", "axis", "triangles"}, "hollow_cylinder");
+    case BodyShape::kClip:
+      return only({}, "clip");
+    case BodyShape::kTets:
+      return only({"mesh", "scale"}, "tets");
+  }
+}
+
+void check_profile(const SceneDesc& scene) {
+  const std::vector<ProfilePoint>& p = scene.body.profile;
+  const std::string key = "body.profile_mm";
+  if (p.size() < 2) fail(scene, key, std::to_string(p.size()) + " points; allowed at least 2, from bottom to top");
+  double widest = 0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const std::string point = "point " + std::to_string(i);
+    if (p[i].radius_m < 0) fail(scene, key, point + " has a negative radius; allowed 0 or more");
+    if (p[i].radius_m == 0 && i > 0 && i + 1 < p.size())
+      fail(scene, key, point + " touches the axis; only the first and last point may have radius 0");
+    if (i > 0 && p[i].radius_m == p[i - 1].radius_m && p[i].height_m == p[i - 1].height_m)
+      fail(scene, key, point + " repeats the one before; remove it");
+    widest = std::max(widest, p[i].radius_m);
+  }
+  if (!(widest >= 0.5e-3)) fail(scene, key, "the largest radius is below 0.5 mm; check the unit (mm)");
+  if (!(p.back().height_m > p.front().height_m))
+    fail(scene, key, "runs from top to bottom; list the points from bottom to top");
+}
+
+void check_axis(const SceneDesc& scene) {
+  const BodyAxis other = scene.body.shape == BodyShape::kCylinder ? BodyAxis::kZ : BodyAxis::kX;
+  if (scene.body.axis == other)
+    fail(scene, "body.axis",
+         other == BodyAxis::kZ ? "\"z\" is not for this shape; allowed \"y\" and \"x\""
+                               : "\"x\" is not for this shape; allowed \"y\" and \"z\"");
+}
+
+// A wall must leave a hole.
+void check_wall(const SceneDesc& scene) {
+  const BodyDesc& body = scene.body;
+  double room = kHuge;
+  if (body.shape == BodyShape::kHalfShell)
+    room = std::min({body.half_axes_m.x, body.half_axes_m.y, body.half_axes_m.z});
+  if (body.shape == BodyShape::kRing) room = body.radius_m;
+  if (body.shape == BodyShape::kHollowCylinder) room = body.radius_m;
+  if (!(body.wall_m <= 0.9 * room))
+    fail(scene, "body.wall_mm",
+         number_text(1e3 * body.wall_m) + " mm leaves no hole; allowed up to " + number_text(900 * room) +
+             " mm, 0.9 of the outer radius");
+}
+
+void check_skeleton(const SceneDesc& scene) {
+  const SkeletonLaw law = scene.skeleton.law;
+  if (law == SkeletonLaw::kCircular || law == SkeletonLaw::kCircularPaper)
+    return check_effect(scene, "skeleton", {"section_radius_mm"}, {},
+                        "with circular beams, whose section is beam_width_mm x beam_thickness_mm");
+  check_effect(scene, "skeleton", {"beam_width_mm", "beam_thickness_mm", "beam_allowance_mm"}, {},
+               "unless skeleton.law is \"circular\" or \"circular_paper\"");
+}
+
+void check_body(const SceneDesc& scene) {
+  check_body_keys(scene);
+  check_axis(scene);
+  check_wall(scene);
+  check_skeleton(scene);
+  if (scene.body.shape == BodyShape::kMesh && scene.body.mesh.empty())
+    fail(scene, "body.mesh", "missing; shape = \"mesh\" needs the path of an .obj, .stl or .ply file");
+  if (scene.body.shape == BodyShape::kTets && scene.body.mesh.empty())
+    fail(scene, "body.mesh", "missing; shape = \"tets\" needs the path of an .msh or .vtu file");
+  if (scene.body.shape == BodyShape::kRevolution) check_profile(scene);
+  const double nu = scene.material.poisson_ratio;
+  if (nu > 0.5 && !(scene.material.legacy_paper_material && nu == 1.0))
+    fail(scene, "body.material.poisson_ratio",
+         number_text(nu) +
+             " is thermodynamically impossible; allowed -0.999 to 0.5. For the printed 1.0 of Cui & Xiao 2008 set "
+             "body.material.legacy_paper_material = true");
+  if (scene.skeleton.anchors_min > scene.skeleton.anchors_max)
+    fail(scene, "skeleton.anchors_min",
+         std::to_string(scene.skeleton.anchors_min) +
+             " is larger than skeleton.anchors_max = " + std::to_string(scene.skeleton.anchors_max) + "; lower it");
+}
+
+// Tables that the baker presses itself: the layer, if the scene states one, is the body's own height.
+void check_presses(const SceneDesc& scene) {
+  for (const char* key : {"file", "smooth"})
+    if (scene.source.has(std::string("contact.table.") + key))
+      fail(scene, std::string("contact.table.") + key,
+           "has no effect with contact.table.source = \"fem\"; remove it or set source = \"file\"");
+  const double stated = scene.layer.thickness_m;
+  const double height = scene.body.shape == BodyShape::kBox ? scene.body.size_m.y : scene.body.height_m;
+  if (stated > 0 && scene.body.shape != BodyShape::kBox && scene.body.shape != BodyShape::kCylinder)
+    fail(scene, "contact.layer.thickness_mm",
+         "has no effect on this body with contact.table.source = \"fem\"; remove it");
+  const auto in_mm = [](double length_m) { return number_text(std::round(1e9 * length_m) / 1e6) + " mm"; };
+  if (stated > 0 && !(std::abs(stated - height) <= 1e-9))
+    fail(scene, "contact.layer.thickness_mm",
+         in_mm(stated) + ", but the body that contact.table.source = \"fem\" presses is " + in_mm(height) +
+             " high; make them equal");
+}
+
+void check_contact(const SceneDesc& scene) {
+  const auto unused_table = [&](const char* name, ContactLaw law, const char* law_name) {
+    if (scene.contact.law != law && scene.source.has(std::string("contact.") + name))
+      fail(scene, std::string("contact.") + name,
+           std::string("has no effect unless contact.law = \"") + law_name + "\"; set it or remove the table");
+  };
+  unused_table("duffing", ContactLaw::kDuffing, "duffing");
+  unused_table("cubic", ContactLaw::kCubic, "cubic");
+  unused_table("hertz", ContactLaw::kHertz, "hertz");
+  const bool pressed = scene.contact.law == ContactLaw::kTable && scene.table.source == TableSource::kFem;
+  for (const char* table : {"tip", "layer", "series", "pair", "pair[0]"})
+    if (!(pressed && std::string(table) == "layer")) unused_table(table, ContactLaw::kTool, "tool");
+  unused_table("table", ContactLaw::kTable, "table");
+  if (pressed)
+    check_presses(scene);
+  else if (scene.contact.law == ContactLaw::kTable && scene.table.file.empty())
+    fail(scene, "contact.table.file",
+         "missing; law = \"table\" needs the path of a CSV file, or contact.table.source = \"fem\"");
+  if (scene.contact.law == ContactLaw::kCubic && !(scene.cubic.k1_N_per_m > 0 || scene.cubic.k3_N_per_m3 > 0))
+    fail(scene, "contact.cubic", "k1_N_per_m and k3_N_per_m3 are both 0: no force; set at least one");
+  if (scene.contact.law == ContactLaw::kDuffing && !(scene.duffing.omega0 > 0 || scene.duffing.beta0sq_eps > 0))
+    fail(scene, "contact.duffing", "omega0 and beta0sq_eps are both 0: no force; set at least one");
+  if (!is_auto(scene.friction.mu_ref) && !is_auto(scene.friction.k))
+    fail(scene, "friction.k", "both k and mu_ref are given, and each determines the other; keep one");
+}
+
+// Laws of whole tips: what friction, coupling and the pieces must be.
+void check_tips(const SceneDesc& scene) {
+  if (scene.contact.law != ContactLaw::kTool && scene.contact.law != ContactLaw::kTable) return;
+  check_effect(scene, "contact", {"surface"}, {}, "with laws of whole tips, which always have the smooth surface");
+  const FrictionLaw friction = scene.friction.law;
+  if (friction == FrictionLaw::kReturnMap || friction == FrictionLaw::kPaper)
+    fail(scene, "friction.law",
+         "this law stretches the springs of tool points, which contact.law = \"tool\" and \"table\" do not have; "
+         "allowed none, mindlin, presliding, presliding_paper");
+  if (scene.coupling.law == CouplingLaw::kTemporal)
+    fail(scene, "coupling.law", "\"temporal\" needs tool points with cubic springs; allowed none, coupled");
+  for (std::size_t i = 0; i < scene.piece.size(); ++i) {
+    const PieceDesc& piece = scene.piece[i];
+    const std::string label = "tool.piece[" + std::to_string(i) + "]";
+    if (piece.points == 0) continue;
+    if (piece.shape == PieceShape::kBox || piece.shape == PieceShape::kHull)
+      fail(scene, label + ".shape",
+           "a box or hull has no tip law; allowed sphere, capsule, cylinder (flat punch), cone, or points = 0");
+    if (piece.shape == PieceShape::kCone && piece.touches != TouchingEnd::kPlusZ)
+      fail(scene, label + ".touches", "a cone presses with its apex; set touches = \"plus_z\"");
+    if ((piece.shape == PieceShape::kCylinder || piece.shape == PieceShape::kCapsule) &&
+        piece.touches == TouchingEnd::kAll)
+      fail(scene, label + ".touches", "this shape presses with one end; set touches = \"minus_z\" or \"plus_z\"");
+    if (piece.points > 1)
+      fail(scene, label + ".points", std::to_string(piece.points) + "; a tip has one point: allowed 0 or 1");
+  }
+  const auto pieces = static_cast<std::int32_t>(scene.piece.size());
+  for (std::size_t i = 0; i < scene.pair.size(); ++i) {
+    const PairDesc& pair = scene.pair[i];
+    if (!(pair.piece_a < pieces && pair.piece_b < pieces && pair.piece_a != pair.piece_b))
+      fail(scene, "contact.pair[" + std::to_string(i) + "].piece_a",
+           "a pair needs two different pieces; allowed 0 to " + std::to_string(pieces - 1));
+  }
+  if (scene.pair.size() > static_cast<std::size_t>(kMaxTipPairs))
+    fail(scene, "contact.pair",
+         std::to_string(scene.pair.size()) + " pairs; allowed up to " + std::to_string(kMaxTipPairs));
+}
+
+void check_friction(const SceneDesc& scene) {
+  const bool presliding =
+      scene.friction.law == FrictionLaw::kPresliding || scene.friction.law == FrictionLaw::kPreslidingPaper;
+  if (presliding)
+    for (const char* key : {"beta", "mu_dynamic", "k", "tangential", "reference_force_N"})
+      if (scene.source.has(std::string("friction.") + key))
+        fail(scene, std::string("friction.") + key,
+             "has no effect with the presliding laws, whose limit is mu_ref times the normal force; remove it");
+  if (scene.friction.law != FrictionLaw::kPreslidingPaper && scene.source.has("friction.slip_distance_mm"))
+    fail(scene, "friction.slip_distance_mm", "has no effect unless friction.law = \"presliding_paper\"; remove it");
+}
+
+// Order of the finite elements: where it is mixed, the zone of the quadratic ones.
+void check_order(const SceneDesc& scene) {
+  if (scene.fem.order != FemOrder::kMixed)
+    return check_effect(scene, "body.fem", {"zone_from_mm", "zone_to_mm", "zone_layers"}, {},
+                        "unless body.fem.order = \"mixed\"");
+  for (const char* key : {"body.fem.zone_from_mm", "body.fem.zone_to_mm"})
+    if (!scene.source.has(key))
+      fail(scene, key, "missing; order = \"mixed\" needs both corners of the box in which elements are quadratic");
+  const Vec3 from = scene.fem.zone_from_m, to = scene.fem.zone_to_m;
+  if (!(from.x < to.x && from.y < to.y && from.z < to.z))
+    fail(scene, "body.fem.zone_to_mm", "must be greater than zone_from_mm along x, y and z; exchange the corners");
+  if (scene.material.poisson_ratio > kMeanDilatationAbove)
+    fail(scene, "body.fem.order",
+         "\"mixed\" needs body.material.poisson_ratio of at most 0.49, where linear elements lock; use \"quadratic\"");
+}
+
+// The nodal back-end has no tool-point law, no skeleton and no shape functions; the others no finite elements.
+void check_backend(const SceneDesc& scene) {
+  const bool nodal = scene.contact.backend == Backend::kNodal;
+  const bool coulomb = scene.friction.law == FrictionLaw::kCoulomb;
+  const auto no_table = [&](const char* name, const char* because) {
+    if (scene.source.has(name)) fail(scene, name, std::string("has no effect ") + because + "; remove the table");
+  };
+  if (!nodal) {
+    no_table("body.fem", "unless contact.backend = \"nodal\"");
+    no_table("contact.nodal", "unless contact.backend = \"nodal\"");
+    if (coulomb) fail(scene, "friction.law", "\"coulomb\" needs contact.backend = \"nodal\"; use \"return_map\"");
+    return;
+  }
+  for (const char* table : {"skeleton", "shape", "coupling", "contact.duffing", "contact.cubic", "contact.hertz"})
+    no_table(table, "with contact.backend = \"nodal\"");
+  check_effect(scene, "contact", {"law", "weight", "surface", "reference_area_mm2", "max_depth_mm"}, {},
+               "with contact.backend = \"nodal\"");
+  if (scene.friction.law != FrictionLaw::kNone && !coulomb)
+    fail(scene, "friction.law", "is not available with contact.backend = \"nodal\"; use \"none\" or \"coulomb\"");
+  check_effect(scene, "friction", {"tangential", "reference_force_N", "k", "beta", "mu_dynamic"}, {},
+               "with law = \"coulomb\" or \"none\"");
+  if (scene.material.poisson_ratio >= 0.5)
+    fail(scene, "body.material.poisson_ratio",
+         number_text(scene.material.poisson_ratio) + "; finite elements need less than 0.5: use 0.4999 or below");
+  check_order(scene);
+  if (scene.nodal.solver == NodalSolver::kPivoting)
+    check_effect(scene, "contact.nodal", {"sweeps"}, {}, "with solver = \"pivoting\"");
+  if (scene.body.shape != BodyShape::kClip)
+    check_effect(scene, "body.fem", {"level"}, {}, "unless body.shape = \"clip\"");
+  const bool own_mesh = scene.body.shape == BodyShape::kClip || scene.body.shape == BodyShape::kTets;
+  if (own_mesh) check_effect(scene, "body.fem", {"edge_mm"}, {}, "with a body that brings its own mesh");
+  if (scene.body.shape == BodyShape::kClip) no_table("body.fixed", "for a clip, whose foot is held");
+  for (std::size_t i = 0; i < scene.piece.size(); ++i)
+    if (scene.piece[i].shape == PieceShape::kHull)
+      fail(scene, "tool.piece[" + std::to_string(i) + "].shape",
+           "\"hull\" is not available with contact.backend = \"nodal\"; use spheres, capsules, cylinders, cones or "
+           "boxes");
+}
+
+// Which dimensions each piece shape needs.
+struct Needs {
+  bool radius, length, size, vertices;
+};
+Needs needs_of(PieceShape shape) {
+  switch (shape) {
+    case PieceShape::kSphere:
+      return {true, false, false, false};
+    case PieceShape::kCapsule:
+    case PieceShape::kCylinder:
+    case PieceShape::kCone:
+      return {true, true, false, false};
+    case PieceShape::kBox:
+      return {false, false, true, false};
+    case PieceShape::kHull:
+      return {false, false, false, true};
+  }
+  return {};
+}
+
+void check_piece_keys(const SceneDesc& scene, const PieceDesc& piece, const std::string& label) {
+  const Needs needs = needs_of(piece.shape);
+  const auto check = [&](bool needed, bool given, const char* key) {
+    if (needed && !given) fail(scene, label + "." + key, "missing; this shape needs it");
+    if (!needed && given) fail(scene, label + "." + key, "has no effect for this shape; remove it");
+  };
+  check(needs.radius, !is_auto(piece.radius_m), "radius_mm");
+  check(needs.length, !is_auto(piece.length_m), "length_mm");
+  check(needs.size, !is_auto(piece.size_m.x), "size_mm");
+  check(needs.vertices, !piece.vertices_m.empty(), "vertices_mm");
+  const bool round = piece.shape == PieceShape::kSphere || piece.shape == PieceShape::kCapsule;
+  check(false, round && !is_auto(piece.margin_m), "margin_mm");
+}
+
+void check_piece_sizes(const SceneDesc& scene, const PieceDesc& piece, const std::string& label) {
+  double smallest_half = kHuge;
+  if (piece.shape == PieceShape::kCapsule && piece.length_m < 2 * piece.radius_m)
+    fail(scene, label + ".length_mm", "shorter than twice the radius; a capsule's length includes its round ends");
+  if (piece.shape == PieceShape::kCylinder) smallest_half = std::min(piece.radius_m, 0.5 * piece.length_m);
+  if (piece.shape == PieceShape::kBox) smallest_half = 0.5 * std::min({piece.size_m.x, piece.size_m.y, piece.size_m.z});
+  if (!is_auto(piece.margin_m) && !(piece.margin_m <= smallest_half))
+    fail(scene, label + ".margin_mm",
+         "larger than half the smallest side; allowed up to " + number_text(1e3 * smallest_half) + " mm");
+  if (piece.shape == PieceShape::kHull && piece.vertices_m.size() > 64)
+    fail(scene, label + ".vertices_mm", std::to_string(piece.vertices_m.size()) + " corners; allowed 1 to 64");
+  if (piece.shape == PieceShape::kBox && piece.points > 0 && piece.points < 8)
+    fail(scene, label + ".points",
+         std::to_string(piece.points) + "; a box needs its 8 corners: allowed 0 or 8 to " +
+             std::to_string(kMaxToolPoints));
+  const bool has_ends =
+      piece.shape == PieceShape::kCapsule || piece.shape == PieceShape::kCylinder || piece.shape == PieceShape::kCone;
+  if (piece.touches != TouchingEnd::kAll && !has_ends)
+    fail(scene, label + ".touches", "this shape has no end face; remove it");
+}
+
+void check_tool(const SceneDesc& scene) {
+  const auto count = static_cast<std::int32_t>(scene.piece.size());
+  if (scene.articulation == Articulation::kHand) {
+    if (count > 0) fail(scene, "tool.piece", "the hand is made of its own pieces; remove [[tool.piece]] or [hand]");
+    return;
+  }
+  if (count < 1 || count > kMaxPieces)
+    fail(scene, "tool.piece",
+         std::to_string(count) + " pieces; allowed 1 to " + std::to_string(kMaxPieces) + ": write [[tool.piece]]");
+  std::int32_t points = 0;
+  for (std::int32_t i = 0; i < count; ++i) {
+    const std::string label = "tool.piece[" + std::to_string(i) + "]";
+    const PieceDesc& piece = scene.piece[static_cast<std::size_t>(i)];
+    check_piece_keys(scene, piece, label);
+    check_piece_sizes(scene, piece, label);
+    points += piece.points;
+  }
+  if (points < 1 || points > kMaxToolPoints)
+    fail(scene, "tool.piece",
+         std::to_string(points) + " tool points in all; allowed 1 to " + std::to_string(kMaxToolPoints) +
+             ": change the pieces' points");
+}
+
+void check_articulation(const SceneDesc& scene) {
+  std::vector<Vec3> slides;
+  for (std::size_t i = 0; i < scene.piece.size(); ++i) {
+    const Vec3 slide = scene.piece[i].slide_m;
+    if (!(norm(slide) > 0)) continue;
+    const std::string key = "tool.piece[" + std::to_string(i) + "].slide_mm";
+    if (scene.articulation != Articulation::kGripper)
+      fail(scene, key, "has no effect without a [gripper] table; add [gripper] or remove it");
+    if (std::ranges::find(slides, slide) == slides.end()) slides.push_back(slide);
+    if (slides.size() > kMaxJoints)
+      fail(scene, key,
+           "one jaw too many; allowed " + std::to_string(kMaxJoints) +
+               ": give pieces of one jaw the same "
+               "slide_mm");
+  }
+  if (scene.source.has("hand") && scene.source.has("gripper"))
+    fail(scene, "gripper", "a tool is a hand or a gripper; remove [hand] or [gripper]");
+  if (scene.articulation == Articulation::kGripper && slides.empty())
+    fail(scene, "gripper", "no piece moves; give the pieces of at least one jaw a slide_mm");
+  for (std::size_t i = 0; i < scene.path.point.size(); ++i)
+    if (scene.articulation == Articulation::kRigid && !scene.path.point[i].closing.empty())
+      fail(scene, "path.point[" + std::to_string(i) + "].closing", "has no effect with a rigid tool; remove it");
+}
+
+void check_device_and_path(const SceneDesc& scene) {
+  const DeviceDesc& d = scene.device;
+  if (!(d.silence_hold_ticks <= d.silence_passive_ticks && d.silence_passive_ticks < d.silence_fault_ticks))
+    fail(scene, "device.silence_fault_ticks",
+         "must be above silence_passive_ticks, and that not below "
+         "silence_hold_ticks");
+  for (std::size_t i = 0; i < scene.path.point.size(); ++i) {
+    const std::string key = "path.point[" + std::to_string(i) + "].time_s";
+    const double time = scene.path.point[i].time_s;
+    if (i == 0 && time != 0) fail(scene, key, "the first point must be at time 0");
+    if (i > 0 && !(time > scene.path.point[i - 1].time_s))
+      fail(scene, key, number_text(time) + " is not later than the point before; times must increase");
+  }
+}
+
+}  // namespace
+
+void check_scene(const SceneDesc& scene) {
+  check_body(scene);
+  check_contact(scene);
+  check_friction(scene);
+  check_backend(scene);
+  check_tips(scene);
+  check_tool(scene);
+  check_articulation(scene);
+  check_device_and_path(scene);
+}
+
+}  // namespace palpate

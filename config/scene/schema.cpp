@@ -1,0 +1,446 @@
+#include "config/scene/schema.h"
+
+namespace palpate {
+
+namespace {
+
+template <class C, class T>
+C class_of(T C::*);
+template <class C, class T>
+T type_of(T C::*);
+
+template <auto member>
+void* field(void* table) {
+  return &(static_cast<decltype(class_of(member))*>(table)->*member);
+}
+template <auto member>
+void set(void* table, std::int32_t value) {
+  static_cast<decltype(class_of(member))*>(table)->*member = static_cast<decltype(type_of(member))>(value);
+}
+template <auto member>
+std::int32_t get(const void* table) {
+  return static_cast<std::int32_t>(static_cast<const decltype(class_of(member))*>(table)->*member);
+}
+
+template <auto member>
+constexpr KeySpec number(const char* key, double lowest, double highest, double scale, const char* meaning,
+                         bool required = false) {
+  return {key, KeyKind::kNumber, lowest, highest, scale, required, "", meaning, field<member>, nullptr, nullptr};
+}
+template <auto member>
+constexpr KeySpec number_or_auto(const char* key, double lowest, double highest, double scale, const char* meaning) {
+  return {key, KeyKind::kNumberOrAuto, lowest, highest, scale, false, "", meaning, field<member>, nullptr, nullptr};
+}
+template <auto member>
+constexpr KeySpec integer(const char* key, double lowest, double highest, const char* meaning) {
+  return {key, KeyKind::kInteger, lowest, highest, 1, false, "", meaning, field<member>, nullptr, nullptr};
+}
+template <auto member>
+constexpr KeySpec boolean(const char* key, const char* meaning) {
+  return {key, KeyKind::kBool, 0, 1, 1, false, "", meaning, field<member>, nullptr, nullptr};
+}
+// For text, `highest` is the greatest length.
+template <auto member>
+constexpr KeySpec text(const char* key, double longest, const char* meaning, bool required = false) {
+  return {key, KeyKind::kText, 1, longest, 1, required, "", meaning, field<member>, nullptr, nullptr};
+}
+template <auto member>
+constexpr KeySpec choice(const char* key, const char* choices, const char* meaning, bool required = false) {
+  return {key, KeyKind::kChoice, 0, 0, 1, required, choices, meaning, nullptr, set<member>, get<member>};
+}
+template <auto member>
+constexpr KeySpec list(KeyKind kind, const char* key, double lowest, double highest, double scale,
+                       const char* meaning) {
+  return {key, kind, lowest, highest, scale, false, "", meaning, field<member>, nullptr, nullptr};
+}
+
+constexpr double kMilli = 1e-3;
+constexpr double kMilliSquared = 1e-6;
+constexpr double kDegree = 3.14159265358979323846 / 180.0;
+constexpr KeyKind kVec3 = KeyKind::kVec3;
+
+const KeySpec kTop[] = {
+    text<&SceneDesc::name>("name", kNameBytes - 1, "name stored in the image and shown everywhere", true),
+};
+
+const KeySpec kBody[] = {
+    choice<&BodyDesc::shape>(
+        "shape", "ellipsoid|sphere|cylinder|box|revolution|heart|mesh|half_shell|ring|hollow_cylinder|clip|tets",
+        "kind of body; clip: a pipe clip of 10 mm, open towards +y (Duriez et al. 2003); tets: a "
+        "tetrahedral mesh from a file",
+        true),
+    list<&BodyDesc::half_axes_m>(kVec3, "half_axes_mm", 1, 5000, kMilli,
+                                 "ellipsoid, half_shell: half axes along x, y, z; a half shell stands on its rim"),
+    number<&BodyDesc::radius_m>("radius_mm", 1, 5000, kMilli,
+                                "sphere, cylinder: radius; ring, hollow_cylinder: outer radius"),
+    number<&BodyDesc::height_m>("height_mm", 1, 10000, kMilli, "cylinder, hollow_cylinder: length along the axis"),
+    list<&BodyDesc::size_m>(kVec3, "size_mm", 1, 10000, kMilli, "box: sides along x, y, z"),
+    number<&BodyDesc::width_m>("width_mm", 1, 10000, kMilli, "heart: width along x; it is about as high"),
+    number<&BodyDesc::wall_m>("wall_mm", 0.1, 5000, kMilli,
+                              "half_shell, hollow_cylinder: wall; ring: thickness of its round section"),
+    choice<&BodyDesc::axis>(
+        "axis", "y|x|z",
+        "cylinder: standing (y) or lying along x; ring, hollow_cylinder: lying flat or standing (y), or "
+        "the axis along z"),
+    list<&BodyDesc::profile>(KeyKind::kPairs, "profile_mm", -10000, 10000, kMilli,
+                             "revolution: points [radius, height] from bottom to top; turns above 35 degrees stay "
+                             "sharp, the rest is smoothed; open ends are closed by discs"),
+    text<&BodyDesc::mesh>(
+        "mesh", 4096, "mesh: file (.obj, .stl, .ply); tets: file (.msh, .vtu); relative to the scene file; y is up"),
+    number<&BodyDesc::scale>("scale", 1e-9, 1e6, 1, "mesh, tets: metres per unit of the file"),
+    boolean<&BodyDesc::fix_orientation>("fix_orientation", "mesh: turn triangles that face inwards"),
+    integer<&BodyDesc::triangles>("triangles", kFewestTriangles, kMostTriangles,
+                                  "all but mesh: about this many triangles; the tick's cost hardly depends on it"),
+};
+const KeySpec kFem[] = {
+    choice<&FemDesc::order>("order", "quadratic|linear|mixed",
+                            "quadratic: 10-node tetrahedra; linear: 4-node ones, 12 to 22 % too stiff in bending; "
+                            "mixed: quadratic in a zone, linear elsewhere, with transition elements between"),
+    list<&FemDesc::zone_from_m>(kVec3, "zone_from_mm", -10000, 10000, kMilli,
+                                "mixed: lowest corner of the box, in the world, where elements are quadratic"),
+    list<&FemDesc::zone_to_m>(kVec3, "zone_to_mm", -10000, 10000, kMilli, "mixed: its highest corner"),
+    integer<&FemDesc::zone_layers>("zone_layers", 1, 10,
+                                   "mixed: layers of quadratic elements around the nodes in the box"),
+    number_or_auto<&FemDesc::edge_m>("edge_mm", 0.01, 1000, kMilli,
+                                     "about this long an edge of a tetrahedron; auto: an eighth of the largest extent; "
+                                     "box: an even number along x or z makes its mesh symmetric there; "
+                                     "clip, tets: the mesh has its own"),
+    integer<&FemDesc::level>("level", 1, 3, "clip: fineness of its mesh; 1 has 717 nodes"),
+    choice<&FemDesc::precision>("precision", "auto|single|double",
+                                "numbers of the compliance table; auto: single where its force error is below 1e-4"),
+    integer<&FemDesc::strain_gauges>("strain_gauges", 0, kMaxStrainGauges, "points whose strain is watched every tick"),
+};
+const KeySpec kMaterial[] = {
+    number<&MaterialDesc::youngs_modulus_Pa>("youngs_modulus_Pa", 1, 1e13, 1, "Young's modulus E"),
+    number<&MaterialDesc::poisson_ratio>("poisson_ratio", -0.999, 1, 1,
+                                         "Poisson's ratio nu; at most 0.5 (larger is thermodynamically impossible)"),
+    number<&MaterialDesc::density_kg_per_m3>("density_kg_per_m3", 1, 1e5, 1, "density rho"),
+    boolean<&MaterialDesc::legacy_paper_material>(
+        "legacy_paper_material", "accept the nu = 1.0 printed by Cui & Xiao 2008 and use 0.47 instead, with a warning"),
+};
+const KeySpec kFixed[] = {
+    number<&FixedDesc::base_height_m>("base_height_mm", 0, 10000, kMilli,
+                                      "everything of the body up to this height above its lowest point is clamped"),
+};
+const KeySpec kSkeleton[] = {
+    choice<&SkeletonDesc::law>("law", "none|stiffness|paper|circular|circular_paper",
+                               "beam skeleton: stiffness = sum of straight beams' stiffnesses; paper = the ratios of "
+                               "Luo & Xiao 2006, eqs. 6-8; circular = circular beams where straight ones would leave "
+                               "the body (objects with holes), sum of stiffnesses; circular_paper = the circular beams "
+                               "and force ratios as printed in 2009 (docs/models_circular_beams.md)"),
+    choice<&SkeletonDesc::anchors>("anchors", "auto|mesh",
+                                   "auto: exact curvature-extremal points of the shape, from the mesh where the shape "
+                                   "is a mesh or a heart; mesh: always from the mesh"),
+    integer<&SkeletonDesc::anchors_min>("anchors_min", 0, kMaxAnchors, "add extreme points until there are this many"),
+    integer<&SkeletonDesc::anchors_max>("anchors_max", 1, kMaxAnchors, "keep the most persistent"),
+    number_or_auto<&SkeletonDesc::section_radius_m>(
+        "section_radius_mm", 0.01, 5000, kMilli,
+        "radius of the beams' circular section; auto: the beams share the body's volume, S = V / sum of lengths"),
+    number_or_auto<&SkeletonDesc::beam_width_m>(
+        "beam_width_mm", 0.01, 5000, kMilli,
+        "circular: width of the beams in their plane, below the thinnest wall; auto: a quarter of it"),
+    number_or_auto<&SkeletonDesc::beam_thickness_m>(
+        "beam_thickness_mm", 0.01, 5000, kMilli,
+        "circular: thickness across the plane; auto: the beams share the body's volume"),
+    number<&SkeletonDesc::beam_allowance_m>("beam_allowance_mm", 0, 1000, kMilli,
+                                            "circular: epsilon, added to the radius of curvature of the surface"),
+};
+const KeySpec kContact[] = {
+    choice<&ContactDesc::law>("law", "duffing|cubic|hertz|tool|table",
+                              "force per unit weight of each tool point, f = k1 D + k3 D^3: from Duffing parameters, "
+                              "given directly, or fitted to Hertz' contact; or the response of the whole tip: of the "
+                              "piece's own shape (tool), or curves of presses (table)"),
+    choice<&ContactDesc::weight>("weight", "winkler|area|paper",
+                                 "weight of a tool point: area / reference area (force continuous as points enter and "
+                                 "leave), share of the area in contact, or 1/n"),
+    choice<&ContactDesc::surface>("surface", "facets|smooth",
+                                  "what a tool point touches: the triangles, whose edges are felt by a tool of few "
+                                  "points; or the smooth surface they stand for, about 1,400 instructions more a "
+                                  "point. laws tool and table: always smooth"),
+    number_or_auto<&ContactDesc::reference_area_m2>(
+        "reference_area_mm2", 1e-3, 1e8, kMilliSquared,
+        "winkler: contact area over which the law holds as stated; auto: mean area of a tool point"),
+    number<&ContactDesc::max_depth_m>("max_depth_mm", 0.001, 1000, kMilli,
+                                      "deepest penetration of the law; beyond it the law continues by its tangent"),
+    number_or_auto<&ContactDesc::cluster_distance_m>("cluster_distance_mm", 0.001, 1000, kMilli,
+                                                     "contact points nearer than this are one region; auto: twice the "
+                                                     "spacing of the tool points; nodal: three edges"),
+    choice<&ContactDesc::backend>(
+        "backend", "response|nodal",
+        "response: tool points with a force law each; nodal: finite elements against the tool's "
+        "exact pieces (docs/models_contact_lcp.md)"),
+};
+const KeySpec kNodal[] = {
+    choice<&NodalDesc::solver>("solver", "pivoting|gauss_seidel",
+                               "normal forces: exact, by block principal pivoting; or approximate, by sweeps"),
+    integer<&NodalDesc::sweeps>("sweeps", 1, 100, "gauss_seidel: sweeps per tick"),
+    integer<&NodalDesc::friction_sweeps>("friction_sweeps", 1, 20,
+                                         "sweeps per tick of the problem with friction; each costs about 30,000 "
+                                         "instructions for 45 contacts"),
+    choice<&NodalDesc::carry>("carry", "far_field|rest|turned",
+                              "where gaps and normals are taken: on the surface carried by its far field, at rest, or "
+                              "carried by the far field's finite rotation (clips: 4.6 % instead of 8.8 %)"),
+    number_or_auto<&NodalDesc::margin_m>("margin_mm", 0.001, 100, kMilli,
+                                         "nodes nearer to the tool take part; auto: a quarter of a mean edge"),
+    number<&NodalDesc::wall_N_per_m>("wall_N_per_m", 1, 1e9, 1, "stiffness of held nodes"),
+    number<&NodalDesc::strain_limit>("strain_limit", 1e-6, 10, 1, "strain above which a tick says so"),
+    number<&NodalDesc::proxy_speed_max_m_per_s>("proxy_speed_max_m_per_s", 0.001, 100, 1,
+                                                "the tool in contact moves no faster than the handle and this: what a "
+                                                "snap may jump in a tick"),
+};
+const KeySpec kDuffing[] = {
+    number<&DuffingDesc::mass_kg>("mass_kg", 1e-6, 1e6, 1, "m; with the two below in mm and N: k1 = m omega0^2 N/mm"),
+    number<&DuffingDesc::omega0>("omega0", 0, 1e3, 1, "omega0 of Luo & Xiao 2006"),
+    number<&DuffingDesc::beta0sq_eps>("beta0sq_eps", 0, 1e6, 1,
+                                      "beta0^2 epsilon; k3 = coefficient m beta0^2 eps N/mm^3"),
+    choice<&DuffingDesc::coefficient>("coefficient", "static|paper",
+                                      "static: 1, the equilibrium under a constant force; paper: 3/4, the mean over an "
+                                      "oscillation (Luo & Xiao 2006, eq. 3)"),
+};
+const KeySpec kCubic[] = {
+    number<&CubicDesc::k1_N_per_m>("k1_N_per_m", 0, 1e9, 1, "linear coefficient"),
+    number<&CubicDesc::k3_N_per_m3>("k3_N_per_m3", 0, 1e15, 1, "cubic coefficient"),
+};
+const KeySpec kHertz[] = {
+    number<&HertzDesc::tool_radius_m>("tool_radius_mm", 0.01, 1e4, kMilli, "radius of the spherical tool"),
+    number<&HertzDesc::fit_depth_m>("fit_depth_mm", 0.001, 1000, kMilli,
+                                    "depth at which value and slope match; within 6.8 % of Hertz up to 1.25 times it"),
+};
+const KeySpec kTip[] = {
+    number_or_auto<&TipLawDesc::radius_m>("radius_mm", 0.001, 1e4, kMilli,
+                                          "radius of sphere or flat punch; auto: the piece's"),
+    number_or_auto<&TipLawDesc::half_angle_rad>("half_angle_deg", 1, 89, kDegree,
+                                                "cone: angle between axis and side; auto: the piece's"),
+    choice<&TipLawDesc::sphere>("sphere", "exact|parabola",
+                                "shape of the sphere: true, or the parabola of Hertz (1882) and of the paper"),
+    number_or_auto<&TipLawDesc::body_radius_1_m>("body_radius_1_mm", -1e5, 1e5, kMilli,
+                                                 "sphere: principal radius of the body where it is touched; 0 flat, "
+                                                 "negative hollow; auto: of a cylinder, sphere or box"),
+    number_or_auto<&TipLawDesc::body_radius_2_m>("body_radius_2_mm", -1e5, 1e5, kMilli, "the other principal radius"),
+};
+const KeySpec kLayer[] = {
+    number<&LayerDesc::thickness_m>("thickness_mm", 0, 1e4, kMilli,
+                                    "the body is a layer this thick on a rigid base; 0: as thick as it needs to be"),
+    choice<&LayerDesc::base>("base", "bonded|slip", "how the layer is held by its base"),
+};
+const KeySpec kSeries[] = {
+    number_or_auto<&SeriesDesc::c0_m_per_N>(
+        "c0_mm_per_N", -1e3, 1e3, kMilli,
+        "far-field compliance c0; auto: from a large-strain press by finite elements (bodies of revolution)"),
+    number_or_auto<&SeriesDesc::c1_m_per_N2>("c1_mm_per_N2", -1e3, 1e3, kMilli,
+                                             "its change with the force, c1; auto: from one large-strain press"),
+};
+const KeySpec kPair[] = {
+    integer<&PairDesc::piece_a>("piece_a", 0, kMaxPieces - 1, "a tool piece, counted from 0"),
+    integer<&PairDesc::piece_b>("piece_b", 0, kMaxPieces - 1, "another"),
+    number_or_auto<&PairDesc::c_m_per_N>(
+        "c_mm_per_N", -1e3, 1e3, kMilli,
+        "travel of one per newton on the other; auto: from presses by finite elements (standing cylinders, boxes)"),
+    number_or_auto<&PairDesc::h_ab_m_per_N2>(
+        "h_ab_mm_per_N2", -1e3, 1e3, kMilli,
+        "second order: energy h_ab F_a^2 F_b / 2 + h_ba F_b^2 F_a / 2; auto: likewise"),
+    number_or_auto<&PairDesc::h_ba_m_per_N2>("h_ba_mm_per_N2", -1e3, 1e3, kMilli,
+                                             "second order, the other way round; auto: likewise"),
+};
+const KeySpec kTable[] = {
+    choice<&TableDesc::source>("source", "file|fem",
+                               "a CSV of measured presses, or presses by finite elements when the scene is baked "
+                               "(standing cylinder, box, sphere, ellipsoid of revolution about y)"),
+    text<&TableDesc::file>(
+        "file", 4096,
+        "CSV of presses, relative to the scene file: depth_mm,force_N, or with x_mm,y_mm,z_mm before "
+        "them for presses at several places; each starts at 0,0"),
+    boolean<&TableDesc::smooth>("smooth", "pool rows whose force falls instead of refusing them"),
+};
+const KeySpec kFriction[] = {
+    choice<&FrictionDesc::law>("law", "none|return_map|paper|mindlin|coulomb|presliding|presliding_paper",
+                               "friction law; coulomb: nodal only, with the coefficient mu_ref"),
+    choice<&FrictionDesc::tangential>("tangential", "separable|radial",
+                                      "sticking force from each depth component by itself, or from the whole depth"),
+    number_or_auto<&FrictionDesc::mu_ref>("mu_ref", 0, 100, 1,
+                                          "static friction coefficient at the reference force, K = mu_ref F_ref^(1 - "
+                                          "beta); auto: 0.5; not with k"),
+    number<&FrictionDesc::reference_force_N>("reference_force_N", 1e-3, 1e4, 1, "F_ref"),
+    number_or_auto<&FrictionDesc::k>("k", 0, 1e6, 1,
+                                     "K of the static limit K F^beta, in N^(1 - beta); not with mu_ref"),
+    number<&FrictionDesc::beta>("beta", 0.5, 1, 1, "exponent of the static limit; 2/3 for truly elastic contact"),
+    number_or_auto<&FrictionDesc::mu_dynamic>("mu_dynamic", 0, 10, 1,
+                                              "sliding coefficient; auto: 0.8 of the static one at F_ref"),
+    number<&FrictionDesc::slip_m>("slip_distance_mm", 1e-6, 100, kMilli,
+                                  "presliding_paper: displacement at which the contact slides"),
+};
+const KeySpec kShape[] = {
+    choice<&ShapeDesc::interpolation>("interpolation", "rbf|displacement_angle",
+                                      "how anchor displacements spread over the surface"),
+    choice<&ShapeDesc::tail>("tail", "constant|linear", "polynomial of the rbf; linear needs 4 anchors not in a plane"),
+    choice<&ShapeDesc::neighbourhood>("neighbourhood", "none|log|log_c1|punch", "dent around a contact"),
+    number<&ShapeDesc::radius_m>("radius_mm", 0.001, 1000, kMilli,
+                                 "radius R of the dent; a hand whose scene leaves it out takes that of each finger "
+                                 "part from Cui & Xiao 2008, Table I"),
+};
+const KeySpec kCoupling[] = {
+    choice<&CouplingDesc::law>("law", "none|coupled|temporal",
+                               "how contact regions influence one another: not; by a conservative far field; in the "
+                               "order they appeared (Luo & Xiao 2006)"),
+    number_or_auto<&CouplingDesc::radius_m>("radius_mm", 0.001, 1000, kMilli,
+                                            "core radius of the far field; auto: sqrt(reference area / pi)"),
+};
+const KeySpec kPiece[] = {
+    choice<&PieceDesc::shape>("shape", "sphere|capsule|cylinder|cone|box|hull",
+                              "convex piece; its axis is its z axis; a cone's apex is at +z", true),
+    choice<&PieceDesc::touches>("touches", "all|plus_z|minus_z",
+                                "part that carries tool points: all of it, or only the end face (with its rounding) at "
+                                "the +z or -z end; spheres, boxes and hulls: all"),
+    list<&PieceDesc::position_m>(kVec3, "position_mm", -1e4, 1e4, kMilli, "centre in the tool frame"),
+    list<&PieceDesc::rotation_rad>(kVec3, "rotation_deg", -360, 360, kDegree, "rotation vector (axis times angle)"),
+    number<&PieceDesc::radius_m>("radius_mm", 0.01, 5000, kMilli,
+                                 "sphere, capsule, cylinder: outer radius; cone: base radius of the core"),
+    number<&PieceDesc::length_m>("length_mm", 0.01, 10000, kMilli,
+                                 "capsule, cylinder: overall length; cone: height of the core"),
+    list<&PieceDesc::size_m>(kVec3, "size_mm", 0.01, 10000, kMilli, "box: outer sides"),
+    list<&PieceDesc::vertices_m>(KeyKind::kPoints, "vertices_mm", -1e4, 1e4, kMilli, "hull: corners of the core"),
+    number_or_auto<&PieceDesc::margin_m>(
+        "margin_mm", 0.01, 5000, kMilli,
+        "rounding radius: part of the outer size of cylinders and boxes, added to cones and hulls; contact is exact "
+        "while penetration stays below it; auto: a third of the smallest half size (cone, hull: 2 mm)"),
+    integer<&PieceDesc::points>(
+        "points", 0, kMaxToolPoints,
+        "most tool points to spread; each costs about 800 instructions a tick; sphere: 1; box: 8 or more; "
+        "0: never touches"),
+    integer<&PieceDesc::part>("part", 0, 1 << 20, "label in recordings"),
+    list<&PieceDesc::slide_m>(kVec3, "slide_mm", -1000, 1000, kMilli,
+                              "gripper: how far the piece moves away when the gripper opens; it is described where it "
+                              "is when closed. Pieces with the same value are one jaw"),
+};
+const KeySpec kHand[] = {
+    choice<&HandDesc::fingers>("fingers", "two|three|five",
+                               "that take part: thumb and index; with the middle finger; all. The others stay "
+                               "stretched out"),
+    choice<&HandDesc::side>(
+        "side", "right|left",
+        "left: the mirror image of the right hand in y = 0 of its frame, so the thumb's side is -y"),
+    list<&HandDesc::grasp_position_m>(kVec3, "grasp_mm", -1e4, 1e4, kMilli,
+                                      "the palm's middle when the hand holds the body; the preshape is made for it"),
+    list<&HandDesc::grasp_rotation_rad>(
+        kVec3, "grasp_deg", -360, 360, kDegree,
+        "rotation vector of the hand there; x to the fingertips, y to the thumb's side, "
+        "z out of the back of the hand"),
+    number<&HandDesc::squeeze_m>("squeeze_mm", 0.01, 20, kMilli,
+                                 "depth below the rest surface to which each finger part closes"),
+    number<&HandDesc::clearance_m>("clearance_mm", 0, 100, kMilli,
+                                   "gap of the open hand to the body on its way in, along the palm's normal"),
+    number<&HandDesc::closing_s>("closing_s", 0.01, 100, 1, "shortest time from open to closed"),
+    number<&HandDesc::stop_force_N>("stop_force_N", 0.01, 1e4, 1,
+                                    "a joint stops where it would press a finger part harder than this"),
+    number<&HandDesc::joint_speed_rad_per_s>("joint_speed_deg_per_s", 1, 1e5, kDegree, "fastest turn of a joint"),
+    number<&HandDesc::thumb_spread_rad>("thumb_spread_deg", 0, 60, kDegree,
+                                        "of the thumb's root: 25 bends it in the plane of the fingers, more brings it "
+                                        "over to the little finger"),
+    integer<&HandDesc::points_per_part>("points_per_part", 2, 100, "tool points along each of the 15 finger parts"),
+};
+const KeySpec kGripper[] = {
+    number<&GripperDesc::closing_s>("closing_s", 0.01, 100, 1, "shortest time from open to closed"),
+    number<&GripperDesc::stop_force_N>("stop_force_N", 0.01, 1e4, 1,
+                                       "a jaw stops where it would press a piece harder than this"),
+};
+const KeySpec kDevice[] = {
+    text<&DeviceDesc::name>("name", 63, "name of the device"),
+    number<&DeviceDesc::period_s>("period_ms", 0.01, 100, kMilli, "tick period T"),
+    number<&DeviceDesc::mass_kg>("mass_kg", 1e-3, 100, 1, "moving mass at the handle"),
+    number<&DeviceDesc::inertia_kg_m2>("inertia_kg_m2", 1e-8, 10, 1, "moving inertia at the handle"),
+    number<&DeviceDesc::damping_Ns_per_m>("damping_Ns_per_m", 0, 1000, 1, "physical damping b"),
+    number<&DeviceDesc::damping_Nms_per_rad>("damping_Nms_per_rad", 0, 10, 1, "physical rotational damping"),
+    number<&DeviceDesc::friction_N>("friction_N", 0, 100, 1, "Coulomb friction f_c"),
+    number<&DeviceDesc::friction_Nm>("friction_Nm", 0, 10, 1, "rotational Coulomb friction"),
+    number<&DeviceDesc::encoder_step_m>("encoder_step_mm", 0, 10, kMilli, "position resolution Delta"),
+    number<&DeviceDesc::encoder_step_rad>("encoder_step_rad", 0, 1, 1, "angular resolution"),
+    number<&DeviceDesc::delay_s>("delay_ms", 0, 100, kMilli, "delay tau from sample to force, beyond the tick"),
+    number<&DeviceDesc::force_max_N>("force_max_N", 0.01, 1000, 1, "largest force commanded"),
+    number<&DeviceDesc::torque_max_Nm>("torque_max_Nm", 0, 100, 1, "largest torque commanded"),
+    number<&DeviceDesc::force_rate_max_N_per_s>("force_rate_max_N_per_s", 1, 1e7, 1,
+                                                "fault limiter of the force change"),
+    number_or_auto<&DeviceDesc::coupling_N_per_m>(
+        "coupling_N_per_m", 1, 1e6, 1,
+        "virtual coupling; auto: 0.8 of what the device admits, min(2b / (T + 2 tau), 2 f_c / Delta)"),
+    number_or_auto<&DeviceDesc::coupling_Nm_per_rad>("coupling_Nm_per_rad", 1e-6, 1e4, 1,
+                                                     "rotational virtual coupling; auto: by the same rule"),
+    number<&DeviceDesc::ramp_in_s>("ramp_in_s", 0, 10, 1, "force ramp after arming"),
+    number<&DeviceDesc::ramp_out_s>("ramp_out_s", 1e-3, 1, 1, "force ramp to zero after a fault"),
+    integer<&DeviceDesc::silence_hold_ticks>("silence_hold_ticks", 1, 5, "missed samples during which force is held"),
+    integer<&DeviceDesc::silence_passive_ticks>("silence_passive_ticks", 1, 20,
+                                                "missed samples after which force ramps to zero"),
+    integer<&DeviceDesc::silence_fault_ticks>("silence_fault_ticks", 2, 1000, "missed samples that latch a fault"),
+    number<&DeviceDesc::speed_max_m_per_s>("speed_max_m_per_s", 0.01, 100, 1,
+                                           "a sample that implies a faster motion is rejected"),
+};
+const KeySpec kPath[] = {
+    number<&PathDesc::hand_stiffness_N_per_m>("hand_stiffness_N_per_m", 1, 1e5, 1, "impedance of the simulated hand"),
+    number<&PathDesc::hand_damping_Ns_per_m>("hand_damping_Ns_per_m", 0, 1e4, 1, "damping of the simulated hand"),
+    number<&PathDesc::hand_stiffness_Nm_per_rad>("hand_stiffness_Nm_per_rad", 1e-4, 1e3, 1, "rotational stiffness"),
+    number<&PathDesc::hand_damping_Nms_per_rad>("hand_damping_Nms_per_rad", 0, 100, 1, "rotational damping"),
+};
+const KeySpec kPathPoint[] = {
+    number<&PathPoint::time_s>("time_s", 0, 1e5, 1, "time from the start; increasing, the first is 0", true),
+    list<&PathPoint::position_m>(kVec3, "position_mm", -1e4, 1e4, kMilli, "where the hand wants the tool frame, world"),
+    list<&PathPoint::rotation_rad>(kVec3, "rotation_deg", -360, 360, kDegree, "rotation vector of the tool frame"),
+    list<&PathPoint::closing>(
+        KeyKind::kFingers, "closing", 0, 1, 1,
+        "articulated tools: 0 open to 1 closed, as [all] or [thumb, index, middle, ring, little]; "
+        "default: as at the point before"),
+};
+
+template <auto member>
+void* open(SceneDesc& scene) {
+  return &(scene.*member);
+}
+void* open_top(SceneDesc& scene) { return &scene; }
+void* open_piece(SceneDesc& scene) { return &scene.piece.emplace_back(); }
+void* open_pair(SceneDesc& scene) { return &scene.pair.emplace_back(); }
+void* open_point(SceneDesc& scene) { return &scene.path.point.emplace_back(); }
+void* open_hand(SceneDesc& scene) {
+  scene.articulation = Articulation::kHand;
+  return &scene.hand;
+}
+void* open_gripper(SceneDesc& scene) {
+  scene.articulation = Articulation::kGripper;
+  return &scene.gripper;
+}
+
+const TableSpec kTables[] = {
+    {"", false, "Top level.", kTop, open_top},
+    {"body", false, "The elastic object.", kBody, open<&SceneDesc::body>},
+    {"body.fem", false, "Finite elements, with contact.backend = \"nodal\".", kFem, open<&SceneDesc::fem>},
+    {"body.material", false, "Homogeneous, isotropic.", kMaterial, open<&SceneDesc::material>},
+    {"body.fixed", false, "What is clamped to the world.", kFixed, open<&SceneDesc::fixed>},
+    {"skeleton", false, "Beams from each contact region to the anchors.", kSkeleton, open<&SceneDesc::skeleton>},
+    {"contact", false, "The contact law.", kContact, open<&SceneDesc::contact>},
+    {"contact.duffing", false, "With law = \"duffing\".", kDuffing, open<&SceneDesc::duffing>},
+    {"contact.cubic", false, "With law = \"cubic\".", kCubic, open<&SceneDesc::cubic>},
+    {"contact.hertz", false, "With law = \"hertz\".", kHertz, open<&SceneDesc::hertz>},
+    {"contact.tip", false, "With law = \"tool\".", kTip, open<&SceneDesc::tip>},
+    {"contact.layer", false, "With law = \"tool\": exact response of a thin body.", kLayer, open<&SceneDesc::layer>},
+    {"contact.series", false, "With law = \"tool\": the body's own give, travel = tip's + c0 F + c1 F^2.", kSeries,
+     open<&SceneDesc::series>},
+    {"contact.pair", true, "With law = \"tool\": how two tips lean on one another; other pairs use the far field.",
+     kPair, open_pair},
+    {"contact.table", false, "With law = \"table\": presses, measured or computed.", kTable, open<&SceneDesc::table>},
+    {"contact.nodal", false, "With backend = \"nodal\".", kNodal, open<&SceneDesc::nodal>},
+    {"friction", false, "Friction per contact region.", kFriction, open<&SceneDesc::friction>},
+    {"shape", false, "How the deformed surface is drawn. No effect on forces.", kShape, open<&SceneDesc::shape>},
+    {"coupling", false, "Several contact regions at once.", kCoupling, open<&SceneDesc::coupling>},
+    {"tool.piece", true, "The rigid tool: convex pieces, at least one with points.", kPiece, open_piece},
+    {"hand", false, "Makes the tool a human hand of 21 joints; there are no tool pieces then.", kHand, open_hand},
+    {"gripper", false, "Makes the tool a gripper: pieces with slide_mm move by the closing of path or device.",
+     kGripper, open_gripper},
+    {"device", false, "The haptic device: what it admits and where it must be stopped.", kDevice,
+     open<&SceneDesc::device>},
+    {"path", false, "What the simulated hand does in the demonstration. Not stored in the image.", kPath,
+     open<&SceneDesc::path>},
+    {"path.point", true, "Points of the path, joined smoothly in time.", kPathPoint, open_point},
+};
+
+}  // namespace
+
+std::span<const TableSpec> scene_schema() { return kTables; }
+
+}  // namespace palpate

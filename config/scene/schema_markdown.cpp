@@ -1,0 +1,160 @@
+// Text made from the schema: ranges for error messages, tables for docs/scene_format.md.
+#include <charconv>
+
+#include "config/scene/schema.h"
+
+namespace palpate {
+
+std::string number_text(double value) {
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof text, value).ptr;
+  return std::string(text, end);
+}
+
+namespace {
+
+// Unit of a key, from its suffix; empty for pure numbers.
+std::string unit_text(const std::string& key) {
+  static const std::pair<const char*, const char*> kUnits[] = {
+      {"_Nms_per_rad", "N m s/rad"},
+      {"_Nm_per_rad", "N m/rad"},
+      {"_N_per_m3", "N/m^3"},
+      {"_N_per_s", "N/s"},
+      {"_Ns_per_m", "N s/m"},
+      {"_N_per_m", "N/m"},
+      {"_kg_per_m3", "kg/m^3"},
+      {"_kg_m2", "kg m^2"},
+      {"_m_per_s", "m/s"},
+      {"_mm2", "mm^2"},
+      {"_mm", "mm"},
+      {"_ms", "ms"},
+      {"_deg", "degrees"},
+      {"_rad", "rad"},
+      {"_Nm", "N m"},
+      {"_N", "N"},
+      {"_Pa", "Pa"},
+      {"_kg", "kg"},
+      {"_s", "s"},
+      {"_ticks", "ticks"},
+  };
+  for (const auto& [suffix, unit] : kUnits)
+    if (key.ends_with(suffix)) return unit;
+  return "";
+}
+
+std::string choices_text(const char* choices) {
+  std::string text = "one of ";
+  for (const char* c = choices; *c != '\0'; ++c) {
+    if (*c == '|')
+      text += ", ";
+    else
+      text += *c;
+  }
+  return text;
+}
+
+std::string choice_name(const char* choices, std::int32_t index) {
+  std::string name;
+  for (const char* c = choices; *c != '\0'; ++c) {
+    if (*c == '|')
+      --index;
+    else if (index == 0)
+      name += *c;
+  }
+  return name;
+}
+
+std::string range_text(const KeySpec& key) {
+  const std::string unit = unit_text(key.key);
+  return number_text(key.lowest) + " to " + number_text(key.highest) + (unit.empty() ? "" : " " + unit);
+}
+
+// A default as it would be written in a scene; rounded to 12 digits, because 40 mm is stored as 0.04 m.
+std::string rounded_text(double value) {
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::general, 12).ptr;
+  return std::string(text, end);
+}
+
+std::string vector_text(const Vec3& v, double scale) {
+  if (is_auto(v.x)) return "-";
+  return "[" + rounded_text(v.x / scale) + ", " + rounded_text(v.y / scale) + ", " + rounded_text(v.z / scale) + "]";
+}
+
+std::string default_text(const KeySpec& key, void* table) {
+  if (key.required) return "required";
+  switch (key.kind) {
+    case KeyKind::kNumber: {
+      const double value = *static_cast<double*>(key.field(table));
+      return is_auto(value) ? "-" : rounded_text(value / key.scale);
+    }
+    case KeyKind::kNumberOrAuto: {
+      const double value = *static_cast<double*>(key.field(table));
+      return is_auto(value) ? "\"auto\"" : rounded_text(value / key.scale);
+    }
+    case KeyKind::kInteger:
+      return std::to_string(*static_cast<std::int32_t*>(key.field(table)));
+    case KeyKind::kBool:
+      return *static_cast<bool*>(key.field(table)) ? "true" : "false";
+    case KeyKind::kText: {
+      const std::string& value = *static_cast<std::string*>(key.field(table));
+      return value.empty() ? "-" : "\"" + value + "\"";
+    }
+    case KeyKind::kChoice:
+      return "\"" + choice_name(key.choices, key.get_choice(table)) + "\"";
+    case KeyKind::kVec3:
+      return vector_text(*static_cast<Vec3*>(key.field(table)), key.scale);
+    case KeyKind::kPairs:
+    case KeyKind::kPoints:
+    case KeyKind::kFingers:
+      return "-";
+  }
+  return "-";
+}
+
+}  // namespace
+
+std::string allowed_text(const KeySpec& key) {
+  switch (key.kind) {
+    case KeyKind::kNumber:
+      return range_text(key);
+    case KeyKind::kNumberOrAuto:
+      return "\"auto\" or " + range_text(key);
+    case KeyKind::kInteger:
+      return "whole number, " + range_text(key);
+    case KeyKind::kBool:
+      return "true or false";
+    case KeyKind::kText:
+      return "text of 1 to " + number_text(key.highest) + " characters";
+    case KeyKind::kChoice:
+      return choices_text(key.choices);
+    case KeyKind::kVec3:
+      return "[x, y, z], each " + range_text(key);
+    case KeyKind::kPairs:
+      return "list of [radius, height], each " + range_text(key);
+    case KeyKind::kFingers:
+      return "list of 1 or " + std::to_string(kMaxFingers) + " numbers, each " + range_text(key);
+    case KeyKind::kPoints:
+      return "list of [x, y, z], each " + range_text(key);
+  }
+  return "";
+}
+
+std::string schema_markdown() {
+  std::string text;
+  for (const TableSpec& table : scene_schema()) {
+    SceneDesc defaults;
+    void* fields = table.open(defaults);
+    const std::string name = table.name;
+    text += name.empty() ? "### Top level\n" : table.is_array ? "### `[[" + name + "]]`\n" : "### `[" + name + "]`\n";
+    text += std::string(table.meaning) + "\n\n| key | default | allowed | meaning |\n|---|---|---|---|\n";
+    for (const KeySpec& key : table.keys)
+      text += "| `" + std::string(key.key) + "` | " + default_text(key, fields) + " | " + allowed_text(key) + " | " +
+              key.meaning + " |\n";
+    text += "\n";
+  }
+  text.pop_back();  // no empty line at the end
+  return text;
+}
+
+}  // namespace palpate

@@ -1,0 +1,33 @@
+// The --device text: which transport, where, and which wire profile.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "hal/bus/device_bus.h"
+
+namespace palpate {
+
+enum class TransportKind : int { kLoopback = 0, kCan = 1, kUsb = 2 };
+
+struct DeviceAddress {
+  TransportKind kind = TransportKind::kLoopback;
+  std::string name = "palpate";  // CAN interface; loopback socket name (abstract) or path; HID device file
+  WireProfile profile = WireProfile::kFd;
+  int node = 1;
+};
+
+// Reads "auto", "can:IFACE", "usb:/dev/hidrawN" or "loopback[:NAME]", each with optional ",classic" and ",node=N"
+// (1..15). "auto" takes a CAN interface if there is one, else the loopback. Empty on bad text, with `error` saying what
+// is allowed; otherwise `line` says in one line what was chosen and why.
+std::optional<DeviceAddress> parse_device_address(const std::string& text, std::string& line, std::string& error);
+
+enum class DeviceSide : int { kController = 0, kDevice = 1 };
+
+// Opens it: CAN with exact filters for that side; on the loopback the controller listens and the device connects, each
+// for up to timeout_ms. Null and `error` on failure.
+std::unique_ptr<Transport> open_transport(const DeviceAddress& address, DeviceSide side, int timeout_ms,
+                                          std::string& error);
+
+}  // namespace palpate

@@ -1,0 +1,125 @@
+#include "hal/device/device_node.h"
+
+#include <span>
+#include <utility>
+
+namespace palpate {
+
+DeviceNode::DeviceNode(Transport& transport, const NodeOptions& options, const PlantOptions& plant, HandPath path)
+    : transport_(transport),
+      options_(options),
+      plant_(plant, std::move(path)),
+      sequence_(options.profile == WireProfile::kFd ? 16 : 8) {}
+
+void DeviceNode::obey(std::uint32_t sequence, const DeviceCommand& command, std::int64_t now_ns) noexcept {
+  std::uint32_t missing = 0;
+  const SequenceTracker::Step step = sequence_.follow(sequence, missing);
+  if (step == SequenceTracker::Step::kDuplicate || step == SequenceTracker::Step::kReordered) {
+    counters_.refused += 1;
+    return;
+  }
+  counters_.lost += missing;
+  counters_.commands += 1;
+  command_ = command;
+  last_command_ns_ = now_ns;
+  expired_ = false;
+}
+
+void DeviceNode::take(const Frame& frame, std::int64_t now_ns) noexcept {
+  const std::uint32_t base_id = frame.id - static_cast<std::uint32_t>(options_.node);
+  const std::span<const std::uint8_t> payload{frame.data, frame.length};
+  const bool fd = options_.profile == WireProfile::kFd;
+  wire::Command full;
+  wire::ClassicTorque torque;
+  DeviceCommand command;
+  if (fd && frame.fd && base_id == wire::kCommandId &&
+      wire::decode(payload, options_.node, full) == wire::DecodeResult::kOk) {
+    wire::get_wrench(full, command.force_N, command.torque_Nm);
+    command.flags = full.flags;
+    return obey(full.sequence, command, now_ns);
+  }
+  if (!fd && !frame.fd && base_id == wire::kClassicForceId &&
+      wire::decode(payload, options_.node, pending_) == wire::DecodeResult::kOk) {
+    has_pending_ = true;
+    return;
+  }
+  if (!fd && !frame.fd && base_id == wire::kClassicTorqueId && has_pending_ &&
+      wire::decode(payload, options_.node, torque) == wire::DecodeResult::kOk && torque.sequence == pending_.sequence) {
+    has_pending_ = false;
+    wire::get_wrench(pending_, torque, command.force_N, command.torque_Nm);
+    command.flags = torque.flags;
+    return obey(torque.sequence, command, now_ns);
+  }
+  counters_.bad += 1;
+}
+
+std::uint32_t DeviceNode::flags() const noexcept {
+  std::uint32_t flags = DeviceFlag::kCalibrated;
+  if ((command_.flags & CommandFlag::kEnable) != 0) flags |= DeviceFlag::kEnabled;
+  if (stop_pressed_) flags |= DeviceFlag::kStopButton;
+  if (error_ != 0) flags |= DeviceFlag::kError;
+  if (expired_) flags |= DeviceFlag::kWatchdog;
+  if (plant_.saturated()) flags |= DeviceFlag::kSaturated;
+  return flags;
+}
+
+void DeviceNode::send_status() noexcept {
+  const Vec3 position_m = plant_.measured_m();
+  const Quat orientation = plant_.pose().orientation;
+  Frame frames[2];
+  int count = 0;
+  if (options_.profile == WireProfile::kFd) {
+    wire::Status status;
+    status.sequence = status_sequence_;
+    status.command_sequence = sequence_.last();
+    status.flags = flags();
+    status.buttons = buttons();
+    status.error = error_;
+    status.time_us = static_cast<std::uint32_t>(static_cast<std::uint64_t>(1e6 * (plant_.time_s() - started_s_) + 0.5));
+    wire::set_pose(status, position_m, orientation);
+    count = make_status_frames(options_.node, status, frames);
+  } else {
+    wire::ClassicPosition p;
+    wire::ClassicOrientation o;
+    p.sequence = o.sequence = status_sequence_ & 0xFFu;
+    o.flags = flags() & 0x3Fu;
+    o.buttons = buttons();
+    wire::set_pose(p, o, position_m, orientation);
+    count = make_status_frames(options_.node, p, o, frames);
+  }
+  status_sequence_ = (status_sequence_ + 1) & 0xFFFFu;
+  if (transport_.send({frames, static_cast<std::size_t>(count)}) != count) counters_.send_dropped += 1;
+}
+
+void DeviceNode::set_powered(bool powered) noexcept {
+  if (powered && !powered_) {
+    status_sequence_ = 0;
+    started_s_ = plant_.time_s();
+    sequence_ = SequenceTracker(options_.profile == WireProfile::kFd ? 16 : 8);
+    command_ = {};
+    has_pending_ = false;
+    expired_ = true;
+  }
+  powered_ = powered;
+}
+
+void DeviceNode::step(std::int64_t now_ns) noexcept {
+  Frame frames[kMaxFramesPerReceive];
+  const int count = transport_.receive(frames);
+  if (!powered_) return plant_.step({});                    // the hand still moves the handle
+  for (int i = 0; i < count; ++i) take(frames[i], now_ns);  // bound: kMaxFramesPerReceive
+  if (!expired_ && now_ns - last_command_ns_ > options_.watchdog_ns) {
+    expired_ = true;
+    counters_.watchdog += 1;
+  }
+  if (expired_) command_ = {};
+  const bool halted = stop_pressed_ || error_ != 0;
+  plant_.step(halted ? DeviceCommand{} : command_);
+  if (!silent_) {
+    send_status();
+  } else {
+    status_sequence_ = (status_sequence_ + 1) & 0xFFFFu;
+  }
+}
+
+}  // namespace palpate

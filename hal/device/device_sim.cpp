@@ -1,0 +1,150 @@
+#include "hal/device/device_sim.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace palpate {
+namespace {
+
+double quantised(double value, double quantum) noexcept {
+  return quantum > 0 ? quantum * std::floor(value / quantum + 0.5) : value;
+}
+
+// v cut to length `limit`; a vector that is not finite is no vector.
+Vec3 limited(Vec3 v, double limit, bool& cut) noexcept {
+  if (!is_finite(v)) {
+    cut = true;
+    return {};
+  }
+  const double length = norm(v);
+  if (!(length > limit)) return v;
+  cut = true;
+  return (limit / length) * v;
+}
+
+// Mean velocity of an implicit midpoint step of  M dv/dt = drive + K (error - x) - B v - friction:
+//   (2 M/dt + B + K dt/2) v_mid = 2 M/dt v + K error + drive - friction direction,
+// where Coulomb friction is the projection of the right-hand side onto the ball of its radius: sticking is exact.
+// Returns the velocity at the end; `mean` moves the position.
+Vec3 midpoint_velocity(Vec3 velocity, Vec3 push_N, double mass, double damping, double stiffness, double friction,
+                       double dt_s, Vec3& mean) noexcept {
+  const double inertia = 2 * mass / dt_s;
+  const Vec3 effort = inertia * velocity + push_N;
+  const double size = norm(effort);
+  if (!(size > friction)) {
+    mean = {};
+    return {};
+  }
+  mean = ((1 - friction / size) / (inertia + damping + 0.5 * stiffness * dt_s)) * effort;
+  return 2.0 * mean - velocity;
+}
+
+PlantOptions checked(PlantOptions o) {
+  o.delay_ticks = std::clamp(o.delay_ticks, 0, 15);
+  o.substeps = std::clamp(o.substeps, 1, 1000);
+  return o;
+}
+
+}  // namespace
+
+DevicePlant::DevicePlant(const PlantOptions& options, HandPath path)
+    : options_(checked(options)), path_(std::move(path)), random_(options.noise_seed) {
+  pose_ = path_.at(0).pose;
+  last_measured_m_ = pose_.position_m;
+}
+
+void DevicePlant::drive(const DeviceCommand& command) noexcept {
+  delay_[ticks_ % kDelaySlots] = command;
+  const auto delay = static_cast<std::uint64_t>(options_.delay_ticks);
+  const DeviceCommand due = ticks_ >= delay ? delay_[(ticks_ - delay) % kDelaySlots] : DeviceCommand{};
+  saturated_ = false;
+  motor_ = {};
+  if ((due.flags & CommandFlag::kEnable) == 0) return;
+  motor_.force_N = limited(due.force_N, options_.force_max_N, saturated_);
+  motor_.torque_Nm = limited(due.torque_Nm, options_.torque_max_Nm, saturated_);
+}
+
+void DevicePlant::integrate(double time_s, double dt_s) noexcept {
+  const PlantOptions& o = options_;
+  const HandTarget hand = path_.at(time_s + 0.5 * dt_s);
+  const Vec3 offset = hand.pose.position_m - pose_.position_m;
+  const Vec3 push =
+      motor_.force_N + o.hand_stiffness_N_per_m * offset + o.hand_damping_N_s_per_m * hand.velocity_m_per_s;
+  Vec3 mean;
+  velocity_ =
+      midpoint_velocity(velocity_, push, o.mass_kg + o.hand_mass_kg, o.damping_N_s_per_m + o.hand_damping_N_s_per_m,
+                        o.hand_stiffness_N_per_m, o.friction_N, dt_s, mean);
+  pose_.position_m += dt_s * mean;
+  const Vec3 turn = rotation_vector(hand.pose.orientation * conjugate(pose_.orientation));
+  const Vec3 twist =
+      motor_.torque_Nm + o.hand_stiffness_Nm_per_rad * turn + o.hand_damping_Nm_s_per_rad * hand.spin_rad_per_s;
+  spin_ = midpoint_velocity(spin_, twist, o.inertia_kg_m2, o.damping_Nm_s_per_rad + o.hand_damping_Nm_s_per_rad,
+                            o.hand_stiffness_Nm_per_rad, o.friction_Nm, dt_s, mean);
+  pose_.orientation = normalised(rotation_by(dt_s * mean) * pose_.orientation);
+}
+
+void DevicePlant::step(const DeviceCommand& command) noexcept {
+  drive(command);
+  const double dt_s = options_.period_s / options_.substeps;
+  const double start_s = time_s();
+  for (int i = 0; i < options_.substeps; ++i) integrate(start_s + i * dt_s, dt_s);
+  ticks_ += 1;
+}
+
+// splitmix64 (Steele, Lea & Flood 2014): uniform in [-1, 1).
+double DevicePlant::noise() noexcept {
+  std::uint64_t z = random_ += 0x9E3779B97F4A7C15ull;
+  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ull;
+  z = (z ^ (z >> 27)) * 0x94D049BB133111EBull;
+  z ^= z >> 31;
+  return static_cast<double>(z >> 11) * 0x1p-52 - 1.0;
+}
+
+Vec3 DevicePlant::measured_m() noexcept {
+  if (frozen_) return last_measured_m_;
+  Vec3 p = pose_.position_m + encoder_shift_m_;
+  if (options_.noise_m > 0) {
+    p.x += options_.noise_m * noise();
+    p.y += options_.noise_m * noise();
+    p.z += options_.noise_m * noise();
+  }
+  const double q = options_.encoder_m;
+  last_measured_m_ = {quantised(p.x, q), quantised(p.y, q), quantised(p.z, q)};
+  return last_measured_m_;
+}
+
+SimulatedDevice::SimulatedDevice(const PlantOptions& options, HandPath path, const VirtualClock& clock)
+    : plant_(options, std::move(path)),
+      clock_(clock),
+      start_ns_(clock.now_ns()),
+      period_ns_(static_cast<std::int64_t>(std::llround(1e9 * options.period_s))) {}
+
+void SimulatedDevice::receive(DeviceSample& sample) noexcept {
+  constexpr std::uint64_t kMostPeriods = 100'000;  // bound of one catching up
+  const auto due = static_cast<std::uint64_t>((clock_.now_ns() - start_ns_) / period_ns_);
+  const std::uint64_t before = plant_.ticks();
+  while (plant_.ticks() < due && plant_.ticks() - before < kMostPeriods) plant_.step(command_);
+  const auto elapsed = static_cast<std::uint32_t>(plant_.ticks() - before);
+  sample_.fresh = elapsed > 0 || first_;
+  sample_.received = sample_.fresh ? 1 : 0;
+  if (sample_.fresh) {
+    sample_.position_m = plant_.measured_m();
+    sample_.orientation = plant_.pose().orientation;
+    sample_.velocity_m_per_s = velocity_.update(sample_.position_m, elapsed * plant_.options().period_s);
+    sample_.sequence = static_cast<std::uint32_t>(plant_.ticks()) & 0xFFFFu;
+    sample_.device_time_us = static_cast<std::uint32_t>(plant_.ticks() * static_cast<std::uint64_t>(period_ns_) / 1000);
+    sample_.flags = DeviceFlag::kCalibrated;
+    if ((command_.flags & CommandFlag::kEnable) != 0) sample_.flags |= DeviceFlag::kEnabled;
+    if (plant_.saturated()) sample_.flags |= DeviceFlag::kSaturated;
+  }
+  first_ = false;
+  sample = sample_;
+}
+
+bool SimulatedDevice::transmit(const DeviceCommand& command) noexcept {
+  command_ = command;
+  return true;
+}
+
+}  // namespace palpate

@@ -1,0 +1,98 @@
+// A simulated haptic device held by a simulated hand. The handle is a mass with damping and Coulomb friction; the hand
+// adds its mass and pulls the handle along a path through a spring and damper (impedance). The motors are late by whole
+// ticks and saturate; the encoders quantise. Deterministic: same options, path and commands give the same motion.
+#pragma once
+
+#include <cstdint>
+
+#include "hal/device/device.h"
+#include "hal/device/hand_path.h"
+#include "hal/device/kinematics.h"
+#include "hal/loop/clock.h"
+
+namespace palpate {
+
+// The defaults resemble a desktop device of the Phantom 1.5 class held lightly; they are assumptions, not a data sheet.
+struct PlantOptions {
+  double mass_kg = 0.1;  // of the handle, as felt at its tip
+  double damping_N_s_per_m = 0.5;
+  double friction_N = 0.05;     // Coulomb
+  double inertia_kg_m2 = 2e-4;  // about every axis
+  double damping_Nm_s_per_rad = 1e-3;
+  double friction_Nm = 1e-3;
+  double encoder_m = 3e-5;  // position quantum; 0: none
+  double noise_m = 0;       // uniform noise of this half width before quantisation
+  std::uint64_t noise_seed = 1;
+  double force_max_N = 8.5;  // motors: magnitude is cut, direction kept
+  double torque_max_Nm = 0.2;
+  int delay_ticks = 1;        // extra periods from command to motor, 0..15
+  double hand_mass_kg = 0.1;  // part of the hand that moves with the handle
+  double hand_stiffness_N_per_m = 300;
+  double hand_damping_N_s_per_m = 5;
+  double hand_stiffness_Nm_per_rad = 1;
+  double hand_damping_Nm_s_per_rad = 2e-2;
+  double period_s = 1e-3;  // device tick: commands are taken over and samples made
+  int substeps = 20;       // of the integration per period, 1..1000
+};
+
+// Mechanics only: implicit midpoint with an exact Coulomb step, unconditionally stable and of second order.
+class DevicePlant {
+ public:
+  DevicePlant(const PlantOptions& options, HandPath path);  // starts at rest at the path's first pose
+
+  // One period under `command`, which enters the delay line first; zero force if not enabled.
+  void step(const DeviceCommand& command) noexcept;
+  Pose pose() const noexcept { return pose_; }  // exact, device frame
+  Vec3 velocity_m_per_s() const noexcept { return velocity_; }
+  Vec3 spin_rad_per_s() const noexcept { return spin_; }
+  Vec3 measured_m() noexcept;                                      // with noise and encoder quantum; draws noise
+  void freeze_encoder(bool frozen) noexcept { frozen_ = frozen; }  // repeats the last measurement
+  void shift_encoder(Vec3 offset_m) noexcept { encoder_shift_m_ += offset_m; }  // lost counts
+  Wrench motor() const noexcept { return motor_; }                              // rendered in the last period
+  bool trigger() const noexcept { return path_.at(time_s()).trigger; }          // the hand holds the closing button
+  bool saturated() const noexcept { return saturated_; }
+  double time_s() const noexcept { return static_cast<double>(ticks_) * options_.period_s; }
+  std::uint64_t ticks() const noexcept { return ticks_; }
+  const PlantOptions& options() const noexcept { return options_; }
+
+ private:
+  static constexpr std::uint64_t kDelaySlots = 16;
+  void drive(const DeviceCommand& command) noexcept;
+  void integrate(double time_s, double dt_s) noexcept;
+  double noise() noexcept;
+
+  PlantOptions options_;
+  HandPath path_;
+  Pose pose_;
+  Vec3 velocity_, spin_;
+  Wrench motor_;
+  bool saturated_ = false;
+  DeviceCommand delay_[kDelaySlots];
+  std::uint64_t ticks_ = 0;
+  std::uint64_t random_;
+  bool frozen_ = false;
+  Vec3 encoder_shift_m_, last_measured_m_;
+};
+
+// The plant as a Device in virtual time: each receive() first lets it run up to the clock, holding the last command, so
+// a loop that misses slots meets a device that went on without it.
+class SimulatedDevice {
+ public:
+  SimulatedDevice(const PlantOptions& options, HandPath path, const VirtualClock& clock);
+  void receive(DeviceSample& sample) noexcept;
+  bool transmit(const DeviceCommand& command) noexcept;
+  DevicePlant& plant() noexcept { return plant_; }
+
+ private:
+  DevicePlant plant_;
+  const VirtualClock& clock_;
+  std::int64_t start_ns_, period_ns_;
+  DeviceCommand command_;
+  VelocityEstimator velocity_;
+  bool first_ = true;
+  DeviceSample sample_;
+};
+
+static_assert(Device<SimulatedDevice>);
+
+}  // namespace palpate

@@ -1,0 +1,264 @@
+// The control loop, one template for the real device and the simulated one, the real clock and the scripted one:
+// wait -> receive -> tick -> transmit -> publish, at most once per slot. Allocation-free; every step is bounded.
+//
+// Before the first sample the controller is not ticked (there is no pose to render): zero-force commands go out so that
+// the device sees a living controller. After that each slot is one tick, with a sample or without. Stopping asks the
+// controller to ramp down (Command::kStop) for a bounded time; whatever happens, the last commands sent are zero force
+// with the drives disabled.
+#pragma once
+
+#include <atomic>
+#include <concepts>
+#include <cstdint>
+
+#include "hal/device/device.h"
+#include "hal/device/kinematics.h"
+#include "hal/loop/clock.h"
+#include "hal/loop/deadline.h"
+#include "rt_core/record.h"
+#include "rt_core/tick.h"
+
+namespace palpate {
+
+struct LoopOptions {
+  DeadlineLimits deadline;
+  std::uint64_t ticks = 0;                   // controller ticks before an orderly stop; 0: until stopped
+  std::uint32_t start_timeout_ticks = 2000;  // without any sample at start
+  std::uint32_t silence_fault_ticks = 20;    // without a fresh sample in motion: Fault::kDeviceSilent
+  std::uint32_t stop_ticks = 200;            // longest ramp-down
+  std::uint32_t zero_ticks = 5;              // zero-force commands that end every run
+};
+
+enum class LoopEnd : int { kTicksDone = 0, kStopped, kSilentAtStart };
+
+struct LoopSummary {
+  LoopEnd end = LoopEnd::kStopped;
+  std::uint64_t ticks = 0;
+  std::uint64_t start_ticks = 0;    // waited for the first sample
+  std::uint64_t missed_slots = 0;   // periods without a tick
+  std::uint64_t overrun_ticks = 0;  // ticks that followed missed slots
+  std::uint32_t worst_missed = 0;   // most slots missed in one go
+  std::uint64_t stale_ticks = 0;    // ticks without a fresh sample
+  std::uint32_t worst_stale = 0;    // longest silence in periods
+  std::uint64_t gaps = 0;           // status sequence numbers missing
+  std::uint64_t send_failures = 0;  // commands the bus did not take
+  std::int64_t worst_wake_ns = 0;   // largest wake-up latency
+  std::uint32_t faults = 0;         // every latched fault seen
+};
+
+// What computes the force. step: one tick. fill: completes a record after it.
+template <typename T>
+concept Controller = requires(T c, const Input& in, Output& out, const StageProbe& probe, TickRecord& record) {
+  c.step(in, out, probe);
+  c.fill(in, out, record);
+};
+// Telemetry must never wait; commands are level bits, polled once per tick. A source may also have joints(), the
+// command for an articulated tool that came with the last poll.
+template <typename T>
+concept RecordSink = requires(T sink, const TickRecord& record) {
+  sink.publish(record);
+};
+template <typename T>
+concept CommandSource = requires(T source) {
+  { source.poll() } -> std::convertible_to<std::uint32_t>;
+};
+
+// The controller everything is built for: rt_core's tick().
+class ModelController {
+ public:
+  ModelController(const Model& model, State& state, Scratch& scratch) noexcept
+      : model_(model), state_(state), scratch_(scratch) {}
+  void step(const Input& input, Output& output, const StageProbe& probe) noexcept {
+    tick(model_, state_, scratch_, input, output, probe);
+  }
+  void fill(const Input& input, const Output& output, TickRecord& record) noexcept {
+    fill_record(model_, state_, input, output, record);
+  }
+
+ private:
+  const Model& model_;
+  State& state_;
+  Scratch& scratch_;
+};
+
+template <Device D, Clock C, Controller K, RecordSink S, CommandSource H>
+class Loop {
+ public:
+  // All references must outlive the loop. `stop` is set by a signal handler or another thread.
+  Loop(D& device, C& clock, K& controller, S& sink, H& host, const CartesianKinematics& kinematics,
+       const LoopOptions& options, const std::atomic<bool>& stop) noexcept
+      : device_(device),
+        clock_(clock),
+        controller_(controller),
+        sink_(sink),
+        host_(host),
+        kinematics_(kinematics),
+        options_(options),
+        stop_(stop),
+        slots_(options.deadline, clock.now_ns() + options.deadline.period_ns) {}
+
+  LoopSummary run() noexcept {
+    summary_.end = wait_for_device();
+    if (summary_.end == LoopEnd::kTicksDone) summary_.end = render();
+    finish();
+    summary_.missed_slots = slots_.total_missed();
+    summary_.overrun_ticks = slots_.overrun_ticks();
+    summary_.worst_missed = slots_.worst_missed();
+    return summary_;
+  }
+
+ private:
+  bool stop_requested() const noexcept { return stop_.load(std::memory_order_relaxed); }
+
+  // Sleeps until the tick's slot. A late wake-up skips once; if even the wake-up after that is late, the tick runs all
+  // the same, so a system that is always late still ticks and reaches the overrun fault.
+  void wait() noexcept {
+    slots_.skip(clock_.now_ns());
+    clock_.wait_until(slots_.deadline_ns());
+    woke_ns_ = clock_.now_ns();
+    if (slots_.skip(woke_ns_)) {
+      clock_.wait_until(slots_.deadline_ns());
+      woke_ns_ = clock_.now_ns();
+    }
+    slots_.start();
+  }
+
+  // kTicksDone: a sample has arrived and rendering may start.
+  LoopEnd wait_for_device() noexcept {
+    for (;;) {
+      if (stop_requested()) return LoopEnd::kStopped;
+      wait();
+      device_.receive(sample_);
+      if (sample_.fresh) return LoopEnd::kTicksDone;
+      if (++summary_.start_ticks >= options_.start_timeout_ticks) return LoopEnd::kSilentAtStart;
+      send({});
+      slots_.advance();
+    }
+  }
+
+  // The first sample is already in sample_ and its slot has begun.
+  LoopEnd render() noexcept {
+    std::uint32_t stopping = 0;  // ticks since the stop began
+    LoopEnd end = LoopEnd::kStopped;
+    for (bool first = true;; first = false) {
+      if (!first) {
+        slots_.advance();
+        wait();
+      }
+      const bool done = options_.ticks > 0 && summary_.ticks >= options_.ticks;
+      if (stopping == 0 && (done || stop_requested())) {
+        stopping = 1;
+        end = stop_requested() ? LoopEnd::kStopped : LoopEnd::kTicksDone;
+      }
+      one_tick(!first, stopping > 0);
+      if (stopping > 0 && (at_rest() || stopping++ >= options_.stop_ticks)) return end;
+    }
+  }
+
+  bool at_rest() const noexcept {
+    const bool safe_mode = output_.mode == Mode::kIdle || output_.mode == Mode::kFault;
+    return safe_mode && output_.device_w == Wrench{};
+  }
+
+  void one_tick(bool receive, bool stopping) noexcept {
+    TickTiming& timing = record_.timing;
+    timing.deadline_ns = slots_.deadline_ns();
+    timing.wake_latency_ns = brief(woke_ns_ - timing.deadline_ns);
+    if (receive) device_.receive(sample_);
+    const std::int64_t received_ns = clock_.now_ns();
+    make_input(stopping);
+    stamps_ = {&clock_, &timing, received_ns};
+    for (std::int32_t& stage_ns : timing.stage_ns) stage_ns = 0;
+    controller_.step(input_, output_, StageProbe{&Loop::mark, &stamps_});
+    const std::int64_t computed_ns = clock_.now_ns();
+    send(to_command(kinematics_, output_, CommandFlag::kEnable));
+    const std::int64_t sent_ns = clock_.now_ns();
+    timing.receive_ns = brief(received_ns - woke_ns_);
+    timing.compute_ns = brief(computed_ns - received_ns);
+    timing.transmit_ns = brief(sent_ns - computed_ns);
+    timing.publish_ns = publish_ns_;
+    account(timing);
+    controller_.fill(input_, output_, record_);
+    record_.sequence = summary_.ticks;
+    sink_.publish(record_);
+    publish_ns_ = brief(clock_.now_ns() - sent_ns);
+  }
+
+  void make_input(bool stopping) noexcept {
+    stale_ = sample_.fresh ? 0 : stale_ + 1 + slots_.missed();
+    if (sample_.fresh) {
+      const bool believed = in_workspace(kinematics_, sample_);
+      // A position outside the workspace is passed on as not a number: the core rejects and reports it.
+      input_.pose_w = pose_in_world(kinematics_, sample_);
+      if (!believed) input_.pose_w.position_m.x = std::numeric_limits<double>::quiet_NaN();
+      input_.velocity_w = velocity_in_world(kinematics_, sample_.velocity_m_per_s);
+      input_.buttons = sample_.buttons;
+    }
+    input_.stale_ticks = stale_;
+    input_.overrun_ticks = slots_.missed();
+    input_.commands = host_.poll() | (stopping ? Command::kStop : 0u);
+    if constexpr (requires { host_.joints(); }) input_.joints = host_.joints();
+    input_.device_fault = sample_.faults;
+    if (stale_ >= options_.silence_fault_ticks) input_.device_fault |= Fault::kDeviceSilent;
+    if (slots_.fault()) input_.device_fault |= Fault::kOverrun;
+    input_.drive = Drive::kDevice;
+  }
+
+  void account(const TickTiming& timing) noexcept {
+    summary_.ticks += 1;
+    summary_.stale_ticks += stale_ > 0;
+    summary_.worst_stale = stale_ > summary_.worst_stale ? stale_ : summary_.worst_stale;
+    summary_.gaps += sample_.gaps;
+    summary_.faults |= output_.fault;
+    if (timing.wake_latency_ns > summary_.worst_wake_ns) summary_.worst_wake_ns = timing.wake_latency_ns;
+  }
+
+  void send(const DeviceCommand& command) noexcept { summary_.send_failures += !device_.transmit(command); }
+
+  // However the run ended: zero force, drives off, in several slots so that one lost frame does not matter.
+  void finish() noexcept {
+    for (std::uint32_t i = 0; i < options_.zero_ticks; ++i) {
+      send({});
+      slots_.advance();
+      wait();
+    }
+  }
+
+  static std::int32_t brief(std::int64_t ns) noexcept {
+    constexpr std::int64_t kMost = std::numeric_limits<std::int32_t>::max();
+    return static_cast<std::int32_t>(ns < kMost ? ns : kMost);
+  }
+
+  struct Stamps {
+    const C* clock;
+    TickTiming* timing;
+    std::int64_t last_ns;
+  };
+  static void mark(void* context, Stage stage) PALPATE_RT {
+    auto* stamps = static_cast<Stamps*>(context);
+    const std::int64_t now_ns = stamps->clock->now_ns();
+    stamps->timing->stage_ns[static_cast<std::int32_t>(stage)] = brief(now_ns - stamps->last_ns);
+    stamps->last_ns = now_ns;
+  }
+
+  D& device_;
+  C& clock_;
+  K& controller_;
+  S& sink_;
+  H& host_;
+  CartesianKinematics kinematics_;
+  LoopOptions options_;
+  const std::atomic<bool>& stop_;
+  DeadlineTracker slots_;
+  DeviceSample sample_;
+  Input input_;
+  Output output_;
+  TickRecord record_{};
+  Stamps stamps_{};
+  LoopSummary summary_;
+  std::uint32_t stale_ = 0;
+  std::int64_t woke_ns_ = 0;
+  std::int32_t publish_ns_ = 0;
+};
+
+}  // namespace palpate

@@ -1,0 +1,195 @@
+#include "rt_core/contact/friction/friction.h"
+
+#include "rt_core/contact/friction/presliding.h"
+#include "rt_core/limits.h"
+#include "rt_core/math.h"
+
+namespace palpate {
+
+namespace {
+
+// Stretches below this have no direction: a picometre.
+constexpr Real kNoStretch_m = 1e-12;
+// A force that equals the limit but for rounding still sticks.
+constexpr Real kLimitSlack = 1.0 + 1e-12;
+
+// The tangential spring at a given normal depth: magnitude f(R) along the displacement, R^2 = depth^2 + stretch^2, of
+// which the tangential component is f(R) stretch/R. Depth zero is the separable law f(stretch).
+struct TangentialSpring {
+  CubicLaw law;
+  Real depth_m = 0;
+};
+
+Real reach_m(const TangentialSpring& spring, Real stretch) PALPATE_RT {
+  return spring.depth_m > 0 ? square_root(spring.depth_m * spring.depth_m + stretch * stretch) : stretch;
+}
+// f(R)/R, with its limit k1 at zero.
+Real secant_N_per_m(const CubicLaw& law, Real reach) PALPATE_RT {
+  return reach > kNoStretch_m ? law_force_N(law, reach) / reach : law.k1_N_per_m;
+}
+Real spring_force_N(const TangentialSpring& spring, Real stretch) PALPATE_RT {
+  return secant_N_per_m(spring.law, reach_m(spring, stretch)) * stretch;
+}
+Real spring_tangent_N_per_m(const TangentialSpring& spring, Real stretch) PALPATE_RT {
+  const Real reach = reach_m(spring, stretch);
+  if (!(reach > kNoStretch_m)) return spring.law.k1_N_per_m;
+  const Real cosine = stretch / reach, sine = spring.depth_m / reach;
+  return law_tangent_N_per_m(spring.law, reach) * cosine * cosine + secant_N_per_m(spring.law, reach) * sine * sine;
+}
+Real normal_gain_N(const TangentialSpring& spring, Real stretch) PALPATE_RT {
+  if (!(spring.depth_m > 0)) return 0.0;
+  return secant_N_per_m(spring.law, reach_m(spring, stretch)) * spring.depth_m -
+         law_force_N(spring.law, spring.depth_m);
+}
+
+// Stretch at which the spring carries `force`. At fixed depth, and within the law's range, the tangential component
+// (k1 + k3 (depth^2 + s^2)) s is again a cubic law. Beyond the range it is convex and increasing in s, and the cubic's
+// root lies below its root, so Newton's first step lands above it and the rest fall onto it.
+Real spring_stretch_m(const TangentialSpring& spring, Real force) PALPATE_RT {
+  if (!(spring.depth_m > 0)) return law_depth_m(spring.law, force);
+  const CubicLaw at_depth{spring.law.k1_N_per_m + spring.law.k3_N_per_m3 * spring.depth_m * spring.depth_m,
+                          spring.law.k3_N_per_m3, kHuge};
+  Real stretch = law_depth_m(at_depth, force);
+  if (reach_m(spring, stretch) <= spring.law.max_depth_m) return stretch;
+  for (std::int32_t i = 0; i < kInverseLawIterations; ++i) {  // bound: kInverseLawIterations
+    const Real tangent = spring_tangent_N_per_m(spring, stretch);
+    if (tangent > 0) stretch -= (spring_force_N(spring, stretch) - force) / tangent;
+  }
+  return max_of(stretch, 0.0);
+}
+
+// Mindlin's stiffness of this tick. When it grows the stretch shrinks so that the force is kept; when it falls the
+// stretch stays.
+Real follow_stiffness(const FrictionParameters& parameters, const FrictionLoad& load,
+                      FrictionMemory& memory) PALPATE_RT {
+  const Real stiffness = parameters.mindlin_ratio * max_of(load.tangent_N_per_m, 0.0);
+  if (stiffness > memory.stiffness_N_per_m) {
+    memory.stretch_w = (memory.stiffness_N_per_m / stiffness) * memory.stretch_w;
+  }
+  memory.stiffness_N_per_m = stiffness;
+  return stiffness;
+}
+
+TangentialSpring tangential_spring(const FrictionParameters& parameters, const FrictionLoad& load,
+                                   FrictionMemory& memory) PALPATE_RT {
+  if (parameters.law != FrictionLaw::kMindlin) {
+    return {parameters.contact, parameters.tangential == TangentialLaw::kRadial ? max_of(load.depth_m, 0.0) : 0.0};
+  }
+  return {{follow_stiffness(parameters, load, memory), 0.0, kHuge}, 0.0};
+}
+
+// K F^beta; roots instead of a general power for the exponents in common use.
+Real power_law(Real k, Real force, Real beta) PALPATE_RT {
+  if (beta == 1.0) return k * force;
+  if (beta == 0.75) {
+    const Real root = square_root(force);
+    return k * (root * square_root(root));
+  }
+  return k * math::pow(force, beta);
+}
+
+FrictionForce spring_response(const TangentialSpring& spring, Real depth_rate, Vec3 direction, Real length) PALPATE_RT {
+  FrictionForce result;
+  result.force_w = -spring_force_N(spring, length) * direction;
+  result.normal_gain_N = depth_rate * normal_gain_N(spring, length);
+  const Real reach = reach_m(spring, length);
+  result.energy_J = law_energy_J(spring.law, reach) - law_energy_J(spring.law, spring.depth_m);
+  result.along_N_per_m = spring_tangent_N_per_m(spring, length);
+  result.across_N_per_m = secant_N_per_m(spring.law, reach);
+  result.direction_w = direction;
+  return result;
+}
+
+FrictionForce presliding_step(const FrictionParameters& parameters, const FrictionLoad& load, Vec3 step,
+                              FrictionMemory& memory) PALPATE_RT {
+  const Real limit = static_limit_N(parameters, load.force_N);
+  const bool paper = parameters.law == FrictionLaw::kPreslidingPaper;
+  const Real stiffness =
+      paper ? (parameters.slip_m > 0 ? limit / parameters.slip_m : 0.0) : follow_stiffness(parameters, load, memory);
+  const Real slip = paper ? parameters.slip_m : stiffness > 0 ? limit / stiffness : 0.0;
+  const Presliding moved = preslide(tangential_part(memory.stretch_w, load.normal_w), step, slip);
+  memory.stretch_w = moved.stretch_w;
+  memory.mode = moved.sliding ? FrictionMode::kSlip : FrictionMode::kStick;
+  const Real length = norm(moved.stretch_w);
+  FrictionForce result;
+  result.force_w = -stiffness * moved.stretch_w;
+  result.energy_J = 0.5 * stiffness * length * length;
+  result.direction_w = length > kNoStretch_m ? (1.0 / length) * moved.stretch_w : Vec3{};
+  result.along_N_per_m = moved.ends_sliding ? 0.0 : stiffness;
+  result.reversal_N_per_m = moved.ends_sliding ? stiffness : 0.0;
+  result.across_N_per_m = stiffness;
+  return result;
+}
+
+}  // namespace
+
+FrictionParameters friction_parameters(const ModelParams& params) PALPATE_RT {
+  FrictionParameters p;
+  p.law = static_cast<FrictionLaw>(params.friction_law);
+  p.tangential = static_cast<TangentialLaw>(params.tangential_law);
+  p.k_N = params.friction_k_N;
+  p.beta = params.friction_beta;
+  p.mu_dynamic = params.friction_mu_dynamic;
+  p.slip_m = params.friction_slip_m;
+  p.mindlin_ratio = 2.0 * (1.0 - params.poisson_ratio) / (2.0 - params.poisson_ratio);
+  p.contact = contact_law(params);
+  return p;
+}
+
+Real static_limit_N(const FrictionParameters& parameters, Real normal_N) PALPATE_RT {
+  if (!(normal_N > 0)) return 0.0;
+  return max_of(power_law(parameters.k_N, min_of(normal_N, kHuge), parameters.beta), 0.0);
+}
+
+Real sliding_limit_N(const FrictionParameters& parameters, Real normal_N) PALPATE_RT {
+  if (!(normal_N > 0)) return 0.0;
+  return max_of(min_of(parameters.mu_dynamic * normal_N, static_limit_N(parameters, normal_N)), 0.0);
+}
+
+FrictionForce friction_step(const FrictionParameters& parameters, const FrictionLoad& load,
+                            FrictionMemory& memory) PALPATE_RT {
+  if (parameters.law == FrictionLaw::kNone) {
+    memory = {};
+    return {};
+  }
+  const bool first_touch = memory.mode == FrictionMode::kFree || !is_finite(memory.stretch_w);
+  if (first_touch) memory = {{}, 0.0, FrictionMode::kStick};
+  const Vec3 step = first_touch || !is_finite(load.step_w) ? Vec3{} : tangential_part(load.step_w, load.normal_w);
+  if (parameters.law >= FrictionLaw::kPresliding) return presliding_step(parameters, load, step, memory);
+  const TangentialSpring spring = tangential_spring(parameters, load, memory);
+  const Vec3 start = tangential_part(memory.stretch_w, load.normal_w);
+  const Vec3 trial = start + step;
+  const Real length = norm(trial);
+  const Vec3 direction = length > kNoStretch_m ? (1.0 / length) * trial : Vec3{};
+
+  const bool paper = parameters.law == FrictionLaw::kPaper;
+  const Real normal = load.force_N + load.depth_rate * normal_gain_N(spring, length);
+  const bool sliding_on = memory.mode == FrictionMode::kSlip && !paper;
+  const Real limit = sliding_on ? sliding_limit_N(parameters, normal) : static_limit_N(parameters, normal);
+  const Real force = spring_force_N(spring, length);
+  if (force <= limit * kLimitSlack) {
+    memory.mode = FrictionMode::kStick;
+    memory.stretch_w = trial;
+    return spring_response(spring, load.depth_rate, direction, length);
+  }
+  memory.mode = FrictionMode::kSlip;
+  // The radial law's normal force falls as the stretch is cut; where sliding is plain mu F the cut ends at mu depth.
+  const Real cut = spring.depth_m > 0 ? min_of(length, parameters.mu_dynamic * spring.depth_m) : length;
+  const Real sliding = sliding_limit_N(parameters, load.force_N + load.depth_rate * normal_gain_N(spring, cut));
+  Vec3 slip_direction = direction;
+  if (paper) {
+    memory.stretch_w = start;
+    slip_direction = unit_or(start, direction);
+  } else {
+    memory.stretch_w = spring_stretch_m(spring, sliding) * direction;
+  }
+  const Real kept = norm(memory.stretch_w);
+  FrictionForce result = spring_response(spring, load.depth_rate, slip_direction, kept);
+  result.force_w = -sliding * slip_direction;
+  result.reversal_N_per_m = result.along_N_per_m;
+  result.along_N_per_m = 0.0;
+  result.across_N_per_m = min_of(result.across_N_per_m, sliding / max_of(kept, kNoStretch_m));
+  return result;
+}
+
+}  // namespace palpate

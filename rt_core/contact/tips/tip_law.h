@@ -1,0 +1,30 @@
+// The normal law of one tool tip: force over local indentation, for the shapes whose half-space solution is a power of
+// the depth (Mahvash & Hayward 2002, table 1; Sneddon 1965), with the factor of a finite layer or of a true sphere.
+#pragma once
+
+#include "rt_core/contact/cubic_law.h"
+#include "rt_core/model.h"
+#include "rt_core/vec.h"
+
+namespace palpate {
+
+// One law, ready to evaluate. F(e) = c e^(n/2) S(x), x = sqrt(e / depth_max), n = 2, 3, 4; S = 1 without `factor`.
+// Flat punch of radius R: c = 2 R E*; sphere: c = 4/3 sqrt(R) E*; cone, half angle alpha from its axis: c = 2/pi tan
+// alpha E*, E* = E/(1 - nu^2). Beyond depth_max the force continues by its tangent. `factor` points to kFactorKnots
+// entries.
+struct LocalLaw {
+  const TipLaw* tip = nullptr;
+  const FactorKnot* factor = nullptr;
+};
+
+// Law of a piece. `piece` must be below n_tip_law.
+LocalLaw local_law(const Model& model, std::int32_t piece) PALPATE_RT;
+
+// Force and tangent at a local indentation; zero for e <= 0 (no adhesion) and NaN; e above kHuge counts as kHuge.
+LawPoint local_at(const LocalLaw& law, Real e_m) PALPATE_RT;
+// Integral of the force from zero: exact for the force above, also with a factor table.
+Real local_energy_J(const LocalLaw& law, Real e_m) PALPATE_RT;
+// Integral of the force over one interval of the factor table: what the baker adds up into FactorKnot::energy_J.
+Real interval_energy_J(const LocalLaw& law, std::int32_t interval) PALPATE_RT;
+
+}  // namespace palpate

@@ -1,0 +1,183 @@
+#include "rt_core/contact/tips/travel.h"
+
+#include "rt_core/cholesky.h"
+
+namespace palpate {
+
+namespace {
+
+using Regions = std::span<const TipRegion>;
+
+// Lowest shift over depth: see solve_travel.
+constexpr Real kMostSwelling = 20.0;
+
+Real deepest_m(const TipRegion& region) PALPATE_RT {
+  Real deepest = 0;
+  for (std::int32_t k = 0; k < region.count; ++k) deepest = max_of(region.tip[k].depth_m, deepest);  // bound: tips
+  return deepest;
+}
+
+// Second-order entry of pair (i, j): 0 without h.
+Real h_of(const TipCoupling& coupling, std::int32_t i, std::int32_t j, std::int32_t n) PALPATE_RT {
+  return coupling.h_m_per_N2 == nullptr ? 0.0 : coupling.h_m_per_N2[i * n + j];
+}
+
+// dW/dF_i.
+Real shift_of(Regions regions, const TipCoupling& coupling, const Real* force, std::int32_t i) PALPATE_RT {
+  const auto n = static_cast<std::int32_t>(regions.size());
+  Real shift = far_shift_m(regions[static_cast<std::size_t>(i)].far, force[i]);
+  for (std::int32_t j = 0; j < n; ++j) {  // bound: regions
+    if (j == i) continue;
+    const Real h = h_of(coupling, i, j, n) * force[i] + 0.5 * h_of(coupling, j, i, n) * force[j];
+    shift += (coupling.c_m_per_N[i * n + j] + h) * force[j];
+  }
+  return shift;
+}
+
+// d2W/dF_i dF_j.
+Real curvature_of(Regions regions, const TipCoupling& coupling, const Real* force, std::int32_t i,
+                  std::int32_t j) PALPATE_RT {
+  const auto n = static_cast<std::int32_t>(regions.size());
+  if (i != j) {
+    return coupling.c_m_per_N[i * n + j] + h_of(coupling, i, j, n) * force[i] + h_of(coupling, j, i, n) * force[j];
+  }
+  Real sum = far_slope_m_per_N(regions[static_cast<std::size_t>(i)].far, force[i]);
+  for (std::int32_t k = 0; k < n; ++k) {  // bound: regions
+    if (k != i) sum += h_of(coupling, i, k, n) * force[k];
+  }
+  return sum;
+}
+
+// Forces at the shifts, and the residual far + coupling - shift. Returns the largest.
+Real evaluate(Regions regions, const TipCoupling& coupling, const Real* shift, const TipWork& work) PALPATE_RT {
+  const auto n = static_cast<std::int32_t>(regions.size());
+  for (std::int32_t r = 0; r < n; ++r) {  // bound: regions
+    const LawPoint load = region_at(regions[static_cast<std::size_t>(r)], shift[r]);
+    work.force[r] = load.force_N;
+    work.root_tangent[r] = square_root(load.tangent_N_per_m);
+  }
+  Real largest = 0;
+  for (std::int32_t r = 0; r < n; ++r) {  // bound: regions^2
+    work.residual[r] = shift_of(regions, coupling, work.force, r) - shift[r];
+    largest = max_of(abs_of(work.residual[r]), largest);
+  }
+  return largest;
+}
+
+// Newton step in work.step, from (I + g H g) y = -g r, d = r + H g y; false when that is not positive definite.
+bool newton_step(Regions regions, const TipCoupling& coupling, const TipWork& work) PALPATE_RT {
+  const auto n = static_cast<std::int32_t>(regions.size());
+  const Real* g = work.root_tangent;
+  for (std::int32_t i = 0; i < n; ++i) {  // bound: regions^2
+    for (std::int32_t j = 0; j <= i; ++j) {
+      work.factor[i * n + j] = g[i] * curvature_of(regions, coupling, work.force, i, j) * g[j] + (i == j ? 1.0 : 0.0);
+    }
+    work.trial[i] = -g[i] * work.residual[i];
+  }
+  if (!cholesky_factor(work.factor, n)) return false;
+  cholesky_solve(work.factor, work.trial, n);
+  for (std::int32_t i = 0; i < n; ++i) work.trial[i] *= g[i];  // bound: regions
+  for (std::int32_t i = 0; i < n; ++i) {                       // bound: regions^2
+    Real sum = work.residual[i];
+    for (std::int32_t j = 0; j < n; ++j) sum += curvature_of(regions, coupling, work.force, i, j) * work.trial[j];
+    work.step[i] = sum;
+  }
+  return true;
+}
+
+}  // namespace
+
+LawPoint tip_at(const Tip& tip, Real e_m) PALPATE_RT {
+  return tip.tabulated ? table_at(tip.table, e_m) : local_at(tip.local, e_m);
+}
+
+Real tip_energy_J(const Tip& tip, Real e_m) PALPATE_RT {
+  if (!tip.tabulated) return local_energy_J(tip.local, e_m);
+  const CornerEnergies corner = table_energies(tip.table, e_m);
+  return tip.table.weight[0] * corner.energy_J[0] + tip.table.weight[1] * corner.energy_J[1] +
+         tip.table.weight[2] * corner.energy_J[2];
+}
+
+Real far_shift_m(const FarField& far, Real force_N) PALPATE_RT {
+  const Real inside = min_of(force_N, far.force_max_N);
+  return far.c0_m_per_N * force_N + far.c1_m_per_N2 * (2.0 * force_N - inside) * inside;
+}
+Real far_slope_m_per_N(const FarField& far, Real force_N) PALPATE_RT {
+  return far.c0_m_per_N + 2.0 * far.c1_m_per_N2 * min_of(force_N, far.force_max_N);
+}
+Real far_energy_J(const FarField& far, Real force_N) PALPATE_RT {
+  const Real inside = min_of(force_N, far.force_max_N), square = inside * inside;
+  const Real energy = (0.5 * far.c0_m_per_N + (2.0 / 3.0) * far.c1_m_per_N2 * inside) * square;
+  return energy + 0.5 * far_slope_m_per_N(far, force_N) * (force_N * force_N - square);
+}
+
+LawPoint region_at(const TipRegion& region, Real shift_m) PALPATE_RT {
+  LawPoint sum;
+  for (std::int32_t k = 0; k < region.count; ++k) {  // bound: tips of the region
+    const LawPoint point = tip_at(region.tip[k], region.tip[k].depth_m - shift_m);
+    sum.force_N += point.force_N;
+    sum.tangent_N_per_m += point.tangent_N_per_m;
+  }
+  return sum;
+}
+
+TravelResult solve_travel(const TipRegion& region) PALPATE_RT {
+  if (region.far.c0_m_per_N == 0 && region.far.c1_m_per_N2 == 0) return {};
+  const Real deepest = deepest_m(region);
+  // At w = deepest every force is zero and the function is positive. Below zero it can only be where c0 or c1 is
+  // negative; the baker leaves the whole law a twentieth of the tip's stiffness or more, so e = deepest - w stays below
+  // twenty depths.
+  Real low = -kMostSwelling * deepest, high = deepest;
+  TravelResult result;
+  for (std::int32_t i = 0; i < kSeriesIterations; ++i) {  // bound: kSeriesIterations
+    const LawPoint load = region_at(region, result.shift_m);
+    const Real rest = result.shift_m - far_shift_m(region.far, load.force_N);
+    result.residual_m = abs_of(rest);
+    if (!(result.residual_m > 1e-15 * deepest)) break;
+    (rest > 0 ? high : low) = result.shift_m;
+    const Real slope = 1.0 + far_slope_m_per_N(region.far, load.force_N) * load.tangent_N_per_m;
+    const Real newton = result.shift_m - rest / slope;
+    result.shift_m = slope > 0 && newton > low && newton < high ? newton : 0.5 * (low + high);
+    if (!(high - low > 1e-17)) break;
+  }
+  return result;
+}
+
+TipCouplingResult solve_coupled_travel(std::span<const TipRegion> regions, const TipCoupling& coupling,
+                                       const TipWork& work) PALPATE_RT {
+  const auto n = static_cast<std::int32_t>(regions.size());
+  TipCouplingResult result;
+  for (std::int32_t r = 0; r < n; ++r) work.shift[r] = solve_travel(regions[static_cast<std::size_t>(r)]).shift_m;
+  result.residual_m = evaluate(regions, coupling, work.shift, work);
+  for (std::int32_t k = 0; k < kTipNewtonIterations; ++k) {  // bound: kTipNewtonIterations
+    if (!(result.residual_m > 1e-14)) break;                 // rounding of a centimetre
+    if (!newton_step(regions, coupling, work)) {
+      result.singular = true;
+      break;
+    }
+    Real share = 1.0, before = result.residual_m;
+    for (std::int32_t h = 0; h <= kTipStepHalvings; ++h) {  // bound: kTipStepHalvings
+      for (std::int32_t r = 0; r < n; ++r) work.trial[r] = work.shift[r] + share * work.step[r];
+      result.residual_m = evaluate(regions, coupling, work.trial, work);
+      if (result.residual_m < before) break;
+      share *= 0.5;
+    }
+    for (std::int32_t r = 0; r < n; ++r) work.shift[r] = work.trial[r];
+  }
+  return result;
+}
+
+Real coupling_energy_J(std::int32_t n, const TipCoupling& coupling, const Real* force) PALPATE_RT {
+  Real energy = 0;
+  for (std::int32_t i = 0; i < n; ++i) {  // bound: regions^2 / 2
+    for (std::int32_t j = 0; j < i; ++j) {
+      // W of degree two and three in F: F . dW/dF - W is W once and twice over.
+      const Real first = coupling.c_m_per_N[i * n + j];
+      const Real second = h_of(coupling, i, j, n) * force[i] + h_of(coupling, j, i, n) * force[j];
+      energy += (first + second) * force[i] * force[j];
+    }
+  }
+  return energy;
+}
+
+}  // namespace palpate

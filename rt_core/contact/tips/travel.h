@@ -1,0 +1,85 @@
+// From the depth of tool tips to their forces: the tips' own laws in series with the body's far field,
+// travel = local(F) + c0 F + c1 F^2, and with one another.
+#pragma once
+
+#include <span>
+
+#include "rt_core/contact/tips/tip_law.h"
+#include "rt_core/contact/tips/vertex_table.h"
+#include "rt_core/limits.h"
+
+namespace palpate {
+
+// Above this a solve counts as not converged: a nanometre, 50 uN on the stiffest tip law here (50 kN/m).
+inline constexpr Real kTravelTolerance_m = 1e-9;
+
+// One tip in contact: its law and how deep it is.
+struct Tip {
+  LocalLaw local;
+  TableLaw table;
+  bool tabulated = false;
+  Real depth_m = 0;  // travel
+};
+
+LawPoint tip_at(const Tip& tip, Real e_m) PALPATE_RT;
+// The stored energy at an indentation.
+Real tip_energy_J(const Tip& tip, Real e_m) PALPATE_RT;
+
+// Far field of one region, w(F) = c0 F + c1 F^2. Beyond force_max_N it continues by its tangent, so that a law whose c1
+// is negative stays stable however deep the press.
+struct FarField {
+  Real c0_m_per_N = 0, c1_m_per_N2 = 0, force_max_N = kHuge;
+};
+Real far_shift_m(const FarField& far, Real force_N) PALPATE_RT;
+Real far_slope_m_per_N(const FarField& far, Real force_N) PALPATE_RT;
+// Energy held by it, integral of F dw: c0 F^2/2 + 2 c1 F^3/3.
+Real far_energy_J(const FarField& far, Real force_N) PALPATE_RT;
+
+// The tips of one region and the far field under them.
+struct TipRegion {
+  const Tip* tip = nullptr;  // `count` of them
+  std::int32_t count = 0;
+  FarField far;
+};
+
+// Sum over a region's tips with every depth reduced by shift_m.
+LawPoint region_at(const TipRegion& region, Real shift_m) PALPATE_RT;
+
+struct TravelResult {
+  Real shift_m = 0;
+  Real residual_m = 0;
+};
+// One region alone: the shift w with w = c0 F + c1 F^2, F = F(depth - w). The function w - far(F(w)) rises wherever the
+// whole stiffness is positive, which the baker sees to; Newton with bisection as guard. F -> 0 needs no care: the
+// unknown is a depth, not a force. Bound: kSeriesIterations law evaluations.
+TravelResult solve_travel(const TipRegion& region) PALPATE_RT;
+
+// How regions i != j lean on one another: W = sum_{i<j} c_ij F_i F_j + sum_{i != j} h_ij F_i^2 F_j / 2 beside the far
+// fields. Row-major n x n; c symmetric; diagonals unused. Memory lent by the caller as in coupled_regions.h.
+struct TipCoupling {
+  const Real* c_m_per_N;
+  const Real* h_m_per_N2;  // nullptr: none
+};
+struct TipWork {
+  Real* factor;  // n x n
+  Real* shift;   // out, length n
+  Real* force;   // out
+  Real* root_tangent;
+  Real* residual;
+  Real* step;
+  Real* trial;
+};
+struct TipCouplingResult {
+  Real residual_m = 0;
+  bool singular = false;
+};
+// shift_i = dW/dF_i(F), F_i = F_i(depth - shift_i): the forces are the gradient of one potential, so no loop returns
+// energy while c and h are constant. Damped Newton in the symmetric form of coupled_regions.h. Bound:
+// kTipNewtonIterations steps of at most kTipStepHalvings + 1 evaluations.
+TipCouplingResult solve_coupled_travel(std::span<const TipRegion> regions, const TipCoupling& coupling,
+                                       const TipWork& work) PALPATE_RT;
+
+// Energy of the coupling between regions, sum F_i dW/dF_i - W without the regions' own far fields.
+Real coupling_energy_J(std::int32_t n, const TipCoupling& coupling, const Real* force) PALPATE_RT;
+
+}  // namespace palpate

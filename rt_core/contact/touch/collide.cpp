@@ -1,0 +1,258 @@
+// Stage collide: which tool points touch the rest surface, where and how deeply. Reads the tool's poses; writes
+// state.point (but region), scratch.contact. Bound: n_tool_point queries. Status: kContactsDropped,
+// kTraversalTruncated.
+#include "rt_core/contact/nodes/nodal.h"
+#include "rt_core/skeleton/surface.h"
+#include "rt_core/stages.h"
+#include "rt_core/surface/closest_point.h"
+#include "rt_core/surface/smooth_foot.h"
+#include "rt_core/tool/carrier.h"
+
+namespace palpate {
+
+namespace {
+
+// A point whose gap is below this is measured every tick, so that its first contact starts warm; a point farther off is
+// measured again only once it can have come this close.
+constexpr double kSearchMargin_m = 0.5e-3;
+// Points up to this much farther off are measured in turn, one of kTurns each tick. A tool that comes near moves all
+// its points by the same distance, and without turns they would all be due, and cold, in the same tick.
+constexpr double kRefreshMargin_m = 2e-3;
+constexpr std::uint64_t kTurns = 8;
+// Cosine of the largest turn of the normal in one tick that still counts as the same face: a tip at 0.5 m/s turns by
+// less than a degree per tick even on a body of 20 mm.
+constexpr double kSameFace = 0.5;
+
+// A pose as a matrix: half the work of a quaternion per point.
+struct RigidMap {
+  Vec3 column[3];
+  Vec3 translation;
+  explicit RigidMap(const Pose& pose) PALPATE_RT
+      : column{rotate(pose.orientation, {1, 0, 0}), rotate(pose.orientation, {0, 1, 0}),
+               rotate(pose.orientation, {0, 0, 1})},
+        translation(pose.position_m) {}
+  Vec3 operator()(Vec3 p) const PALPATE_RT {
+    return translation + (p.x * column[0] + p.y * column[1] + p.z * column[2]);
+  }
+};
+
+struct Box {
+  Vec3 lower, upper;
+};
+
+Box root_box(const Model& model) PALPATE_RT {
+  Box box{{kHuge, kHuge, kHuge}, {-kHuge, -kHuge, -kHuge}};
+  const BvhNode& root = model.bvh[0];
+  for (int k = 0; k < 4; ++k) {  // bound: 4
+    if (root.child[k] < 0 && root.count[k] == 0) continue;
+    const auto low = [&](int axis) PALPATE_RT { return static_cast<Real>(root.lower_m[axis][k]); };
+    const auto high = [&](int axis) PALPATE_RT { return static_cast<Real>(root.upper_m[axis][k]); };
+    box.lower = {min_of(box.lower.x, low(0)), min_of(box.lower.y, low(1)), min_of(box.lower.z, low(2))};
+    box.upper = {max_of(box.upper.x, high(0)), max_of(box.upper.y, high(1)), max_of(box.upper.z, high(2))};
+  }
+  return box;
+}
+
+Real distance_to(const Box& box, Vec3 p) PALPATE_RT {
+  return norm({max_of(max_of(box.lower.x - p.x, p.x - box.upper.x), 0.0),
+               max_of(max_of(box.lower.y - p.y, p.y - box.upper.y), 0.0),
+               max_of(max_of(box.lower.z - p.z, p.z - box.upper.z), 0.0)});
+}
+
+// The last surface measurement does not hold: measure at the next opportunity.
+void forget(PointState& point) PALPATE_RT {
+  point.gap_m = 0;
+  point.gap_bound_m = 0;
+}
+
+// Not measured: the gap is only known to be at least `gap_m`.
+void skip(PointState& point, Real gap_m) PALPATE_RT {
+  point.gap_m = gap_m;
+  point.gap_bound_m = gap_m;
+}
+
+// A truncated search may have ended on a far part of the surface and got the side wrong. Signed distance changes by at
+// most the distance moved, so a point that was farther than that from the surface is still on its side.
+Real side_checked(Real signed_distance_m, const PointState& last, Real margin_m, Real moved_m) PALPATE_RT {
+  if (last.gap_bound_m == 0) return signed_distance_m;  // nothing known from the last tick
+  const Real before = last.gap_m + margin_m;
+  if (before > moved_m) return abs_of(signed_distance_m);
+  return before < -moved_m ? -abs_of(signed_distance_m) : signed_distance_m;
+}
+
+class Collider {
+ public:
+  Collider(const Model& model, State& state, Scratch& scratch) PALPATE_RT : model_(model),
+                                                                            state_(state),
+                                                                            scratch_(scratch),
+                                                                            now_(state.tool_w),
+                                                                            before_(state.tool_previous_w),
+                                                                            root_(root_box(model)) {
+    const bool temporal = static_cast<CouplingLaw>(model.params.coupling_law) == CouplingLaw::kTemporal;
+    smooth_ = !model.corner_normal.empty();
+    reach_m_ = kSearchMargin_m + (temporal ? max_of(displacement_bound(model, state), 0.0) : 0.0);
+  }
+
+  void visit(std::size_t index) PALPATE_RT {
+    const ToolPiece& piece = model_.piece[index];
+    if (is_articulated(model_)) {
+      now_ = RigidMap(carrier_w(model_, state_, static_cast<std::int32_t>(index)));
+      before_ = RigidMap(carrier_previous_w(model_, state_, static_cast<std::int32_t>(index)));
+    }
+    const Real gap = distance_to(root_, now_(piece.pose_tool.position_m)) - piece.bounding_radius_m;
+    const std::int32_t end = piece.first_point + piece.point_count;
+    for (std::int32_t i = piece.first_point; i < end; ++i) {  // bound: kMaxToolPoints over all pieces
+      if (gap > reach_m_ + kRefreshMargin_m) {
+        skip(state_.point[i], gap);
+      } else {
+        visit_point(i);
+      }
+    }
+  }
+
+ private:
+  void visit_point(std::int32_t index) PALPATE_RT {
+    PointState& point = state_.point[index];
+    const Vec3 p = now_(model_.tool_point[static_cast<std::size_t>(index)].position_tool_m);
+    // Written so that a NaN in any term measures the point.
+    if (point.gap_bound_m > reach_m_) {
+      const Real bound = point.gap_bound_m - moved(index, p);
+      const bool its_turn = (static_cast<std::uint64_t>(index) + state_.tick) % kTurns == 0;
+      if (bound > reach_m_ && !(its_turn && bound < reach_m_ + kRefreshMargin_m)) return skip(point, bound);
+    }
+    if (!(point.gap_m < 0)) {
+      // Far from the body its box says as much as its surface, and costs nothing next to a cold search.
+      const Real gap = distance_to(root_, p) - model_.tool_point[static_cast<std::size_t>(index)].margin_m;
+      if (gap > reach_m_ + kRefreshMargin_m) return skip(point, gap);
+    }
+    measure(index, p);
+  }
+
+  Real moved(std::int32_t index, Vec3 p) const PALPATE_RT {
+    return norm(p - before_(model_.tool_point[static_cast<std::size_t>(index)].position_tool_m));
+  }
+
+  void measure(std::int32_t index, Vec3 p) PALPATE_RT {
+    const ToolPoint& tool_point = model_.tool_point[static_cast<std::size_t>(index)];
+    PointState& point = state_.point[index];
+    const SurfacePoint surface = closest_surface_point(model_, p, kHuge, point.triangle);
+    if (surface.stack_high_water > state_.high_water.traversal_stack) {
+      state_.high_water.traversal_stack = surface.stack_high_water;
+    }
+    if (!surface.found) return forget(point);
+    if (smooth_) return touch_smooth(index, p, surface, tool_point);
+    Real signed_distance = surface.signed_distance_m;
+    point.normal_w = surface.normal_w;
+    if (surface.truncated) {
+      scratch_.status |= Status::kTraversalTruncated;
+      signed_distance = side_checked(signed_distance, point, tool_point.margin_m, moved(index, p));
+      if ((signed_distance < 0) != (surface.signed_distance_m < 0)) point.normal_w = -surface.normal_w;
+    }
+    point.closest_w = surface.closest_w;
+    point.triangle = surface.triangle;
+    point.gap_m = signed_distance - tool_point.margin_m;
+    point.gap_bound_m = signed_distance < 0 ? point.gap_m : surface.lower_bound_m - tool_point.margin_m;
+    if (point.gap_m < 0) keep(index, point, tool_point);
+  }
+
+  // Deep inside, past the middle of a thin body, the nearest surface is another face, whose force would pull the tip
+  // through (seen 2026-11-21: a cone at 5 mm in a layer of 10 mm). A point in contact stays with its own face while
+  // that has a foot for it or has just lost it in the focal surface.
+  SmoothFoot followed(Vec3 p, const SurfacePoint& surface, const PointState& point,
+                      const SmoothFoot& nearest) const PALPATE_RT {
+    if (!(surface.signed_distance_m < 0 && point.gap_m < 0 && point.triangle >= 0)) return nearest;
+    const Vec3 normal = nearest.state == FootState::kFound ? nearest.normal_w : surface.normal_w;
+    if (dot(normal, point.normal_w) > kSameFace) return nearest;
+    const SmoothFoot own = smooth_foot(model_, p, point.triangle);
+    return own.state == FootState::kFound || own.state == FootState::kFocal ? own : nearest;
+  }
+
+  // Contact with the smooth surface instead of its facets. Beyond a sharp edge the facet decides; below the focal
+  // surface a point in contact keeps its last place (a god-object).
+  void touch_smooth(std::int32_t index, Vec3 p, const SurfacePoint& surface, const ToolPoint& tool_point) PALPATE_RT {
+    PointState& point = state_.point[index];
+    SurfaceFoot& foot = scratch_.foot[tool_point.piece];
+    if (surface.truncated) scratch_.status |= Status::kTraversalTruncated;
+    const SmoothFoot smooth = followed(p, surface, point, smooth_foot(model_, p, surface.triangle));
+    foot = {};
+    foot.centre_w = p;
+    Real height = surface.signed_distance_m;
+    if (smooth.state == FootState::kFound) {
+      height = smooth.height_m;
+      point.closest_w = smooth.foot_w;
+      point.normal_w = smooth.normal_w;
+      point.triangle = smooth.triangle;
+      for (int k = 0; k < 3; ++k) {  // bound: 3
+        foot.weight[k] = smooth.weight[k];
+        foot.gradient_per_m[k] = smooth.gradient_per_m[k];
+      }
+    } else {
+      const bool lost = smooth.state == FootState::kFocal || smooth.state == FootState::kFar;
+      if (lost && point.gap_m < 0 && point.triangle >= 0) {
+        scratch_.status |= Status::kFootHeld;
+        height = dot(p - point.closest_w, point.normal_w);
+      } else {
+        point.closest_w = surface.closest_w;
+        point.normal_w = surface.normal_w;
+        point.triangle = surface.triangle;
+      }
+      facet_weights(model_, point.triangle, point.closest_w, foot.weight);
+    }
+    foot.triangle = point.triangle;
+    point.gap_m = height - tool_point.margin_m;
+    // The smooth surface may stand off the facets, towards the point, by the slack.
+    const Real reach = surface.lower_bound_m - tool_point.margin_m - model_.params.smooth_slack_m;
+    point.gap_bound_m = height < 0 ? point.gap_m : min_of(reach, point.gap_m);
+    if (point.gap_m < 0) keep(index, point, tool_point);
+  }
+
+  // Appends a contact; when the pool is full the shallowest goes (ties: the higher index). Order stays by index.
+  void keep(std::int32_t index, const PointState& point, const ToolPoint& tool_point) PALPATE_RT {
+    if (scratch_.contact_count == kMaxContacts) {
+      scratch_.status |= Status::kContactsDropped;
+      std::int32_t shallowest = 0;
+      for (std::int32_t i = 1; i < kMaxContacts; ++i) {  // bound: kMaxContacts
+        if (scratch_.contact[i].depth_m <= scratch_.contact[shallowest].depth_m) shallowest = i;
+      }
+      if (!(-point.gap_m > scratch_.contact[shallowest].depth_m)) return;
+      for (std::int32_t i = shallowest; i + 1 < kMaxContacts; ++i) {  // bound: kMaxContacts
+        scratch_.contact[i] = scratch_.contact[i + 1];
+      }
+      scratch_.contact_count -= 1;
+    }
+    Contact& contact = scratch_.contact[scratch_.contact_count++];
+    contact = Contact{};
+    contact.point = index;
+    contact.region = -1;
+    contact.position_w = point.closest_w;
+    contact.normal_w = point.normal_w;
+    contact.depth_m = -point.gap_m;
+    contact.weight = tool_point.weight;
+    contact.area_m2 = tool_point.area_m2;
+  }
+
+  const Model& model_;
+  State& state_;
+  Scratch& scratch_;
+  RigidMap now_, before_;  // of the piece being visited
+  const Box root_;
+  Real reach_m_ = 0;
+  bool smooth_ = false;
+};
+
+}  // namespace
+
+void collide(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
+  if (is_nodal(model)) return collide_nodal(model, state, scratch);
+  scratch.contact_count = 0;
+  if (!is_finite(state.tool_w)) {
+    for (PointState& point : state.point) forget(point);  // bound: kMaxToolPoints
+    return;
+  }
+  Collider collider(model, state, scratch);
+  for (std::size_t i = 0; i < model.piece.size(); ++i) collider.visit(i);  // bound: kMaxPieces
+  HighWater& high_water = state.high_water;
+  if (scratch.contact_count > high_water.contacts) high_water.contacts = scratch.contact_count;
+}
+
+}  // namespace palpate

@@ -1,0 +1,174 @@
+#include "rt_core/skeleton/beam_table.h"
+
+#include "rt_core/cholesky.h"
+#include "rt_core/skeleton/ratio_scales.h"
+
+namespace palpate {
+namespace {
+
+// First element of the beams of one vertex.
+std::size_t first_beam(const Model& model, const SurfaceSpot& spot, int corner) PALPATE_RT {
+  return static_cast<std::size_t>(spot.vertex[corner]) * static_cast<std::size_t>(model.sizes.n_anchor);
+}
+
+void clear(const Model& model, const SurfaceSpot& spot, BeamTableSkeleton& skeleton) PALPATE_RT {
+  const std::int64_t n = model.sizes.n_anchor;
+  skeleton.count = n < kMaxAnchors ? static_cast<std::int32_t>(n) : kMaxAnchors;
+  skeleton.degenerate = false;
+  skeleton.minimum_norm = false;
+  skeleton.alpha = skeleton.beta = 0;
+  skeleton.spot = spot;
+  skeleton.displacement_w = {};
+  for (std::int32_t i = 0; i < skeleton.count; ++i) skeleton.force_w[i] = {};
+}
+
+// Six entries of the interpolated stiffness of every beam, and their sum.
+using Stiffness6 = Real[6];
+
+bool share_by_stiffness(const Model& model, Vec3 force, BeamTableSkeleton& skeleton) PALPATE_RT {
+  Stiffness6 beam[kMaxAnchors] = {};
+  for (int corner = 0; corner < 3; ++corner) {
+    const Real weight = skeleton.spot.weight[corner];
+    const BeamStiffness* row = &model.beam_stiffness[first_beam(model, skeleton.spot, corner)];
+    for (std::int32_t i = 0; i < skeleton.count; ++i)  // <= kMaxAnchors
+      for (int k = 0; k < 6; ++k) beam[i][k] += weight * row[i].k_N_per_m[k];
+  }
+  Real sum[6] = {};
+  for (std::int32_t i = 0; i < skeleton.count; ++i)  // <= kMaxAnchors
+    for (int k = 0; k < 6; ++k) sum[k] += beam[i][k];
+  Real factor[9] = {sum[0], 0, 0, sum[1], sum[3], 0, sum[2], sum[4], sum[5]};
+  skeleton.degenerate = !cholesky_factor(factor, 3);
+  if (skeleton.degenerate) return false;
+  Real d[3] = {force.x, force.y, force.z};
+  cholesky_solve(factor, d, 3);
+  skeleton.displacement_w = {d[0], d[1], d[2]};
+  for (std::int32_t i = 0; i < skeleton.count; ++i) {
+    const Stiffness6& k = beam[i];
+    skeleton.force_w[i] = {k[0] * d[0] + k[1] * d[1] + k[2] * d[2], k[1] * d[0] + k[3] * d[1] + k[4] * d[2],
+                           k[2] * d[0] + k[4] * d[1] + k[5] * d[2]};
+  }
+  return true;
+}
+
+bool share_by_ratios(const Model& model, Vec3 force, BeamTableSkeleton& skeleton) PALPATE_RT {
+  const Vec3 direction = unit_or(force, {});
+  Vec3 first[kMaxAnchors], second[kMaxAnchors], u, v;
+  for (int corner = 0; corner < 3; ++corner) {
+    const Real weight = skeleton.spot.weight[corner];
+    const BeamRatio* row = &model.beam_ratio[first_beam(model, skeleton.spot, corner)];
+    for (std::int32_t i = 0; i < skeleton.count; ++i) {  // <= kMaxAnchors
+      first[i] += (weight * dot(row[i].f1_gain_N_per_m, direction)) * row[i].f1_axis;
+      second[i] += (weight * dot(row[i].f2_gain_N_per_m, direction)) * row[i].f2_axis;
+    }
+  }
+  for (std::int32_t i = 0; i < skeleton.count; ++i) {
+    u += first[i];
+    v += second[i];
+  }
+  const RatioScales scales = solve_ratio_scales(u, v, force);
+  skeleton.alpha = scales.alpha;
+  skeleton.beta = scales.beta;
+  skeleton.minimum_norm = scales.minimum_norm;
+  skeleton.degenerate = !scales.solvable;
+  if (skeleton.degenerate) return false;
+  for (std::int32_t i = 0; i < skeleton.count; ++i) {
+    skeleton.force_w[i] = scales.alpha * first[i] + scales.beta * second[i];
+  }
+  return true;
+}
+
+// Barycentric weights, not normalised, of the projection of p onto the triangle's plane.
+void barycentric(const Model& model, Vec3 p, std::int32_t triangle, Real (&weight)[3]) PALPATE_RT {
+  const Triangle& t = model.triangle[static_cast<std::size_t>(triangle)];
+  Vec3 arm[3];
+  for (int k = 0; k < 3; ++k) arm[k] = model.vertex_m[static_cast<std::size_t>(t.vertex[k])] - p;
+  const Vec3 normal = cross(arm[1] - arm[0], arm[2] - arm[0]);
+  for (int k = 0; k < 3; ++k) weight[k] = dot(cross(arm[(k + 1) % 3], arm[(k + 2) % 3]), normal);
+}
+
+SurfaceSpot spot_of(const Model& model, std::int32_t triangle, const Real (&weight)[3]) PALPATE_RT {
+  SurfaceSpot spot;
+  Real sum = 0;
+  for (int k = 0; k < 3; ++k) {
+    spot.vertex[k] = model.triangle[static_cast<std::size_t>(triangle)].vertex[k];
+    spot.weight[k] = max_of(weight[k], 0.0);
+    sum += spot.weight[k];
+  }
+  spot.found = sum > 0;
+  for (Real& w : spot.weight) w = spot.found ? w / sum : 0.0;
+  return spot;
+}
+
+}  // namespace
+
+SurfaceSpot locate_from(const Model& model, Vec3 point_w, std::int32_t triangle) PALPATE_RT {
+  const auto triangles = static_cast<std::int64_t>(model.triangle.size());
+  if (triangle < 0 || triangle >= triangles || !is_finite(point_w)) return {};
+  Real weight[3];
+  std::int32_t before = -1;
+  for (std::int32_t step = 0; step < kLocateSteps; ++step) {
+    barycentric(model, point_w, triangle, weight);
+    int least = weight[1] < weight[0] ? 1 : 0;
+    if (weight[2] < weight[least]) least = 2;
+    if (weight[least] >= 0) break;
+    // Across the edge opposite to that corner; back again means between the two.
+    const std::int32_t next = model.triangle[static_cast<std::size_t>(triangle)].adjacent[(least + 1) % 3];
+    if (next < 0 || next >= triangles || next == before) break;
+    before = triangle;
+    triangle = next;
+  }
+  barycentric(model, point_w, triangle, weight);
+  return spot_of(model, triangle, weight);
+}
+
+SurfaceSpot locate_contact(const Model& model, const State& state, std::int32_t slot) PALPATE_RT {
+  const Vec3 centre = state.region[slot].centre_w;
+  const auto points = static_cast<std::int32_t>(model.sizes.n_tool_point);
+  std::int32_t warm = -1;
+  Real nearest = kHuge;
+  for (std::int32_t i = 0; i < points && i < kMaxToolPoints; ++i) {
+    if (state.point[i].region != slot) continue;
+    const Real distance2 = squared_norm(state.point[i].closest_w - centre);
+    if (!(distance2 < nearest)) continue;
+    nearest = distance2;
+    warm = state.point[i].triangle;
+  }
+  return locate_from(model, centre, warm);
+}
+
+bool solve_beam_table(const Model& model, const SurfaceSpot& spot, Vec3 force_on_body_w,
+                      BeamTableSkeleton& skeleton) PALPATE_RT {
+  clear(model, spot, skeleton);
+  skeleton.degenerate = !(spot.found && is_finite(force_on_body_w) && skeleton.count > 0);
+  if (skeleton.degenerate) return false;
+  return static_cast<SkeletonLaw>(model.params.skeleton_law) == SkeletonLaw::kCircularPaper
+             ? share_by_ratios(model, force_on_body_w, skeleton)
+             : share_by_stiffness(model, force_on_body_w, skeleton);
+}
+
+BeamTableAnchor beam_table_anchor(const Model& model, const BeamTableSkeleton& skeleton,
+                                  std::int32_t index) PALPATE_RT {
+  BeamTableAnchor result;
+  const Vec3 force = skeleton.force_w[index];
+  Real inner = 0, outer = 0, side = 0, shear_in = 0, shear_out = 0;
+  for (int corner = 0; corner < 3; ++corner) {
+    const Vec3 f = skeleton.spot.weight[corner] * force;
+    const std::size_t at = first_beam(model, skeleton.spot, corner) + static_cast<std::size_t>(index);
+    const BeamResponse& row = model.beam_response[at];
+    result.displacement_w +=
+        {dot(row.release_m_per_N[0], f), dot(row.release_m_per_N[1], f), dot(row.release_m_per_N[2], f)};
+    inner += dot(row.inner_Pa_per_N, f);
+    outer += dot(row.outer_Pa_per_N, f);
+    side += dot(row.side_Pa_per_N, f);
+    result.stress.axial_Pa += dot(row.axial_Pa_per_N, f);
+    shear_in += dot(row.shear_in_Pa_per_N, f);
+    shear_out += dot(row.shear_out_Pa_per_N, f);
+  }
+  const Real extreme = max_of(abs_of(inner), abs_of(outer)) + abs_of(side);
+  result.stress.bending_Pa = max_of(extreme - abs_of(result.stress.axial_Pa), 0.0);
+  result.stress.shear_Pa = square_root(shear_in * shear_in + shear_out * shear_out);
+  if (model.anchor[static_cast<std::size_t>(index)].fixed != 0) result.displacement_w = {};
+  return result;
+}
+
+}  // namespace palpate

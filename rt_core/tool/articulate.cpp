@@ -1,0 +1,170 @@
+#include "rt_core/tool/articulate.h"
+
+#include "rt_core/math.h"
+
+namespace palpate {
+
+namespace {
+
+std::int32_t joint_count(const Model& model) PALPATE_RT {
+  const auto n = static_cast<std::int64_t>(model.joint.size());
+  return n < kMaxJoints ? static_cast<std::int32_t>(n) : kMaxJoints;
+}
+
+const Joint& joint_at(const Model& model, std::int32_t j) PALPATE_RT {
+  return model.joint[static_cast<std::size_t>(j)];
+}
+
+// Each closing fraction towards its command, at the bounded rate. A command that is no fraction is cut or ignored.
+void advance_closing(const Model& model, State& state, Scratch& scratch, const Input& input) PALPATE_RT {
+  const double step = model.params.closing_rate_per_s * model.params.period_s;
+  for (std::int32_t f = 0; f < kMaxFingers; ++f) {  // bound: kMaxFingers
+    double& closing = state.articulation.closing[f];
+    const auto wanted = static_cast<double>(input.joints.closing[f]);
+    if (!(wanted >= 0 && wanted <= 1)) scratch.status |= Status::kJointLimited;
+    double goal = is_finite(wanted) ? clamp_to(wanted, 0, 1) : closing;
+    if ((input.buttons & kButtonClose) != 0) goal = 1;
+    closing += clamp_to(goal - closing, -step, step);
+  }
+}
+
+// Where the command wants a joint, within its limits.
+double goal_of(const Model& model, const State& state, Scratch& scratch, const Input& input,
+               std::int32_t j) PALPATE_RT {
+  const Joint& joint = joint_at(model, j);
+  if ((input.joints.direct >> j & 1u) == 0) {
+    return joint.open + state.articulation.closing[joint.finger] * (joint.closed - joint.open);
+  }
+  const auto wanted = static_cast<double>(input.joints.target[j]);
+  if (!(wanted >= joint.lowest && wanted <= joint.highest)) scratch.status |= Status::kJointLimited;
+  return is_finite(wanted) ? clamp_to(wanted, joint.lowest, joint.highest) : state.articulation.joint[j];
+}
+
+// Generalised load of a joint by the contact force on a piece it carries: the work per unit of joint motion.
+double load_on(const Model& model, const ArticulationState& a, std::int32_t j, std::int32_t piece) PALPATE_RT {
+  const Joint& joint = joint_at(model, j);
+  const Vec3 force = a.piece_force_tool_N[piece];
+  if (static_cast<JointKind>(joint.kind) == JointKind::kSlide) return joint.sign * dot(a.axis_tool[j], force);
+  return joint.sign * dot(a.axis_tool[j], a.piece_torque_tool_Nm[piece] - cross(a.origin_tool_m[j], force));
+}
+
+// Takes the step from every joint that would press an overloaded piece harder: all joints between the piece and the
+// palm, since each of them moves it. A step that gives way is never stopped.
+void stop_loaded(const Model& model, const ArticulationState& a, Scratch& scratch,
+                 double (&step)[kMaxJoints]) PALPATE_RT {
+  const double limit2 = model.params.stop_force_N * model.params.stop_force_N;
+  const auto pieces = static_cast<std::int32_t>(model.piece.size());
+  for (std::int32_t p = 0; p < pieces; ++p) {  // bound: kMaxPieces * kMaxJoints
+    if (!(squared_norm(a.piece_force_tool_N[p]) > limit2)) continue;
+    std::int32_t j = model.piece[static_cast<std::size_t>(p)].joint;
+    for (std::int32_t up = 0; up < kMaxJoints && j >= 0; ++up) {
+      if (step[j] * load_on(model, a, j, p) < 0) {
+        step[j] = 0;
+        scratch.status |= Status::kJointStopped;
+      }
+      j = joint_at(model, j).parent;
+    }
+  }
+}
+
+// Moves the joints. Returns whether any of them did.
+bool move_joints(const Model& model, State& state, Scratch& scratch, const Input& input) PALPATE_RT {
+  ArticulationState& a = state.articulation;
+  const std::int32_t joints = joint_count(model);
+  double step[kMaxJoints] = {};
+  for (std::int32_t j = 0; j < joints; ++j) {  // bound: kMaxJoints
+    const double fastest = joint_at(model, j).speed_max * model.params.period_s;
+    step[j] = clamp_to(goal_of(model, state, scratch, input, j) - a.joint[j], -fastest, fastest);
+  }
+  stop_loaded(model, a, scratch, step);
+  bool moved = false;
+  for (std::int32_t j = 0; j < joints; ++j) {  // bound: kMaxJoints
+    if (step[j] == 0) continue;
+    a.joint[j] = clamp_to(a.joint[j] + step[j], joint_at(model, j).lowest, joint_at(model, j).highest);
+    moved = true;
+  }
+  return moved;
+}
+
+void place_pieces(const Model& model, ArticulationState& a) PALPATE_RT {
+  Pose link[kMaxJoints];
+  place_links(model, a.joint, link, a.axis_tool, a.origin_tool_m);
+  for (std::size_t p = 0; p < model.piece.size(); ++p) {  // bound: kMaxPieces
+    const std::int32_t j = model.piece[p].joint;
+    if (j >= 0) a.motion_tool[p] = link[j] * joint_at(model, j).zero_inverse;
+  }
+}
+
+void keep_previous(const Model& model, ArticulationState& a) PALPATE_RT {
+  for (std::size_t p = 0; p < model.piece.size(); ++p) a.motion_previous_tool[p] = a.motion_tool[p];
+}
+
+// F_palm = -sum F_i - M g on the body, and its moment about the tool's origin (Cui & Xiao 2008: the palm supports the
+// body without deforming it). The fingers' forces on the body are the opposite of those on the tool.
+void balance_palm(const Model& model, const State& state, Scratch& scratch) PALPATE_RT {
+  constexpr Real kGravity_m_per_s2 = 9.80665;
+  const Vec3 up{0, model.params.body_mass_kg * kGravity_m_per_s2, 0};
+  const Vec3 centre{model.params.body_centre_x_m, model.params.body_centre_y_m, model.params.body_centre_z_m};
+  scratch.palm_w.force_N = scratch.contact_wrench_w.force_N + up;
+  scratch.palm_w.torque_Nm = scratch.contact_wrench_w.torque_Nm + cross(centre - state.tool_w.position_m, up);
+  const Vec3 out_of_palm = rotate(state.tool_w.orientation, {0, 0, -1});
+  const bool held = squared_norm(scratch.contact_wrench_w.force_N) > 0;
+  if (held && dot(scratch.palm_w.force_N, out_of_palm) < 0) scratch.status |= Status::kGraspUnstable;
+}
+
+}  // namespace
+
+void place_links(const Model& model, const double* joint, Pose* link_tool, Vec3* axis_tool,
+                 Vec3* origin_tool_m) PALPATE_RT {
+  const std::int32_t joints = joint_count(model);
+  for (std::int32_t j = 0; j < joints; ++j) {  // bound: kMaxJoints; parents come first
+    const Joint& row = joint_at(model, j);
+    const Pose axis = row.parent < 0 ? row.before : link_tool[row.parent] * row.before;
+    const Vec3 z = rotate(axis.orientation, {0, 0, 1});
+    const double q = row.sign * joint[j];
+    Pose moved = axis;
+    if (static_cast<JointKind>(row.kind) == JointKind::kSlide) {
+      moved.position_m += q * z;
+    } else {
+      moved.orientation = axis.orientation * Quat{math::cos(0.5 * q), 0, 0, math::sin(0.5 * q)};
+    }
+    link_tool[j] = moved * row.after;
+    if (axis_tool != nullptr) axis_tool[j] = z;
+    if (origin_tool_m != nullptr) origin_tool_m[j] = axis.position_m;
+  }
+}
+
+void articulate(const Model& model, State& state, Scratch& scratch, const Input& input) PALPATE_RT {
+  ArticulationState& a = state.articulation;
+  const bool first = a.started == 0;
+  if (first) {
+    for (std::int32_t j = 0; j < joint_count(model); ++j) a.joint[j] = joint_at(model, j).open;  // bound: kMaxJoints
+    a.started = 1;
+  }
+  if (a.moved != 0) keep_previous(model, a);
+  advance_closing(model, state, scratch, input);
+  a.moved = move_joints(model, state, scratch, input) || first ? 1 : 0;
+  if (a.moved != 0) place_pieces(model, a);
+  if (first) keep_previous(model, a);
+}
+
+void load_pieces(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
+  ArticulationState& a = state.articulation;
+  for (std::size_t p = 0; p < model.piece.size(); ++p) {  // bound: kMaxPieces
+    a.piece_force_tool_N[p] = {};
+    a.piece_torque_tool_Nm[p] = {};
+  }
+  const Quat to_tool = conjugate(state.tool_w.orientation);
+  const std::int32_t contacts = scratch.contact_count < kMaxContacts ? scratch.contact_count : kMaxContacts;
+  for (std::int32_t i = 0; i < contacts; ++i) {  // bound: kMaxContacts
+    const Contact& contact = scratch.contact[i];
+    if (!(contact.force_N > 0)) continue;
+    const std::int32_t piece = piece_of(model, contact);
+    const Vec3 force = rotate(to_tool, contact.force_N * contact.normal_w);
+    a.piece_force_tool_N[piece] += force;
+    a.piece_torque_tool_Nm[piece] += cross(inverse_transform(state.tool_w, contact.position_w), force);
+  }
+  if (static_cast<Articulation>(model.params.articulation) == Articulation::kHand) balance_palm(model, state, scratch);
+}
+
+}  // namespace palpate

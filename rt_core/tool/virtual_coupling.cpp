@@ -1,0 +1,88 @@
+#include "rt_core/tool/virtual_coupling.h"
+
+#include "rt_core/cholesky.h"
+#include "rt_core/contact/contact_stiffness.h"
+
+namespace palpate {
+
+namespace {
+
+constexpr std::int32_t kDof = 6;
+
+// (contact_stiffness + diag(coupling)) motion = wrench. Returns false, `motion` untouched, when singular.
+bool solve(const Model& model, const double (&contact_stiffness)[36], const Wrench& wrench, Twist& motion) PALPATE_RT {
+  const Vec3 f = wrench.force_N, m = wrench.torque_Nm;
+  Real x[kDof] = {f.x, f.y, f.z, m.x, m.y, m.z};
+  Real matrix[kDof * kDof];
+  for (std::int32_t i = 0; i < kDof * kDof; ++i) matrix[i] = contact_stiffness[i];
+  for (std::int32_t i = 0; i < 3; ++i) {
+    matrix[i * (kDof + 1)] += model.params.coupling_N_per_m;
+    matrix[(i + 3) * (kDof + 1)] += model.params.coupling_Nm_per_rad;
+  }
+  if (!cholesky_factor(matrix, kDof)) return false;
+  cholesky_solve(matrix, x, kDof);
+  motion = {{x[0], x[1], x[2]}, {x[3], x[4], x[5]}};
+  return true;
+}
+
+// Springs of the slipping regions that `motion` of the tool would turn back. Returns whether there are any.
+bool add_reversals(const State& state, const Twist& motion, ContactStiffness& stiffness) PALPATE_RT {
+  bool any = false;
+  for (const Region& region : state.region) {  // bound: kMaxRegions
+    if (region.id == 0 || region.lost_ticks > 0 || !(region.reversal_N_per_m > 0)) continue;
+    const Vec3 arm = region.centre_w - state.tool_w.position_m;
+    const Vec3 forward = unit_or(region.stretch_w, {});
+    if (!(dot(motion.translation_m + cross(motion.rotation_rad, arm), forward) < 0)) continue;
+    add_spring(stiffness, region.reversal_N_per_m, forward, cross(arm, forward));
+    any = true;
+  }
+  return any;
+}
+
+// Motion of the tool under a wrench: the tangent is right for slipping forwards, so try that first.
+bool answer(const Model& model, const State& state, const Wrench& wrench, Twist& motion) PALPATE_RT {
+  Twist forwards;
+  if (!solve(model, state.contact_stiffness, wrench, forwards)) return false;
+  ContactStiffness reversals;
+  if (!add_reversals(state, forwards, reversals)) {
+    motion = forwards;
+    return true;
+  }
+  double matrix[36];
+  store(reversals, matrix);
+  for (std::int32_t i = 0; i < 36; ++i) matrix[i] += state.contact_stiffness[i];  // bound: 36
+  return solve(model, matrix, wrench, motion);
+}
+
+}  // namespace
+
+Twist twist_between(const Pose& from, const Pose& to) PALPATE_RT {
+  return {to.position_m - from.position_m, small_rotation_vector(to.orientation * conjugate(from.orientation))};
+}
+
+Pose moved(const Pose& pose, const Twist& twist) PALPATE_RT {
+  return {pose.position_m + twist.translation_m, normalised(small_rotation(twist.rotation_rad) * pose.orientation)};
+}
+
+bool follow(const Model& model, const State& state, const Twist& handle, Twist& tool) PALPATE_RT {
+  tool = handle;
+  return answer(
+      model, state,
+      {model.params.coupling_N_per_m * handle.translation_m, model.params.coupling_Nm_per_rad * handle.rotation_rad},
+      tool);
+}
+
+bool correct(const Model& model, const State& state, const Wrench& contact_w, const Wrench& coupling_on_tool_w,
+             Twist& correction) PALPATE_RT {
+  correction = {};
+  return answer(model, state,
+                {contact_w.force_N + coupling_on_tool_w.force_N, contact_w.torque_Nm + coupling_on_tool_w.torque_Nm},
+                correction);
+}
+
+Wrench coupling_wrench(const Model& model, const Pose& device_w, const Pose& tool_w) PALPATE_RT {
+  const Twist offset = twist_between(device_w, tool_w);
+  return {model.params.coupling_N_per_m * offset.translation_m, model.params.coupling_Nm_per_rad * offset.rotation_rad};
+}
+
+}  // namespace palpate

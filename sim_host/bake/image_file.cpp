@@ -1,0 +1,15 @@
+#include "sim_host/bake/image_file.h"
+
+#include <fmt/format.h>
+
+namespace palpate {
+
+ImageFile::ImageFile(const std::string& path) : file_(path) {
+  const ImageResult result = open_image(file_.bytes(), model_);
+  if (result.error == ImageError::kNone) return;
+  const std::string at = result.index >= 0 ? fmt::format("[{}]", result.index) : "";
+  throw std::runtime_error(
+      fmt::format("{}: {}{}: {}; bake the scene again", path, result.field, at, describe(result.error)));
+}
+
+}  // namespace palpate

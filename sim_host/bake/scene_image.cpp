@@ -1,0 +1,27 @@
+#include "sim_host/bake/scene_image.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <stdexcept>
+
+#include "config/bake/compile.h"
+
+namespace palpate {
+
+SceneImage prepare_scene(const std::string& scene, const std::string& image, const std::string& record) {
+  const std::filesystem::path source(scene);
+  if (source.extension() != ".toml") return {scene, std::nullopt};
+  SceneImage result{image, load_scene(scene)};
+  if (image.empty()) {
+    result.image_path = (std::filesystem::path(record).parent_path() / source.stem()).string() + ".pal";
+  }
+  const CompileResult compiled = compile_scene(*result.scene);
+  for (const std::string& warning : compiled.report.warnings) fmt::print(stderr, "warning: {}\n", warning);
+  std::string error;
+  if (!save_image(result.image_path, compiled.bytes, error)) throw std::runtime_error(error);
+  fmt::print("baked   {} -> {}\n", scene, result.image_path);
+  return result;
+}
+
+}  // namespace palpate

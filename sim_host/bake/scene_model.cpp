@@ -1,0 +1,38 @@
+#include "sim_host/bake/scene_model.h"
+
+#include <fmt/format.h>
+
+#include <cstring>
+#include <stdexcept>
+
+#include "config/bake/compile.h"
+#include "rt_core/image.h"
+
+namespace palpate {
+
+SceneModel::SceneModel(const std::string& path, const SceneOverlays& overlays) {
+  if (!path.ends_with(".toml")) {
+    if (!overlays.file.empty() || !overlays.setting.empty())
+      throw std::runtime_error(path + ": --with and --set change a scene (.toml), and this is a baked image");
+    file_ = std::make_unique<ImageFile>(path);
+    return;
+  }
+  scene_ = load_scene(path, overlays);
+  compile();
+}
+
+SceneModel::SceneModel(const SceneDesc& scene) : scene_(scene) { compile(); }
+
+void SceneModel::compile() {
+  const CompileResult compiled = compile_scene(*scene_);
+  const std::size_t size = compiled.bytes.size();
+  blocks_.resize((size + kImageAlignment - 1) / kImageAlignment);
+  std::memcpy(blocks_.data(), compiled.bytes.data(), size);
+  const ImageResult result = open_image({reinterpret_cast<const std::byte*>(blocks_.data()), size}, model_);
+  if (result.error != ImageError::kNone) {
+    throw std::runtime_error(fmt::format("{}: the compiled scene fails its own check: {}: {}", scene_->name,
+                                         result.field, describe(result.error)));
+  }
+}
+
+}  // namespace palpate

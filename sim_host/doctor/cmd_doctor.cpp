@@ -1,0 +1,53 @@
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include <fmt/format.h>
+#include "sim_host/cli.h"
+#include "sim_host/doctor/doctor.h"
+
+namespace palpate {
+
+namespace {
+
+struct Options {
+  std::string device = "loopback";
+  int cpu = -1;
+  int priority = 80;
+};
+
+void print_summary(const std::vector<DoctorItem>& items) {
+  int failed = 0, unknown = 0;
+  for (const DoctorItem& item : items) {
+    failed += item.verdict == Verdict::kFail;
+    unknown += item.verdict == Verdict::kUnknown;
+  }
+  fmt::print("{} items: {} fail, {} unknown. Nothing was changed; Palpate starts either way.\n", items.size(), failed,
+             unknown);
+}
+
+}  // namespace
+
+void add_doctor_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("doctor", "Check this machine and the device's bus for hard real time");
+  command->add_option("--device", options->device, "device address: loopback, can:IFACE, usb:/dev/hidrawN")
+      ->capture_default_str();
+  command->add_option("--cpu", options->cpu, "CPU the controller will run on");
+  command->add_option("--priority", options->priority, "SCHED_FIFO priority of the loop")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 98));
+  command->footer("Examples:\n  palpate doctor\n  palpate doctor --device can:can0 --cpu 3");
+  command->callback([options, &exit_code] {
+    DoctorSources sources = this_machine();
+    sources.cpu = options->cpu;
+    sources.loop_priority = options->priority;
+    std::vector<DoctorItem> items = examine_machine(sources);
+    const std::vector<DoctorItem> device = examine_device(sources, options->device);
+    items.insert(items.end(), device.begin(), device.end());
+    fmt::print("{}", doctor_table(items));
+    print_summary(items);
+    exit_code = kExitOk;
+  });
+}
+
+}  // namespace palpate

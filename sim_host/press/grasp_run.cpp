@@ -1,0 +1,134 @@
+#include "sim_host/press/grasp_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "config/hand/hand_model.h"
+#include "rt_core/skeleton/skeleton.h"
+#include "rt_core/skeleton/temporal_order.h"
+#include "sim_host/press/press.h"
+
+namespace palpate {
+
+namespace {
+
+// The scene's poses, with every finger's command taken from its delay earlier.
+std::vector<TimedPose> delayed_poses(const SceneDesc& scene, double period_s, const GraspOptions& options) {
+  std::vector<TimedPose> poses = scripted_poses(scene.path, period_s);
+  const std::vector<TimedPose> told = poses;
+  for (std::size_t f = 0; f < kMaxFingers; ++f) {
+    const auto late = static_cast<std::size_t>(std::llround(std::max(0.0, options.delay_s[f]) / period_s));
+    for (std::size_t n = 0; n < poses.size(); ++n)
+      poses[n].joints.closing[f] = told[n >= late ? n - late : 0].joints.closing[f];
+  }
+  return poses;
+}
+
+// Index of the last pose at which all fingers are told to be as closed as they ever are.
+std::size_t end_of_hold(const std::vector<TimedPose>& poses) {
+  float most = 0;
+  std::size_t last = 0;
+  for (std::size_t n = 0; n < poses.size(); ++n) {
+    float sum = 0;
+    for (const float closing : poses[n].joints.closing) sum += closing;
+    if (sum < most) continue;
+    most = sum;
+    last = n;
+  }
+  return last;
+}
+
+// Extreme-fibre stress at each anchor, summed over the regions' beams that end there (State keeps the largest only):
+// what all contacts do together, as an upper bound, since the fibres need not coincide.
+std::vector<double> anchor_stresses_Pa(const Model& model, const State& state) {
+  std::vector<double> stress(model.anchor.size(), 0.0);
+  Vec3 offset[kMaxAnchors];
+  for (std::int32_t slot = 0; slot < kMaxRegions; ++slot) {
+    const Region& region = state.region[slot];
+    if (!is_in_contact(region)) continue;
+    const Vec3 on_body = -(region.normal_force_N * region.normal_w + region.friction_force_w);
+    Skeleton skeleton;
+    const std::span<const Vec3> offsets = earlier_displacements(model, state, slot, offset);
+    if (!solve_skeleton(model, offsets, region.centre_w, on_body, skeleton)) continue;
+    for (std::int32_t a = 0; a < skeleton.count; ++a) {
+      const auto at = static_cast<std::size_t>(a);
+      const BeamStress beam = skeleton_anchor(skeleton, model.anchor[at], model.params.poisson_ratio, a).stress;
+      stress[at] += std::abs(beam.axial_Pa) + beam.bending_Pa;
+    }
+  }
+  return stress;
+}
+
+double normal_sum_N(const State& state) {
+  double sum = 0;
+  for (const Region& region : state.region) sum += region.id != 0 && region.lost_ticks == 0 ? region.normal_force_N : 0;
+  return sum;
+}
+
+void keep_hold(const Model& model, const PressRow& row, const State& state, GraspRun& run) {
+  run.held = std::make_unique<State>(state);
+  run.contact_w = row.record.output.contact_w;
+  run.palm_w = row.record.output.palm_w;
+  run.regions = row.record.output.regions;
+  run.status = row.record.output.status;
+  run.held_stress_Pa = anchor_stresses_Pa(model, state);
+  run.part_force_N.assign(kHandParts + 1, 0);
+  for (std::size_t p = 0; p < model.piece.size(); ++p) {
+    const std::int32_t part = model.piece[p].part;
+    if (part >= 1 && part <= kHandParts)
+      run.part_force_N[static_cast<std::size_t>(part)] += norm(state.articulation.piece_force_tool_N[p]);
+  }
+}
+
+bool is_at_rest(const Model& model, const State& state, const Output& output) {
+  bool rest = output.contact_w == Wrench{} && output.energy_J == 0 && output.regions == 0;
+  for (std::size_t a = 0; a < model.anchor.size(); ++a)
+    rest = rest && state.anchor[a].displacement_w == Vec3{} && state.anchor[a].stress_Pa == 0;
+  return rest;
+}
+
+}  // namespace
+
+GraspRun run_grasp(const Model& model, const SceneDesc& scene, const GraspOptions& options) {
+  if (scene.path.point.empty()) throw std::runtime_error(scene.name + ": no [[path.point]]: nothing to play");
+  if (scene.articulation != Articulation::kHand)
+    throw std::runtime_error(scene.name + ": no [hand]; this command plays hand scenes, `palpate press` plays any");
+  const std::vector<TimedPose> poses = delayed_poses(scene, model.params.period_s, options);
+  const std::size_t hold_end = end_of_hold(poses);
+  const auto watched = static_cast<std::size_t>(0.2 / model.params.period_s);
+  GraspRun run;
+  run.name = scene.name;
+  run.stress_Pa.resize(model.anchor.size());
+  State state;
+  std::size_t n = 0;
+  double before_N = -1;
+  press(model, poses, {options.hand_N_per_m}, state, nullptr,
+        [&](const PressRow& row, const State& now, const Scratch&) {
+          const double sum_N = normal_sum_N(now);
+          run.residual_max_m = std::max(run.residual_max_m, row.record.output.residual_m);
+          if (n + watched > hold_end && n <= hold_end && sum_N > 0)
+            run.chatter = std::max(run.chatter, std::abs(sum_N - before_N) / sum_N);
+          before_N = sum_N;
+          if (n % static_cast<std::size_t>(std::max(1, options.every)) == 0) {
+            run.time_s.push_back(row.time_s);
+            const std::vector<double> stress = anchor_stresses_Pa(model, now);
+            for (std::size_t a = 0; a < stress.size(); ++a) run.stress_Pa[a].push_back(stress[a]);
+          }
+          if (n == hold_end) keep_hold(model, row, now, run);
+          if (n + 1 == poses.size()) run.back_at_rest = is_at_rest(model, now, row.record.output);
+          n += 1;
+        });
+  return run;
+}
+
+double force_difference(const GraspRun& a, const GraspRun& b) {
+  double most = 0, difference = 0;
+  for (std::size_t part = 0; part < std::min(a.part_force_N.size(), b.part_force_N.size()); ++part) {
+    most = std::max(most, std::max(a.part_force_N[part], b.part_force_N[part]));
+    difference = std::max(difference, std::abs(a.part_force_N[part] - b.part_force_N[part]));
+  }
+  return most > 0 ? difference / most : 0;
+}
+
+}  // namespace palpate

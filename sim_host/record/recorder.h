@@ -1,0 +1,48 @@
+// Drains the telemetry ring on an ordinary thread: into a recording, if there is one, and into a listener (summary).
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <string>
+#include <thread>
+
+#include "rt_core/telemetry.h"
+#include "sim_host/record/recording.h"
+
+namespace palpate {
+
+class Recorder {
+ public:
+  // `file` may be null. `listen` is called on the recorder's thread with every record received. All must outlive this.
+  Recorder(const TelemetryRegion& region, RecordingWriter* file, std::function<void(const TickRecord&)> listen);
+  ~Recorder();
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
+
+  void start();
+  // Takes what is still in the ring, finishes the file and ends the thread. Call when the controller no longer writes,
+  // or is not to be listened to any more.
+  void stop();
+  // After stop(): empty, or why the file is incomplete.
+  const std::string& error() const { return error_; }
+  std::uint64_t records() const { return records_; }
+  std::uint64_t lost() const { return lost_; }
+
+ private:
+  void run();
+  void drain();
+  template <typename Action>
+  void on_file(Action action);
+
+  TelemetryReader reader_;
+  RecordingWriter* file_;
+  std::function<void(const TickRecord&)> listen_;
+  std::uint64_t expected_ = 1;
+  std::uint64_t records_ = 0;
+  std::uint64_t lost_ = 0;
+  std::string error_;
+  std::atomic<bool> stopping_{false};
+  std::thread thread_;
+};
+
+}  // namespace palpate

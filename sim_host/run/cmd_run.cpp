@@ -1,0 +1,121 @@
+// `palpate run`: feel (or let a simulated hand feel) a scene.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+
+#include "sim_host/cli.h"
+#include "sim_host/doctor/doctor.h"
+#include "sim_host/run/run_session.h"
+
+namespace palpate {
+
+namespace {
+
+struct RunCommand {
+  RunOptions run;
+  bool no_record = false, no_black_box = false, live = false;
+  int worst = 3;
+};
+
+// One line about the real-time checklist, when something on it fails.
+void print_hint(const RunOptions& options) {
+  DoctorSources sources = this_machine();
+  sources.cpu = options.cpu;
+  sources.loop_priority = options.priority;
+  std::vector<DoctorItem> items = examine_machine(sources);
+  const std::vector<DoctorItem> device = examine_device(sources, options.device);
+  items.insert(items.end(), device.begin(), device.end());
+  const std::string failing = failing_items(items);
+  if (failing.empty()) return;
+  fmt::print(stderr,
+             "hint: late ticks are likely under load, these checks fail: {}; `palpate doctor` says what to do\n",
+             failing);
+}
+
+void print_black_box(const RunResult& result) {
+  for (const BlackBoxDump& dump : result.dumps) {
+    fmt::print("fault   {} at record {}\n        {} ({} ticks, {})\n        {} (their frames, re-encoded)\n",
+               dump.cause, dump.sequence, dump.recording, dump.ticks,
+               dump.replayable ? "palpate replay verifies it" : "can be listed, not replayed", dump.log);
+  }
+  if (!result.black_box_error.empty()) {
+    fmt::print(stderr, "palpate: black box incomplete: {}\n", result.black_box_error);
+  }
+}
+
+int run(RunCommand& command) {
+  RunOptions& options = command.run;
+  if (command.no_record) options.record.clear();
+  if (!command.no_black_box) {
+    options.black_box =
+        options.record.empty() ? "palpate" : std::filesystem::path(options.record).replace_extension().string();
+  }
+  LivePrinter printer;
+  if (command.live) options.progress = [&](const LiveState& state) { printer.print(live_text(state)); };
+  if (!options.quiet) options.before_start = [&] { print_hint(options); };
+  const RunResult result = run_session(options);
+  if (result.summary.ticks > 0) fmt::print("{}", summary_text(result.summary, result.lost, command.worst));
+  if (result.summary.ticks == 0) {
+    fmt::print("nothing ran, nothing was recorded\n");
+    if (!options.record.empty()) std::filesystem::remove(options.record);
+  } else if (!options.record.empty() && result.recorder_error.empty()) {
+    fmt::print("record  {} ({} ticks){}\n", options.record, result.summary.ticks,
+               result.interrupted ? ", stopped by signal" : "");
+  }
+  print_black_box(result);
+  if (!result.recorder_error.empty()) fmt::print(stderr, "palpate: recording incomplete: {}\n", result.recorder_error);
+  if (result.controller_exit != 0) {
+    fmt::print(stderr, "palpate: the controller ended with exit code {}\n", result.controller_exit);
+  }
+  return result.faulted() || result.controller_exit != 0 || !result.recorder_error.empty() ? kExitFailed : kExitOk;
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app, int& exit_code) {
+  auto settings = std::make_shared<RunCommand>();
+  RunOptions* options = &settings->run;
+  CLI::App* command = app.add_subcommand("run", "Render a scene at its full rate on a device or on the simulated hand");
+  command->add_option("SCENE", options->scene, "scene (.toml, baked first) or image (.pal)")->required();
+  command
+      ->add_option("--device", options->device,
+                   "auto, loopback (simulated device and hand), can:IFACE or usb:/dev/hidrawN")
+      ->capture_default_str();
+  command->add_option("--duration", options->duration_s, "seconds")
+      ->capture_default_str()
+      ->check(CLI::Range(0.1, 86400.0));
+  command->add_option("--record", options->record, "recording to write")->capture_default_str();
+  command->add_flag("--no-record", settings->no_record, "write no recording");
+  command->add_option("--path", options->path,
+                      "motion of the simulated hand, CSV: time_s,x_mm,y_mm,z_mm[,rx_deg,ry_deg,rz_deg]; default: the "
+                      "scene's own");
+  add_joint_options(*command, options->joints);
+  command->add_option("--image", options->image,
+                      "where to write the image of a .toml scene; default: beside the recording");
+  command->add_option("--cpu", options->cpu, "CPU of the real-time thread")->check(CLI::Range(-1, 1023));
+  command->add_option("--priority", options->priority, "SCHED_FIFO priority of the real-time thread; 0: none")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 98));
+  command->add_flag("--quiet", options->quiet, "no live status line, no hint about the machine");
+  command->add_flag("--live", settings->live, "a table of the times of every stage, refreshed each second");
+  command->add_option("--worst", settings->worst, "how many of the worst ticks to list at the end, with their parts")
+      ->capture_default_str()
+      ->check(CLI::Range(0, static_cast<int>(kWorstTicksKept)));
+  command->add_flag("--no-black-box", settings->no_black_box,
+                    "do not write the last seconds (RECORD.fault-N.plr and .log) when a fault latches");
+  command->footer(
+      "Ctrl-C ramps the force to zero and leaves a complete recording. Exits with 1 when a fault was latched; the "
+      "last\n"
+      "seconds before it are then in RECORD.fault-1.plr (see palpate replay) and, as CAN frames encoded again from\n"
+      "it, in RECORD.fault-1.log (candump -L format: canplayer vcan0=palpate0 -I RECORD.fault-1.log).\n"
+      "Examples:\n"
+      "  palpate run config/scenes/ellipsoid_mallet.toml --duration 10 --record run.plr\n"
+      "  palpate run mallet.pal --device can:can0 --cpu 3 --priority 80 --no-record\n"
+      "  palpate run mallet.pal --path hand.csv --live --worst 16\n"
+      "  palpate run config/scenes/grasp_cylinder_5.toml --close 0.7 --joint index_tip_flexion=20");
+  command->callback([settings, &exit_code] { exit_code = run(*settings); });
+}
+
+}  // namespace palpate

@@ -1,0 +1,43 @@
+// The host's end of a running controller: starts palpate-rt, exchanges the two sealed memories with it over a Unix
+// socket, and ends it in order.
+//
+// Set-up protocol on the socket (SOCK_SEQPACKET), each step one descriptor with a label:
+//   host -> controller  'C'  the command mailbox      (the controller checks size and seals, maps it read-only)
+//   controller -> host  'T'  the telemetry region     (the host does the same)
+// Nothing travels on the socket afterwards.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hal/system/shared_memory.h"
+#include "rt_core/mailbox.h"
+#include "rt_core/telemetry.h"
+#include "sim_host/run/process.h"
+
+namespace palpate {
+
+class ControllerLink {
+ public:
+  // Starts `program` with `arguments` and `--control-fd`. `device_fd` >= 0 is handed over as `kDeviceDescriptor`.
+  // Throws std::runtime_error when the controller does not come up within 5 s; its own error text is on stderr then.
+  ControllerLink(const std::string& program, std::vector<std::string> arguments, int device_fd);
+
+  const TelemetryRegion& telemetry() const { return *static_cast<const TelemetryRegion*>(telemetry_.data()); }
+  MailboxWriter& mailbox() { return *mailbox_writer_; }
+  Process& process() { return process_; }
+  // Asks for zero force and the end of the loop, waits, then insists: SIGTERM after 3 s, SIGKILL after 1 s more.
+  // Returns the controller's exit code.
+  int finish();
+
+  static constexpr int kControlDescriptor = 3;
+  static constexpr int kDeviceDescriptor = 4;
+
+ private:
+  SharedMemory mailbox_memory_, telemetry_;
+  std::unique_ptr<MailboxWriter> mailbox_writer_;
+  Process process_;
+};
+
+}  // namespace palpate

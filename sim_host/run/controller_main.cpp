@@ -1,0 +1,279 @@
+// palpate-rt: the controller. Opens a baked image, connects to the device and (if started by one) to the host, makes
+// itself a real-time thread, and runs the loop. No parser, no graphics; everything is allocated before the first tick.
+#include <fcntl.h>
+#include <getopt.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "hal/bus/bus_budget.h"
+#include "hal/bus/device_address.h"
+#include "hal/bus/loopback.h"
+#include "hal/loop/loop.h"
+#include "hal/system/rt_linux.h"
+#include "hal/system/shared_memory.h"
+#include "rt_core/image.h"
+#include "sim_host/build_id.h"
+#include "sim_host/run/heap_count.h"
+#include "sim_host/run/host_port.h"
+
+namespace palpate {
+namespace {
+
+enum Exit { kOk = 0, kFaulted = 1, kUsage = 2, kUnavailable = 3, kSilentAtStart = 4 };
+
+constexpr char kHelp[] =
+    "palpate-rt --image FILE --device ADDRESS [options]: the real-time controller\n"
+    "  --image FILE        baked scene (palpate bake)\n"
+    "  --device ADDRESS    auto, can:IFACE, usb:/dev/hidrawN or loopback[:NAME], each with optional ,classic and "
+    ",node=N\n"
+    "  --device-fd N       use the inherited socket N instead of opening the loopback\n"
+    "  --control-fd N      inherited Unix socket to the host: telemetry and commands; default: none, arm at once\n"
+    "  --duration S        stop after S seconds; default: when told to\n"
+    "  --cpu N             pin to this CPU; default: any\n"
+    "  --priority P        SCHED_FIFO priority 1..98, 0: ordinary scheduling; default 80\n"
+    "Exit codes: 0 done, 1 a fault was latched, 2 bad arguments or image, 3 device, host or memory unavailable,\n"
+    "            4 the device sent nothing at start. In every case the last commands sent are zero force, drives off.\n"
+    "Example: palpate-rt --image mallet.pal --device can:can0 --cpu 3 --duration 60\n";
+
+constexpr int kSocketTimeout_ms = 2000;
+constexpr double kHostSilence_s = 2.0;  // forty heartbeats; see host_port.h
+constexpr double kStartTimeout_s = 3.0;
+
+struct Arguments {
+  std::string image, device = "auto";
+  int device_fd = -1, control_fd = -1, cpu = -1, priority = 80;
+  double duration_s = 0;
+};
+
+// A failed step ends the program with this exit code and message.
+struct Failure {
+  int exit_code;
+  std::string text;
+};
+
+double number(const char* option, const char* text, double lowest, double highest) {
+  char* end = nullptr;
+  const double value = std::strtod(text, &end);
+  if (end != text && *end == '\0' && value >= lowest && value <= highest) return value;
+  throw Failure{kUsage, std::string(option) + ": '" + text + "' is not a number in the allowed range"};
+}
+
+Arguments parse(int argc, char** argv) {
+  Arguments arguments;
+  const option options[] = {{"image", 1, nullptr, 'i'},     {"device", 1, nullptr, 'd'},
+                            {"device-fd", 1, nullptr, 'f'}, {"control-fd", 1, nullptr, 'c'},
+                            {"duration", 1, nullptr, 's'},  {"cpu", 1, nullptr, 'u'},
+                            {"priority", 1, nullptr, 'p'},  {"help", 0, nullptr, 'h'},
+                            {"version", 0, nullptr, 'v'},   {nullptr, 0, nullptr, 0}};
+  const auto integer = [](const char* name, double low, double high) {
+    return static_cast<int>(number(name, optarg, low, high));
+  };
+  for (int c; (c = getopt_long(argc, argv, "", options, nullptr)) != -1;) {
+    if (c == 'i') arguments.image = optarg;
+    if (c == 'd') arguments.device = optarg;
+    if (c == 'f') arguments.device_fd = integer("--device-fd", 0, 1 << 20);
+    if (c == 'c') arguments.control_fd = integer("--control-fd", 0, 1 << 20);
+    if (c == 's') arguments.duration_s = number("--duration", optarg, 0.001, 1e6);
+    if (c == 'u') arguments.cpu = integer("--cpu", -1, 1023);
+    if (c == 'p') arguments.priority = integer("--priority", 0, 98);
+    if (c == 'h') throw Failure{kOk, kHelp};
+    if (c == 'v') throw Failure{kOk, std::string(kBuildId) + "\n"};
+    if (c == '?') throw Failure{kUsage, "see palpate-rt --help"};
+  }
+  if (arguments.image.empty() || optind != argc) throw Failure{kUsage, "--image FILE is needed; see palpate-rt --help"};
+  return arguments;
+}
+
+// Maps the image for the life of the process.
+Model load_image(const std::string& path) {
+  const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  struct stat status {};
+  if (fd < 0 || fstat(fd, &status) != 0 || status.st_size <= 0) {
+    throw Failure{kUsage, path + ": cannot read: " + std::strerror(errno)};
+  }
+  const auto size = static_cast<std::size_t>(status.st_size);
+  void* data = mmap(nullptr, size, PROT_READ, MAP_PRIVATE | MAP_POPULATE, fd, 0);
+  close(fd);
+  if (data == MAP_FAILED) throw Failure{kUnavailable, path + ": cannot map: " + std::strerror(errno)};
+  Model model;
+  const ImageResult result = open_image({static_cast<const std::byte*>(data), size}, model);
+  if (result.error != ImageError::kNone) {
+    throw Failure{kUsage, path + ": " + result.field + ": " + describe(result.error) + "; bake the scene again"};
+  }
+  return model;
+}
+
+// The two memories shared with the host; empty without one.
+struct HostConnection {
+  SharedMemory mailbox, telemetry;
+  TelemetryWriter writer;
+};
+
+void connect_host(const Arguments& arguments, const Model& model, const State& initial, HostConnection& host) {
+  std::string error;
+  const int fd = receive_descriptor(arguments.control_fd, 'C', kSocketTimeout_ms, error);
+  if (fd >= 0) host.mailbox = SharedMemory::open_peer(fd, sizeof(MailboxRegion), error);
+  if (!host.mailbox) throw Failure{kUnavailable, "the host's command region is refused: " + error};
+  if (const char* wrong = check_mailbox(*static_cast<const MailboxRegion*>(host.mailbox.data()))) {
+    throw Failure{kUnavailable, std::string("the host's command region is of another build (") + wrong + ")"};
+  }
+  host.telemetry = SharedMemory::create("palpate-telemetry", sizeof(TelemetryRegion), error);
+  if (!host.telemetry) throw Failure{kUnavailable, "telemetry: " + error};
+  const std::unique_ptr<char, void (*)(void*)> full(realpath(arguments.image.c_str(), nullptr), std::free);
+  host.writer.open(*static_cast<TelemetryRegion*>(host.telemetry.data()), model, initial,
+                   static_cast<std::int64_t>(model.params.period_s * 1e9 + 0.5), kBuildId,
+                   full ? full.get() : arguments.image.c_str());
+  if (!send_descriptor(arguments.control_fd, 'T', host.telemetry.fd(), error)) throw Failure{kUnavailable, error};
+}
+
+// A set-up that cannot carry its traffic in every period is refused before anything is sent, with the table.
+void check_bus(const DeviceAddress& address, double period_s) {
+  if (address.kind != TransportKind::kCan) return;
+  BusBudget budget = haptic_node_budget(address.profile == WireProfile::kFd);
+  budget.period_us = period_s * 1e6;
+  const BusVerdict verdict = check_bus_budget(budget);
+  std::fprintf(stderr, "%s", verdict.text.c_str());
+  if (!verdict.fits) throw Failure{kUnavailable, "the bus cannot carry this traffic in every period"};
+}
+
+std::unique_ptr<Transport> connect_device(const Arguments& arguments, double period_s, DeviceAddress& address) {
+  std::string line, error;
+  const std::optional<DeviceAddress> parsed = parse_device_address(arguments.device, line, error);
+  if (!parsed) throw Failure{kUsage, error};
+  address = *parsed;
+  std::fprintf(stderr, "%s\n", line.c_str());
+  check_bus(address, period_s);
+  std::unique_ptr<Transport> transport =
+      arguments.device_fd >= 0 ? adopt_loopback(arguments.device_fd, error)
+                               : open_transport(address, DeviceSide::kController, 5 * kSocketTimeout_ms, error);
+  if (!transport) throw Failure{kUnavailable, error};
+  return transport;
+}
+
+LoopOptions loop_options(const Model& model, const Arguments& arguments) {
+  const double period_s = model.params.period_s;
+  LoopOptions options;
+  options.deadline.period_ns = static_cast<std::int64_t>(period_s * 1e9 + 0.5);
+  options.ticks = static_cast<std::uint64_t>(arguments.duration_s / period_s);
+  options.start_timeout_ticks = static_cast<std::uint32_t>(kStartTimeout_s / period_s);
+  options.silence_fault_ticks = static_cast<std::uint32_t>(model.params.silence_fault_ticks);
+  // Long enough for the ramp, with room for ticks that come late.
+  options.stop_ticks = static_cast<std::uint32_t>(3.0 * model.params.ramp_out_s / period_s) + 20;
+  return options;
+}
+
+struct Core {
+  State state;
+  Scratch scratch;
+};
+
+// What the device sent before the loop started is old, and reading it all would make the first tick late.
+void drain(DeviceBus& bus) {
+  constexpr int kMostReads = 16;  // 1024 frames: more than a socket holds
+  DeviceSample sample;
+  for (int i = 0; i < kMostReads; ++i) {
+    bus.receive(sample);
+    if (!sample.fresh) return;
+  }
+}
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kSanitized = true;
+#else
+constexpr bool kSanitized = false;
+#endif
+
+// What the loop's thread used while it ran.
+struct LoopUsage {
+  ThreadUsage thread;
+  long heap_calls = 0;  // -1: not counted
+};
+
+// The real-time thread: set-up, system-call filter, loop. Prints only before the filter is in place.
+LoopSummary run_loop(const Arguments& arguments, const Model& model, Core& core, HostConnection& host, DeviceBus& bus,
+                     const std::atomic<bool>& interrupted, LoopUsage& usage) {
+  std::atomic<bool> stop{false};
+  const auto* mailbox = static_cast<const MailboxRegion*>(host.mailbox.data());
+  HostPort port(mailbox, static_cast<std::uint32_t>(kHostSilence_s / model.params.period_s), interrupted, stop);
+  TelemetrySink sink(mailbox != nullptr ? &host.writer : nullptr);
+  SupervisedDevice device(bus, port);
+  ModelController controller(model, core.state, core.scratch);
+  MonotonicClock clock;
+  const CartesianKinematics kinematics;
+  LoopSummary summary;
+  std::thread thread([&] {
+    RtOptions options;
+    options.priority = arguments.priority;
+    options.cpu = arguments.cpu;
+    const RtSetup setup(options);
+    std::string reason = "built with a sanitizer, whose own library maps memory at any time";
+    const bool filtered = !kSanitized && install_syscall_filter(reason);
+    std::fprintf(stderr, "%s%s\n", setup.text().c_str(),
+                 filtered ? "ok       system-call filter: only what the loop needs"
+                          : ("REFUSED  system-call filter: " + reason).c_str());
+    drain(bus);
+    const ThreadUsage before = thread_usage();
+    const long heap_calls_before = heap_calls();
+    Loop loop(device, clock, controller, sink, port, kinematics, loop_options(model, arguments), stop);
+    summary = loop.run();
+    const long heap_calls_after = heap_calls();
+    usage.heap_calls = heap_calls_after < 0 ? -1 : heap_calls_after - heap_calls_before;
+    usage.thread = thread_usage() - before;
+    summary.faults |= port.faults();
+  });
+  thread.join();
+  return summary;
+}
+
+void print_usage(const LoopUsage& usage) {
+  std::fprintf(stderr, "loop thread: %ld minor and %ld major page faults, %ld waits, %ld preemptions, ",
+               usage.thread.minor_faults, usage.thread.major_faults, usage.thread.waits, usage.thread.preemptions);
+  if (usage.heap_calls >= 0) std::fprintf(stderr, "%ld heap calls\n", usage.heap_calls);
+  if (usage.heap_calls < 0) std::fprintf(stderr, "heap calls not counted\n");
+}
+
+int run(int argc, char** argv) {
+  const Arguments arguments = parse(argc, argv);
+  const std::atomic<bool>& interrupted = install_stop_signals();
+  const Model model = load_image(arguments.image);
+  const auto core = std::make_unique<Core>();
+  reset(core->state);
+  HostConnection host;
+  if (arguments.control_fd >= 0) connect_host(arguments, model, core->state, host);
+  DeviceAddress address;
+  const std::unique_ptr<Transport> transport = connect_device(arguments, model.params.period_s, address);
+  DeviceBus bus(*transport, address.profile, address.node);
+  LoopUsage usage;
+  const LoopSummary summary = run_loop(arguments, model, *core, host, bus, interrupted, usage);
+  if (summary.end == LoopEnd::kSilentAtStart) {
+    throw Failure{kSilentAtStart, "the device sent nothing at start: check power, cable, bus and node number"};
+  }
+  std::fprintf(stderr, "controller: %llu ticks, %llu missed, %llu without a fresh sample, faults 0x%x\n",
+               static_cast<unsigned long long>(summary.ticks), static_cast<unsigned long long>(summary.missed_slots),
+               static_cast<unsigned long long>(summary.stale_ticks), summary.faults);
+  print_usage(usage);
+  return summary.faults != 0 ? kFaulted : kOk;
+}
+
+}  // namespace
+}  // namespace palpate
+
+int main(int argc, char** argv) {
+  try {
+    return palpate::run(argc, argv);
+  } catch (const palpate::Failure& failure) {
+    const bool help = failure.exit_code == palpate::kOk;
+    std::fprintf(help ? stdout : stderr, "%s%s%s", help ? "" : "palpate-rt: ", failure.text.c_str(), help ? "" : "\n");
+    return failure.exit_code;
+  }
+}

@@ -1,0 +1,38 @@
+// The simulated device as a child process, connected to the controller by a socket pair.
+#pragma once
+
+#include <string>
+
+#include "hal/device/device_sim.h"
+#include "sim_host/bake/scene_image.h"
+#include "sim_host/run/process.h"
+
+namespace palpate {
+
+class DeviceProcess {
+ public:
+  // `path`: CSV of the hand's motion; empty: the scene's own. Throws std::runtime_error when there is neither.
+  // `priority`: SCHED_FIFO of the device, below the controller's; 0: ordinary scheduling.
+  DeviceProcess(const std::string& program, const SceneImage& scene, const std::string& path, const std::string& device,
+                int priority);
+  ~DeviceProcess();
+  DeviceProcess(const DeviceProcess&) = delete;
+  DeviceProcess& operator=(const DeviceProcess&) = delete;
+
+  int controller_end() const { return controller_end_; }
+  // Once the controller holds it: then the device notices the controller's end.
+  void close_controller_end();
+
+ private:
+  int controller_end_ = -1;
+  Process process_;
+};
+
+// The hand's motion of a scene as the CSV palpate-device reads (see hand_path_file.h).
+std::string path_csv(const PathDesc& path);
+// The scene's device and hand.
+PlantOptions plant_of(const SceneDesc& scene);
+// Their properties as palpate-device takes them: --set NAME=VALUE...
+std::vector<std::string> plant_arguments(const SceneDesc& scene);
+
+}  // namespace palpate

@@ -1,0 +1,51 @@
+// One run from start to summary: bake if needed, start the controller (and the simulated device), arm, watch, record,
+// stop in order.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "sim_host/latency/live_table.h"
+#include "sim_host/record/black_box.h"
+#include "sim_host/run/joint_script.h"
+#include "sim_host/run/run_summary.h"
+
+namespace palpate {
+
+struct RunOptions {
+  std::string scene;            // .toml or .pal
+  std::string device = "auto";  // auto, loopback, can:IFACE
+  double duration_s = 10;
+  std::string record = "run.plr";  // empty: do not record
+  std::string path;                // CSV of the simulated hand's motion; empty: the scene's own
+  JointOptions joints;             // told to an articulated tool through the mailbox
+  std::string image;               // where to write the image of a .toml scene; empty: beside the recording
+  int cpu = -1;                    // of the real-time thread; -1: any
+  int priority = 80;               // SCHED_FIFO; 0: ordinary scheduling
+  bool quiet = false;              // no live status line
+  bool arm = true;                 // false: never armed, hence zero force throughout; every stage computes all the same
+  bool repeat_path = false;        // the simulated hand repeats the scene's own motion for the whole duration
+  std::string black_box;           // prefix of the files written with every fault; empty: none
+  std::function<void()> before_start;              // scene and options are accepted, nothing has started; may be empty
+  std::function<void(const LiveState&)> progress;  // called about every second while the run goes on; may be empty
+  std::string program_folder;                      // of palpate-rt and palpate-device; empty: beside this program
+};
+
+struct RunResult {
+  RunSummary summary;
+  std::uint64_t lost = 0;
+  int controller_exit = 0;
+  std::string recorder_error;
+  bool interrupted = false;  // Ctrl-C
+  std::vector<BlackBoxDump> dumps;
+  std::string black_box_error;
+  double elapsed_s = 0;  // until the stop
+  bool faulted() const { return summary.fault != 0; }
+};
+
+// Throws std::runtime_error when the run cannot start, with the table when the traffic does not fit the CAN bus. SIGINT
+// and SIGTERM end it early and in order.
+RunResult run_session(const RunOptions& options);
+
+}  // namespace palpate

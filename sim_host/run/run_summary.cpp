@@ -1,0 +1,95 @@
+#include "sim_host/run/run_summary.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+
+#include "sim_host/status_text.h"
+
+namespace palpate {
+
+namespace {
+
+void time_row(std::string& text, const char* name, const Histogram& times) {
+  if (times.total == 0) return;
+  const auto us = [](std::int64_t ns) { return 1e-3 * static_cast<double>(ns); };
+  fmt::format_to(std::back_inserter(text), "  {:<16}{:>10.1f}{:>10.1f}{:>10.1f}   tick {}\n", name,
+                 us(percentile_ns(times, 0.5)), us(percentile_ns(times, 0.999)), us(times.max_ns), times.cycle_of_max);
+}
+
+void bit_rows(std::string& text, const RunSummary& summary) {
+  for (const BitText& bit : status_bit_texts()) {
+    const std::uint64_t ticks = summary.status_ticks[bit.bit];
+    if (ticks == 0) continue;
+    fmt::format_to(std::back_inserter(text), "status  {} in {} ticks: {}\n        remedy: {}\n", bit.name, ticks,
+                   bit.meaning, bit.remedy);
+  }
+  for (const BitText& bit : fault_bit_texts()) {
+    if ((summary.fault >> bit.bit & 1u) == 0) continue;
+    fmt::format_to(std::back_inserter(text), "FAULT   {}: {}\n        remedy: {}\n", bit.name, bit.meaning, bit.remedy);
+  }
+}
+
+}  // namespace
+
+void add(RunSummary& summary, const TickRecord& record) {
+  const TickTiming& timing = record.timing;
+  if (summary.ticks == 0) summary.first_deadline_ns = timing.deadline_ns;
+  summary.last_deadline_ns = timing.deadline_ns;
+  summary.ticks += 1;
+  summary.missed_ticks += record.input.overrun_ticks;
+  summary.stale_ticks += record.input.stale_ticks > 0 ? 1 : 0;
+  add(summary.wake, timing.wake_latency_ns, record.tick);
+  add(summary.receive, timing.receive_ns, record.tick);
+  add(summary.compute, timing.compute_ns, record.tick);
+  add(summary.transmit, timing.transmit_ns, record.tick);
+  add(summary.publish, timing.publish_ns, record.tick);
+  add(summary.sent, timing.wake_latency_ns + timing.receive_ns + timing.compute_ns + timing.transmit_ns, record.tick);
+  for (int i = 0; i < kStageCount; ++i) add(summary.stage[i], timing.stage_ns[i], record.tick);
+  add(summary.busy, busy_ns(timing), record.tick);
+  add(summary.worst, record);
+  const Output& output = record.output;
+  summary.device_force_max_N = std::max(summary.device_force_max_N, norm(output.device_w.force_N));
+  summary.contact_force_max_N = std::max(summary.contact_force_max_N, norm(output.contact_w.force_N));
+  summary.penetration_max_m = std::max(summary.penetration_max_m, output.penetration_m);
+  summary.regions_max = std::max(summary.regions_max, output.regions);
+  summary.high_water = record.high_water;
+  for (int bit = 0; bit < 32; ++bit) summary.status_ticks[bit] += output.status >> bit & 1u;
+  summary.fault |= output.fault;
+  summary.last_mode = output.mode;
+}
+
+double rate_Hz(const RunSummary& summary) {
+  const std::int64_t span_ns = summary.last_deadline_ns - summary.first_deadline_ns;
+  if (summary.ticks < 2 || span_ns <= 0) return 0;
+  return static_cast<double>(summary.ticks - 1) / (1e-9 * static_cast<double>(span_ns));
+}
+
+std::string summary_text(const RunSummary& summary, std::uint64_t lost_records, int worst) {
+  std::string text;
+  const auto out = std::back_inserter(text);
+  fmt::format_to(out, "ticks   {} at {:.2f} Hz, {} missed, {} without a fresh device sample, {} records lost\n",
+                 summary.ticks, rate_Hz(summary), summary.missed_ticks, summary.stale_ticks, lost_records);
+  fmt::format_to(out, "times   {:<16}{:>10}{:>10}{:>10}   (us)\n", "", "p50", "p99.9", "max");
+  time_row(text, "wake-up latency", summary.wake);
+  time_row(text, "receive", summary.receive);
+  time_row(text, "compute", summary.compute);
+  for (int i = 0; i < kStageCount; ++i) {
+    time_row(text, fmt::format("  {}", stage_name(static_cast<Stage>(i))).c_str(), summary.stage[i]);
+  }
+  time_row(text, "transmit", summary.transmit);
+  time_row(text, "deadline to sent", summary.sent);
+  time_row(text, "telemetry", summary.publish);
+  time_row(text, "whole tick", summary.busy);
+  text += worst_ticks_text(summary.worst, worst);
+  fmt::format_to(out, "force   {:.3f} N largest on the hand, {:.3f} N in contact, {:.3f} mm deepest\n",
+                 summary.device_force_max_N, summary.contact_force_max_N, 1e3 * summary.penetration_max_m);
+  fmt::format_to(out, "pools   {} contacts, {} regions, {} stack entries, {} support calls at most\n",
+                 summary.high_water.contacts, summary.high_water.regions, summary.high_water.traversal_stack,
+                 summary.high_water.gjk_support_calls);
+  bit_rows(text, summary);
+  return text;
+}
+
+}  // namespace palpate

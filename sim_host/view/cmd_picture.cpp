@@ -1,0 +1,165 @@
+// `palpate picture`: draws the deformed body, and the force history, of a recorded run; or a scene at rest.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstring>
+#include <memory>
+#include <stdexcept>
+
+#include "rt_core/tick.h"
+#include "sim_host/bake/image_file.h"
+#include "sim_host/bake/scene_model.h"
+#include "sim_host/cli.h"
+#include "sim_host/cli_checks.h"
+#include "sim_host/press/pose_csv.h"
+#include "sim_host/record/recording.h"
+#include "sim_host/view/picture.h"
+#include "sim_host/view/plot.h"
+
+namespace palpate {
+
+namespace {
+
+struct DrawOptions {
+  std::string source, output = "picture.png", image, plot;
+  std::int64_t tick = -1;
+  int width = 1200, height = 900;
+};
+
+// Whether a file starts like a recording.
+bool is_recording(const MappedFile& file) {
+  static constexpr char kMagic[] = "LPREC01";
+  return file.bytes().size() >= sizeof kMagic && std::memcmp(file.bytes().data(), kMagic, sizeof kMagic) == 0;
+}
+
+struct History {
+  std::vector<ForceSample> samples;
+  std::uint64_t strongest_tick = 0;
+  std::uint64_t first_tick = 0, last_tick = 0;
+};
+
+History read_history(const MappedFile& file) {
+  RecordingReader recording(file.bytes());
+  History history;
+  TickRecord record;
+  double strongest = -1;
+  while (recording.next(record)) {
+    const Output& output = record.output;
+    const double force = norm(output.contact_w.force_N);
+    if (history.samples.empty()) history.first_tick = record.tick;
+    if (force > strongest) {
+      strongest = force;
+      history.strongest_tick = record.tick;
+    }
+    history.last_tick = record.tick;
+    const double time_s = 1e-9 * static_cast<double>(recording.header().period_ns) * static_cast<double>(record.tick);
+    history.samples.push_back({time_s, output.contact_w.force_N, output.penetration_m, output.regions});
+  }
+  if (history.samples.empty()) throw std::runtime_error("the recording holds no ticks");
+  return history;
+}
+
+// Runs the recorded inputs again up to and including `tick`.
+void state_at(const MappedFile& file, const Model& model, std::uint64_t wanted, State& state) {
+  RecordingReader recording(file.bytes());
+  if (recording.header().scene_hash != model.scene_hash) {
+    throw std::runtime_error(
+        fmt::format("recorded with scene {:016x}, but this image is {:016x}; name the right --image",
+                    recording.header().scene_hash, model.scene_hash));
+  }
+  state = recording.initial_state();
+  const auto scratch = std::make_unique<Scratch>();
+  TickRecord record;
+  Output output;
+  while (recording.next(record)) {
+    if (record.tick != state.tick) {
+      throw std::runtime_error(
+          fmt::format("tick {} is missing in the recording: nothing after it can be drawn", state.tick));
+    }
+    tick(model, state, *scratch, record.input, output);
+    if (record.tick == wanted) return;
+  }
+  throw std::runtime_error(fmt::format("tick {} is not in the recording", wanted));
+}
+
+int draw_recording(const DrawOptions& options, const MappedFile& file) {
+  const RecordingReader recording(file.bytes());
+  const ImageFile image(options.image.empty() ? recording.header().image_path : options.image);
+  const History history = read_history(file);
+  const std::uint64_t wanted = options.tick >= 0 ? static_cast<std::uint64_t>(options.tick) : history.strongest_tick;
+  if (wanted < history.first_tick || wanted > history.last_tick) {
+    throw std::runtime_error(
+        fmt::format("--tick {}: the recording holds ticks {} to {}", wanted, history.first_tick, history.last_tick));
+  }
+  const auto state = std::make_unique<State>();
+  state_at(file, image.model(), wanted, *state);
+  PictureOptions picture;
+  picture.width = options.width;
+  picture.height = options.height;
+  picture.title = fmt::format("{}, tick {}", image.model().name, wanted);
+  save_picture(options.output, image.model(), *state, picture);
+  fmt::print("wrote   {} (tick {})\n", options.output, wanted);
+  if (!options.plot.empty()) {
+    force_history_plot(history.samples, image.model().name).save(options.plot);
+    fmt::print("wrote   {}\n", options.plot);
+  }
+  return kExitOk;
+}
+
+int draw_scene(const DrawOptions& options) {
+  if (options.tick >= 0 || !options.plot.empty()) throw std::runtime_error("--tick and --plot need a recording");
+  const SceneModel scene(options.source);
+  const auto state = std::make_unique<State>();
+  reset(*state);
+  if (scene.scene() && !scene.scene()->path.point.empty()) {
+    Input input;
+    input.drive = Drive::kTool;
+    input.pose_w = scripted_poses(scene.scene()->path, scene.model().params.period_s).front().tool_w;
+    const auto scratch = std::make_unique<Scratch>();
+    Output output;
+    tick(scene.model(), *state, *scratch, input, output);  // a hand's joints go to where they begin
+  }
+  PictureOptions picture;
+  picture.width = options.width;
+  picture.height = options.height;
+  save_picture(options.output, scene.model(), *state, picture);
+  fmt::print("wrote   {}\n", options.output);
+  return kExitOk;
+}
+
+int run_picture(const DrawOptions& options) {
+  if (options.source.ends_with(".toml")) return draw_scene(options);
+  const MappedFile file(options.source);
+  return is_recording(file) ? draw_recording(options, file) : draw_scene(options);
+}
+
+}  // namespace
+
+void add_picture_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<DrawOptions>();
+  CLI::App* command = app.add_subcommand("picture", "Draw the deformed body of a recorded run, or a scene at rest");
+  command->add_option("SOURCE", options->source, "recording (.plr), scene (.toml) or image (.pal)")->required();
+  command->add_option("-o,--output", options->output, "picture to write (.png)")
+      ->capture_default_str()
+      ->check(ends_in({".png"}));
+  command->add_option("--tick", options->tick, "tick to draw; default: the one with the largest force")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--image", options->image, "scene image, when it is no longer where the recording says");
+  command->add_option("--plot", options->plot, "also draw the force history (.svg or .png)")
+      ->check(ends_in({".svg", ".png"}));
+  command->add_option("--width", options->width, "pixels")->capture_default_str()->check(CLI::Range(200, 4000));
+  command->add_option("--height", options->height, "pixels")->capture_default_str()->check(CLI::Range(150, 4000));
+  command->footer(
+      "Examples:\n"
+      "  palpate picture run.plr -o deformed.png --plot forces.svg\n"
+      "  palpate picture config/scenes/heart_compass.toml -o scene.png");
+  command->callback([options, &exit_code] {
+    try {
+      exit_code = run_picture(*options);
+    } catch (const RecordingError& error) {
+      throw std::runtime_error(about_file(options->source, error.what()));
+    }
+  });
+}
+
+}  // namespace palpate

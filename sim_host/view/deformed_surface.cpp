@@ -1,0 +1,223 @@
+#include "sim_host/view/deformed_surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "rt_core/contact/nodes/nodal.h"
+#include "rt_core/skeleton/surface.h"
+#include "sim_host/view/imprint.h"
+
+namespace palpate {
+
+namespace {
+
+using Corners = std::array<std::int32_t, 3>;
+using TriangleNormals = std::array<Vec3, 3>;
+
+std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
+
+// Angle-weighted vertex normals, as the rest surface's are (Baerentzen & Aanaes 2005).
+std::vector<Vec3> mesh_normals(const std::vector<Vec3>& position, const std::vector<Corners>& triangles) {
+  std::vector<Vec3> normal(position.size());
+  for (const Corners& t : triangles) {
+    const Vec3 p[3] = {position[at(t[0])], position[at(t[1])], position[at(t[2])]};
+    const Vec3 n = unit_or(cross(p[1] - p[0], p[2] - p[0]), {});
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 a = unit_or(p[(k + 1) % 3] - p[k], {}), b = unit_or(p[(k + 2) % 3] - p[k], {});
+      normal[at(t[k])] += std::acos(std::clamp(dot(a, b), -1.0, 1.0)) * n;
+    }
+  }
+  for (Vec3& n : normal) n = unit_or(n, {0, 0, 1});
+  return normal;
+}
+
+DeformedSurface rest_surface(const Model& model) {
+  DeformedSurface surface;
+  surface.rest_m.assign(model.vertex_m.begin(), model.vertex_m.end());
+  for (const Triangle& t : model.triangle) surface.triangle.push_back({t.vertex[0], t.vertex[1], t.vertex[2]});
+  return surface;
+}
+
+void finish_positions(DeformedSurface& surface) {
+  surface.position_m.clear();
+  for (std::size_t i = 0; i < surface.rest_m.size(); ++i) {
+    surface.position_m.push_back(surface.rest_m[i] + surface.displacement_m[i]);
+  }
+}
+
+// Fills the rest from rest_m, triangle and displacement_m.
+void finish(DeformedSurface& surface) {
+  finish_positions(surface);
+  surface.normal = mesh_normals(surface.position_m, surface.triangle);
+}
+
+template <class Number>
+std::vector<Vec3> response_m(const Model& model, const State& state, std::span<const Number> compliance) {
+  std::vector<double> u(static_cast<std::size_t>(3 * model.sizes.n_vertex));
+  for (std::int32_t i = 0; i < state.nodal.count; ++i) {
+    const NodalContact& contact = state.nodal.contact[i];
+    const double force[3] = {contact.force_w.x, contact.force_w.y, contact.force_w.z};
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (force[a] == 0) continue;
+      const Number* row = compliance.data() + (3 * at(contact.vertex) + a) * u.size();
+      for (std::size_t k = 0; k < u.size(); ++k) u[k] += static_cast<double>(row[k]) * force[a];
+    }
+  }
+  std::vector<Vec3> displacement;
+  for (std::size_t v = 0; v < u.size(); v += 3) displacement.push_back({u[v], u[v + 1], u[v + 2]});
+  return displacement;
+}
+
+// Displacement of the vertices of a finite-element body under its contact forces: u = C f.
+std::vector<Vec3> nodal_displacement_m(const Model& model, const State& state) {
+  return model.compliance_f64.empty() ? response_m(model, state, model.compliance_f32)
+                                      : response_m(model, state, model.compliance_f64);
+}
+
+void displace(const Model& model, const State& state, DeformedSurface& surface) {
+  if (is_nodal(model)) {
+    surface.displacement_m = nodal_displacement_m(model, state);
+    return;
+  }
+  ShapeField field;
+  prepare_shape(model, state, field);
+  for (std::size_t i = 0; i < surface.rest_m.size(); ++i) {
+    const std::int32_t vertex = i < model.vertex_m.size() ? static_cast<std::int32_t>(i) : -1;
+    surface.displacement_m.push_back(displacement_at(model, field, surface.rest_m[i], vertex));
+  }
+  if (static_cast<Articulation>(model.params.articulation) != Articulation::kHand) return;
+  finish_positions(surface);
+  imprint(model, state, surface.position_m);
+  for (std::size_t i = 0; i < surface.rest_m.size(); ++i)
+    surface.displacement_m[i] = surface.position_m[i] - surface.rest_m[i];
+}
+
+// Cosine of the angle between two triangles beyond which their common corner is a crease: 40 degrees.
+constexpr double kCrease = 0.766;
+
+std::vector<Vec3> face_normals(const std::vector<Vec3>& position, const std::vector<Corners>& triangles) {
+  std::vector<Vec3> normal;
+  for (const auto& [a, b, c] : triangles)
+    normal.push_back(unit_or(cross(position[at(b)] - position[at(a)], position[at(c)] - position[at(a)]), {}));
+  return normal;
+}
+
+// Per corner of every triangle the angle-weighted mean over the triangles around it that do not lie beyond a crease.
+std::vector<TriangleNormals> smooth_normals(const std::vector<Vec3>& position, const std::vector<Corners>& triangles) {
+  const std::vector<Vec3> face = face_normals(position, triangles);
+  std::vector<std::vector<std::pair<std::size_t, double>>> around(position.size());  // triangle, its angle here
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 p = position[at(triangles[t][k])];
+      const Vec3 a = unit_or(position[at(triangles[t][(k + 1) % 3])] - p, {});
+      const Vec3 b = unit_or(position[at(triangles[t][(k + 2) % 3])] - p, {});
+      around[at(triangles[t][k])].push_back({t, std::acos(std::clamp(dot(a, b), -1.0, 1.0))});
+    }
+  }
+  std::vector<TriangleNormals> normal(triangles.size());
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      Vec3 sum;
+      for (const auto& [other, angle] : around[at(triangles[t][k])])
+        if (dot(face[other], face[t]) > kCrease) sum += angle * face[other];
+      normal[t][k] = unit_or(sum, face[t]);
+    }
+  }
+  return normal;
+}
+
+// An edge while it is halved: the new point, how far the rounding lifts it off the chord, and the normals that say so.
+struct HalvedEdge {
+  std::int32_t middle;
+  Vec3 lift, low_normal, high_normal;
+};
+
+// Halves every edge; `corner` goes along.
+void refine(DeformedSurface& surface, std::vector<TriangleNormals>& corner) {
+  constexpr double kRounding = 0.5;  // exact for a circle to second order
+  std::map<std::pair<std::int32_t, std::int32_t>, HalvedEdge> edges;
+  const auto same = [](Vec3 a, Vec3 b) { return squared_norm(a - b) < 1e-6; };
+  for (std::size_t t = 0; t < corner.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t next = (k + 1) % 3;
+      std::int32_t a = surface.triangle[t][k], b = surface.triangle[t][next];
+      Vec3 na = corner[t][k], nb = corner[t][next];
+      if (b < a) std::swap(a, b), std::swap(na, nb);
+      const Vec3 pa = surface.rest_m[at(a)], pb = surface.rest_m[at(b)], p = 0.5 * (pa + pb);
+      const Vec3 lift = dot(pa - p, na) * na + dot(pb - p, nb) * nb;
+      const auto [entry, is_new] =
+          edges.try_emplace({a, b}, HalvedEdge{static_cast<std::int32_t>(surface.rest_m.size()), lift, na, nb});
+      HalvedEdge& edge = entry->second;
+      if (is_new) surface.rest_m.push_back(p);
+      // On a crease each side lifts by its own curvature: at a cylinder's rim the wall does and the lid does not.
+      else if (!same(edge.low_normal, na) || !same(edge.high_normal, nb))
+        edge.lift += lift;
+    }
+  }
+  for (const auto& [ends, edge] : edges) surface.rest_m[at(edge.middle)] += (0.5 * kRounding) * edge.lift;
+  std::vector<Corners> finer;
+  std::vector<TriangleNormals> finer_normal;
+  finer.reserve(4 * corner.size());
+  finer_normal.reserve(4 * corner.size());
+  for (std::size_t t = 0; t < corner.size(); ++t) {
+    const auto [a, b, c] = surface.triangle[t];
+    const auto [na, nb, nc] = corner[t];
+    const std::int32_t ab = edges.at(std::minmax(a, b)).middle, bc = edges.at(std::minmax(b, c)).middle,
+                       ca = edges.at(std::minmax(c, a)).middle;
+    const Vec3 nab = unit_or(na + nb, na), nbc = unit_or(nb + nc, nb), nca = unit_or(nc + na, nc);
+    finer.insert(finer.end(), {{a, ab, ca}, {b, bc, ab}, {c, ca, bc}, {ab, bc, ca}});
+    finer_normal.insert(finer_normal.end(), {{na, nab, nca}, {nb, nbc, nab}, {nc, nca, nbc}, {nab, nbc, nca}});
+  }
+  surface.triangle = std::move(finer);
+  corner = std::move(finer_normal);
+}
+
+// Turns the normals at rest with the surface. Rounded points are not quite smooth across the old edges, so only the
+// turn is taken from the points, and the normal at rest from the interpolation.
+void turn_normals(DeformedSurface& surface) {
+  const std::vector<Vec3> at_rest = mesh_normals(surface.rest_m, surface.triangle);
+  const std::vector<Vec3> face_at_rest = face_normals(surface.rest_m, surface.triangle);
+  const std::vector<Vec3> face = face_normals(surface.position_m, surface.triangle);
+  for (std::size_t t = 0; t < surface.corner_normal.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      Vec3& n = surface.corner_normal[t][k];
+      const std::size_t vertex = at(surface.triangle[t][k]);
+      const bool smooth = dot(n, at_rest[vertex]) > 0.97;
+      n = smooth ? unit_or(n + surface.normal[vertex] - at_rest[vertex], surface.normal[vertex])
+                 : rotate(rotation_between(face_at_rest[t], face[t]), n);
+    }
+  }
+}
+
+}  // namespace
+
+DeformedSurface deformed_surface(const Model& model, std::vector<Vec3> displacement_m) {
+  DeformedSurface surface = rest_surface(model);
+  surface.displacement_m = std::move(displacement_m);
+  finish(surface);
+  return surface;
+}
+
+DeformedSurface deformed_surface(const Model& model, const State& state) {
+  DeformedSurface surface = rest_surface(model);
+  displace(model, state, surface);
+  finish(surface);
+  return surface;
+}
+
+DeformedSurface refined_surface(const Model& model, const State& state, std::size_t most_triangles) {
+  DeformedSurface surface = rest_surface(model);
+  std::vector<TriangleNormals> corner = smooth_normals(surface.rest_m, surface.triangle);
+  const bool everywhere =
+      !is_nodal(model) && static_cast<ShapeLaw>(model.params.shape_law) != ShapeLaw::kDisplacementAngle;
+  while (everywhere && 4 * surface.triangle.size() <= most_triangles) refine(surface, corner);
+  displace(model, state, surface);
+  finish(surface);
+  surface.corner_normal = std::move(corner);
+  turn_normals(surface);
+  return surface;
+}
+
+}  // namespace palpate

@@ -1,0 +1,407 @@
+#include "sim_host/view/picture.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "config/hand/hand_model.h"
+#include "rt_core/tool/carrier.h"
+#include "sim_host/view/plot.h"
+#include "sim_host/view/png_file.h"
+#include "sim_host/view/stroke_font.h"
+
+namespace palpate {
+
+namespace {
+
+enum Material : std::int32_t { kBody = 0, kAnchorFree, kAnchorFixed, kTool, kArrow };
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr Colour kInk = colour(0x1f2933), kGrey = colour(0x5b6672);
+constexpr Colour kSkinColour = colour(0xd8a488);
+constexpr Colour kToolColour = colour(0x6d8fae), kArrowColour = colour(0x1b74c4);
+
+// Force of a region on the tool, as long as it is drawn.
+struct ForceArrow {
+  Vec3 tail_w, tip_w;
+  double force_N;
+};
+
+std::vector<ForceArrow> force_arrows(const Model& model, const State& state, double force_max_N) {
+  double largest = force_max_N;
+  for (const Region& region : state.region) {
+    if (force_max_N > 0 || region.id == 0 || region.lost_ticks > 0) continue;
+    largest = std::max(largest, norm(region.wrench_w.force_N));
+  }
+  std::vector<ForceArrow> arrows;
+  const double size = model.params.surface_size_m;
+  for (const Region& region : state.region) {
+    const double force = norm(region.wrench_w.force_N);
+    if (region.id == 0 || region.lost_ticks > 0 || !(force > 0.01 * largest) || !(largest > 0)) continue;
+    const double length = size * (0.12 + 0.33 * std::min(1.0, force / largest));
+    arrows.push_back({region.centre_w, region.centre_w + (length / force) * region.wrench_w.force_N, force});
+  }
+  return arrows;
+}
+
+std::vector<Vec3> tips_of(const std::vector<ForceArrow>& arrows) {
+  std::vector<Vec3> tips;
+  for (const ForceArrow& arrow : arrows) tips.push_back(arrow.tip_w);
+  return tips;
+}
+
+class Renderer {
+ public:
+  Renderer(const Model& model, const State& state, const DeformedSurface& surface, const PictureOptions& options)
+      : model_(model),
+        state_(state),
+        surface_(surface),
+        options_(options),
+        is_hand_(static_cast<Articulation>(model.params.articulation) == Articulation::kHand),
+        samples_(std::clamp(options.supersampling, 1, 4)),
+        forces_(force_arrows(model, state, options.force_max_N)),
+        projection_(options.camera
+                        ? *options.camera
+                        : default_camera(model, state, tips_of(forces_), double(options.width) / options.height),
+                    options.width * samples_, options.height * samples_),
+        solid_(options.width * samples_, options.height * samples_),
+        rest_(solid_),
+        tool_(solid_),
+        arrows_(solid_) {}
+
+  Canvas render() {
+    choose_scale();
+    draw_body();
+    draw_anchors();
+    for (std::size_t i = 0; i < model_.piece.size(); ++i) {
+      const Pose carrier = carrier_w(model_, state_, static_cast<std::int32_t>(i));
+      tool_.draw(is_hand_ ? hand_render_mesh(model_.piece[i], carrier, is_left_hand(model_))
+                          : piece_mesh(model_, model_.piece[i], carrier),
+                 projection_, kTool);
+    }
+    draw_arrows();
+    make_shadow();
+    Canvas canvas = resolve();
+    draw_force_labels(canvas);
+    draw_title(canvas);
+    return canvas;
+  }
+
+ private:
+  void choose_scale();
+  void draw_body();
+  void draw_anchors();
+  void draw_arrows();
+  void make_shadow();
+  Canvas resolve() const;
+  Colour sample(int x, int y) const;
+  Colour background(int x, int y) const;
+  Colour shade(Colour base, const Surfel& surfel, int x, int y, float gloss) const;
+  Colour solid_colour(int x, int y) const;
+  float outline(int x, int y) const;
+  void draw_force_labels(Canvas& canvas) const;
+  void draw_title(Canvas& canvas) const;
+  void draw_legend(Canvas& canvas) const;
+
+  const Model& model_;
+  const State& state_;
+  const DeformedSurface& surface_;
+  const PictureOptions& options_;
+  bool is_hand_;
+  int samples_;
+  std::vector<ForceArrow> forces_;
+  Projection projection_;
+  Layer solid_, rest_, tool_, arrows_;
+  double scale_top_m_ = 1e-3;
+  std::vector<double> legend_mm_;
+  // Soft shadow on the ground: a blurred view of body and tool from above.
+  static constexpr int kShadow = 256;
+  double ground_y_ = 0, shadow_half_ = 1;
+  Vec3 shadow_centre_;
+  std::vector<float> shadow_;
+};
+
+void Renderer::choose_scale() {
+  double largest = options_.displacement_max_m;
+  if (!(largest > 0)) {
+    for (const Vec3 d : surface_.displacement_m) largest = std::max(largest, norm(d));
+  }
+  const double top_mm = largest > 1e-7 ? largest * 1e3 : 1.0;
+  legend_mm_ = axis_ticks(0, top_mm, 4);
+  if (legend_mm_.size() > 1 && legend_mm_.back() < top_mm * (1 - 1e-9) && !(options_.displacement_max_m > 0)) {
+    legend_mm_.push_back(2 * legend_mm_.back() - legend_mm_[legend_mm_.size() - 2]);
+  }
+  scale_top_m_ = std::max(top_mm, legend_mm_.back()) * 1e-3;
+}
+
+void Renderer::draw_body() {
+  RenderMesh mesh;
+  std::vector<Vec3> rest_m;
+  for (std::size_t t = 0; t < surface_.triangle.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto v = static_cast<std::size_t>(surface_.triangle[t][k]);
+      mesh.position_m.push_back(surface_.position_m[v]);
+      rest_m.push_back(surface_.rest_m[v]);
+      mesh.normal.push_back(surface_.corner_normal.empty() ? surface_.normal[v] : surface_.corner_normal[t][k]);
+      mesh.value.push_back(norm(surface_.displacement_m[v]));
+    }
+    const auto first = static_cast<std::int32_t>(3 * t);
+    mesh.triangle.push_back({first, first + 1, first + 2});
+  }
+  solid_.draw(mesh, projection_, kBody);
+  mesh.position_m = std::move(rest_m);
+  rest_.draw(mesh, projection_, kBody);
+}
+
+void Renderer::draw_anchors() {
+  for (std::size_t k = 0; k < model_.anchor.size(); ++k) {
+    const Anchor& anchor = model_.anchor[k];
+    const Vec3 at = anchor.position_m + (anchor.fixed != 0 ? Vec3{} : state_.anchor[k].displacement_w);
+    solid_.draw(sphere_mesh({at, {}}, 0.014 * model_.params.surface_size_m), projection_,
+                anchor.fixed != 0 ? kAnchorFixed : kAnchorFree);
+  }
+}
+
+void Renderer::draw_arrows() {
+  const double size = model_.params.surface_size_m;
+  for (const ForceArrow& force : forces_)
+    arrows_.draw(arrow_mesh(force.tail_w, force.tip_w, 0.010 * size), projection_, kArrow);
+}
+
+void Renderer::make_shadow() {
+  ground_y_ = 1e30;
+  for (const Vec3 v : surface_.position_m) ground_y_ = std::min(ground_y_, v.y);
+  shadow_half_ = 1.2 * model_.params.surface_size_m;
+  Vec3 centre;
+  for (const Vec3 v : model_.vertex_m) centre += v;
+  shadow_centre_ = (1.0 / static_cast<double>(model_.vertex_m.size())) * centre;
+  constexpr double kHigh = 100.0;  // so far up that the view is parallel
+  Camera above;
+  above.eye_m = {shadow_centre_.x, ground_y_ + kHigh * shadow_half_, shadow_centre_.z};
+  above.target_m = {shadow_centre_.x, ground_y_, shadow_centre_.z};
+  above.up = {0, 0, -1};
+  above.vertical_fov_rad = 2 * std::atan(1.0 / kHigh);
+  Layer layer(kShadow, kShadow);
+  RenderMesh body;
+  body.position_m = surface_.position_m;
+  body.normal = surface_.normal;
+  body.triangle = surface_.triangle;
+  layer.draw(body, Projection(above, kShadow, kShadow), kBody);
+  shadow_.assign(kShadow * kShadow, 0.0f);
+  for (int y = 0; y < kShadow; ++y) {
+    for (int x = 0; x < kShadow; ++x) shadow_[static_cast<std::size_t>(y * kShadow + x)] = layer.at(x, y).material >= 0;
+  }
+  // Three box blurs per axis come close to a Gaussian.
+  constexpr int kReach = 9;
+  std::vector<float> blurred(shadow_.size());
+  for (int pass = 0; pass < 6; ++pass) {
+    const int dx = pass % 2, dy = 1 - dx;
+    for (int y = 0; y < kShadow; ++y) {
+      for (int x = 0; x < kShadow; ++x) {
+        float sum = 0;
+        for (int k = -kReach; k <= kReach; ++k) {
+          const int sx = std::clamp(x + k * dx, 0, kShadow - 1), sy = std::clamp(y + k * dy, 0, kShadow - 1);
+          sum += shadow_[static_cast<std::size_t>(sy * kShadow + sx)];
+        }
+        blurred[static_cast<std::size_t>(y * kShadow + x)] = sum / (2 * kReach + 1);
+      }
+    }
+    shadow_.swap(blurred);
+  }
+}
+
+Colour Renderer::background(int x, int y) const {
+  const float down = static_cast<float>(y) / static_cast<float>(solid_.height());
+  Colour c = mix(colour(0xfdfdfe), colour(0xe3e8ee), down * down);
+  const Vec3 ray = projection_.ray(x + 0.5, y + 0.5);
+  if (!(ray.y < -1e-6)) return c;
+  const Vec3 hit = projection_.eye() + ((ground_y_ - projection_.eye().y) / ray.y) * ray;
+  const double u = (hit.x - shadow_centre_.x) / shadow_half_, v = (hit.z - shadow_centre_.z) / shadow_half_;
+  if (!(std::abs(u) < 0.99 && std::abs(v) < 0.99)) return c;
+  const auto cell = [](double t) { return static_cast<int>((t + 1) * 0.5 * kShadow); };
+  return mix(c, colour(0x2b3440), 0.38f * shadow_[static_cast<std::size_t>(cell(v) * kShadow + cell(u))]);
+}
+
+// Key light from the upper left of the viewer, a weak fill from the right, light from the sky, and a highlight.
+Colour Renderer::shade(Colour base, const Surfel& surfel, int x, int y, float gloss) const {
+  const Vec3 view = unit_or(-projection_.ray(x + 0.5, y + 0.5), {0, 0, 1});
+  Vec3 n = unit_or({double(surfel.normal[0]), double(surfel.normal[1]), double(surfel.normal[2])}, view);
+  if (dot(n, view) < 0) n = -n;
+  const Vec3 back = -projection_.forward();
+  const Vec3 key = unit_or(-0.55 * projection_.right() + 0.75 * projection_.up() + 0.55 * back, view);
+  const Vec3 fill = unit_or(0.8 * projection_.right() + 0.1 * projection_.up() + 0.5 * back, view);
+  const double light =
+      0.44 + 0.50 * std::max(0.0, dot(n, key)) + 0.14 * std::max(0.0, dot(n, fill)) + 0.10 * dot(n, kWorldUp);
+  const double highlight = std::pow(std::max(0.0, dot(n, unit_or(key + view, view))), 48.0);
+  const auto lit = static_cast<float>(light), shine = gloss * static_cast<float>(highlight);
+  return {base.r * lit + shine, base.g * lit + shine, base.b * lit + shine};
+}
+
+Colour Renderer::solid_colour(int x, int y) const {
+  const Surfel& surfel = solid_.at(x, y);
+  if (surfel.material == kAnchorFree) return shade(colour(0x2f6f8f), surfel, x, y, 0.35f);
+  if (surfel.material == kAnchorFixed) return shade(colour(0x3c434b), surfel, x, y, 0.35f);
+  const Colour c = shade(displacement_colour(static_cast<double>(surfel.value) / scale_top_m_), surfel, x, y, 0.16f);
+  // Contour line where a neighbour lies beyond another legend tick.
+  const auto band = [this](const Surfel& s) {
+    return std::upper_bound(legend_mm_.begin(), legend_mm_.end(), static_cast<double>(s.value) * 1e3) -
+           legend_mm_.begin();
+  };
+  for (const int step : {1, 2}) {
+    if (x + step < solid_.width() && solid_.at(x + step, y).material == kBody &&
+        band(solid_.at(x + step, y)) != band(surfel)) {
+      return mix(c, kInk, 0.35f);
+    }
+    if (y + step < solid_.height() && solid_.at(x, y + step).material == kBody &&
+        band(solid_.at(x, y + step)) != band(surfel)) {
+      return mix(c, kInk, 0.35f);
+    }
+    if (step >= samples_) break;
+  }
+  return c;
+}
+
+// Opacity of the rest shape's dashed silhouette at a sample.
+float Renderer::outline(int x, int y) const {
+  if ((x + y) / (7 * samples_) % 2 != 0) return 0;
+  const bool here = rest_.at(x, y).material >= 0;
+  for (int k = 1; k <= samples_; ++k) {
+    if (x + k < rest_.width() && (rest_.at(x + k, y).material >= 0) != here) return 0.7f;
+    if (y + k < rest_.height() && (rest_.at(x, y + k).material >= 0) != here) return 0.7f;
+  }
+  return 0;
+}
+
+Colour Renderer::sample(int x, int y) const {
+  const Surfel& solid = solid_.at(x, y);
+  Colour c = solid.material >= 0 ? solid_colour(x, y) : background(x, y);
+  c = mix(c, kGrey, outline(x, y));
+  const Surfel& tool = tool_.at(x, y);
+  const Surfel& arrow = arrows_.at(x, y);
+  const auto over_arrow = [&] {
+    if (arrow.material < 0) return;
+    c = mix(c, shade(kArrowColour, arrow, x, y, 0.3f), arrow.depth_m < solid.depth_m ? 1.0f : 0.45f);
+  };
+  const auto over_tool = [&] {
+    if (tool.material < 0) return;
+    const Vec3 view = unit_or(-projection_.ray(x + 0.5, y + 0.5), {0, 0, 1});
+    const Vec3 n = unit_or({double(tool.normal[0]), double(tool.normal[1]), double(tool.normal[2])}, view);
+    const auto grazing = static_cast<float>(1 - std::abs(dot(n, view)));  // like glass: denser at the rim
+    // A hand is skin, not glass: fingers before the body hide it.
+    if (is_hand_) {
+      const float opaque = tool.depth_m < solid.depth_m ? 0.93f : 0.16f;
+      c = mix(c, shade(kSkinColour, tool, x, y, 0.10f), opaque);
+      return;
+    }
+    const float opacity = tool.depth_m < solid.depth_m ? 0.38f + 0.5f * grazing * grazing : 0.10f + 0.25f * grazing;
+    c = mix(c, shade(kToolColour, tool, x, y, 0.55f), opacity);
+  };
+  if (arrow.material >= 0 && arrow.depth_m < tool.depth_m) {
+    over_tool(), over_arrow();
+  } else {
+    over_arrow(), over_tool();
+  }
+  return c;
+}
+
+Canvas Renderer::resolve() const {
+  Canvas canvas(options_.width, options_.height, colour(0xffffff));
+  const float share = 1.0f / static_cast<float>(samples_ * samples_);
+  for (int y = 0; y < options_.height; ++y) {
+    for (int x = 0; x < options_.width; ++x) {
+      Colour sum{};
+      for (int k = 0; k < samples_ * samples_; ++k) {
+        const Colour c = sample(x * samples_ + k % samples_, y * samples_ + k / samples_);
+        sum.r += std::clamp(c.r, 0.0f, 1.0f), sum.g += std::clamp(c.g, 0.0f, 1.0f),
+            sum.b += std::clamp(c.b, 0.0f, 1.0f);
+      }
+      canvas.set_pixel(x, y, {sum.r * share, sum.g * share, sum.b * share});
+    }
+  }
+  return canvas;
+}
+
+void Renderer::draw_legend(Canvas& canvas) const {
+  const double unit = options_.height / 900.0, left = options_.width - 96 * unit, top = 0.30 * options_.height;
+  const double height = 0.40 * options_.height, width = 20 * unit;
+  const int rows = static_cast<int>(height);
+  for (int row = 0; row < rows; ++row) {
+    canvas.rectangle(left, top + row, width, 1, displacement_colour(1 - (row + 0.5) / rows));
+  }
+  const double x1 = left + width, y1 = top + rows;
+  canvas.polyline(Stroke{{left, top}, {x1, top}, {x1, y1}, {left, y1}, {left, top}}, 1.2 * unit, kGrey);
+  for (const double mm : legend_mm_) {
+    const double y = y1 - rows * mm * 1e-3 / scale_top_m_;
+    canvas.polyline(Stroke{{x1, y}, {x1 + 6 * unit, y}}, 1.2 * unit, kGrey);
+    canvas.text(x1 + 11 * unit, y + 5.5 * unit, tick_label(mm), 15 * unit, kInk);
+  }
+  canvas.text(x1, top - 36 * unit, "displacement", 15 * unit, kInk, Align::kMiddle);
+  canvas.text(x1, top - 16 * unit, "(mm)", 15 * unit, kInk, Align::kMiddle);
+}
+
+// Beyond the arrow's tip, in the direction it points.
+void Renderer::draw_force_labels(Canvas& canvas) const {
+  const double unit = options_.height / 900.0, size = 18 * unit, gap = 9 * unit;
+  // The largest first; a number that would cover one already there is left out (a hand has up to fifteen).
+  std::vector<ForceArrow> forces = forces_;
+  std::ranges::stable_sort(forces, std::greater{}, &ForceArrow::force_N);
+  struct Box {
+    double x, y, width;  // of the number's middle
+  };
+  std::vector<Box> placed;
+  for (const ForceArrow& force : forces) {
+    const Vec3 tail = (1.0 / samples_) * projection_(force.tail_w), tip = (1.0 / samples_) * projection_(force.tip_w);
+    const Vec3 way = unit_or({tip.x - tail.x, tip.y - tail.y, 0}, {1, 0, 0});
+    const std::string number = fmt::format("{:.2f} N", force.force_N);
+    const double width = text_width(number, size);
+    const Box box{tip.x + way.x * (gap + 0.5 * width), tip.y + way.y * (gap + 0.5 * size), width};
+    const auto covers = [&](const Box& other) {
+      return std::abs(box.y - other.y) < size && std::abs(box.x - other.x) < 0.5 * (box.width + other.width);
+    };
+    if (std::ranges::any_of(placed, covers)) continue;
+    placed.push_back(box);
+    const double base = box.y + 0.36 * size;
+    for (int k = 0; k < 8; ++k) {  // a light rim, to be read on arrows and skin
+      const double angle = 0.25 * kPi * k, rim = 2 * unit;
+      canvas.text(box.x + rim * std::cos(angle), base + rim * std::sin(angle), number, size, colour(0xfdfdfe),
+                  Align::kMiddle, false, true);
+    }
+    canvas.text(box.x, base, number, size, kArrowColour, Align::kMiddle, false, true);
+  }
+}
+
+void Renderer::draw_title(Canvas& canvas) const {
+  const double unit = options_.height / 900.0;
+  Vec3 force;
+  double depth = 0;
+  int regions = 0;
+  for (const Region& region : state_.region) {
+    if (region.id == 0 || region.lost_ticks > 0) continue;
+    force += region.wrench_w.force_N;
+    depth = std::max(depth, region.depth_max_m);
+    ++regions;
+  }
+  canvas.text(36 * unit, 52 * unit, options_.title.empty() ? model_.name : options_.title, 26 * unit, kInk,
+              Align::kStart, false, true);
+  canvas.text(36 * unit, 82 * unit,
+              fmt::format("|F| = {:.2f} N    depth {:.2f} mm    {} contact region{}", norm(force), depth * 1e3, regions,
+                          regions == 1 ? "" : "s"),
+              17 * unit, kGrey);
+  draw_legend(canvas);
+}
+
+}  // namespace
+
+Canvas render_scene(const Model& model, const State& state, const DeformedSurface& surface,
+                    const PictureOptions& options) {
+  return Renderer(model, state, surface, options).render();
+}
+
+void save_picture(const std::string& path, const Model& model, const State& state, const PictureOptions& options) {
+  const Canvas canvas = render_scene(model, state, refined_surface(model, state), options);
+  write_png(path, canvas.width(), canvas.height(), canvas.bytes());
+}
+
+}  // namespace palpate

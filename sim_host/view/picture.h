@@ -1,0 +1,43 @@
+// A picture of the deformed body with the tool, for documents and reports: colour by displacement, translucent tool,
+// contact forces as arrows, the rest shape as a dashed outline, anchors as dots.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "rt_core/model.h"
+#include "rt_core/state.h"
+#include "sim_host/view/deformed_surface.h"
+#include "sim_host/view/mesh_raster.h"
+
+namespace palpate {
+
+// Scenes stand on the plane y = 0 (config/body/procedural.h).
+inline constexpr Vec3 kWorldUp{0, 1, 0};
+
+struct PictureOptions {
+  int width = 1200, height = 900;
+  int supersampling = 2;          // samples per pixel and axis, 1..4
+  std::optional<Camera> camera;   // otherwise `default_camera`
+  std::string title;              // otherwise the scene's name
+  double displacement_max_m = 0;  // top of the colour scale; 0: the largest displacement, rounded up
+  double force_max_N = 0;         // force of the longest arrow; 0: the largest region's
+};
+
+// Sees the body, `points_w` and the tool (of a long one the end near the body), slightly from above, from the side on
+// which the contacts are, and leaves room for title and legend. `aspect`: width over height.
+Camera default_camera(const Model& model, const State& state, std::span<const Vec3> points_w, double aspect);
+Canvas render_scene(const Model& model, const State& state, const DeformedSurface& surface,
+                    const PictureOptions& options = {});
+// Writes render_scene of the scene's own shape models as PNG.
+void save_picture(const std::string& path, const Model& model, const State& state, const PictureOptions& options = {});
+
+// Colour map of displacement, t in 0..1: light sand to dark violet, lightness falling evenly.
+Colour displacement_colour(double t);
+// Surface of a tool piece in the world; `carrier_w` as rt_core/tool/carrier.h has it.
+RenderMesh piece_mesh(const Model& model, const ToolPiece& piece, const Pose& carrier_w);
+// The same for a part of the hand, as people draw it.
+RenderMesh hand_render_mesh(const ToolPiece& piece, const Pose& carrier_w, bool left);
+
+}  // namespace palpate
