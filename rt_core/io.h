@@ -18,6 +18,9 @@ namespace Command {
 inline constexpr std::uint32_t kArm = 1u << 0;    // edge: leave kIdle for kForce
 inline constexpr std::uint32_t kStop = 1u << 1;   // level: ramp to zero, then kIdle
 inline constexpr std::uint32_t kReset = 1u << 2;  // edge: leave kFault for kIdle
+// Set by the loop beside kStop, never by a host: it stops because the machine stood still, and will arm again by
+// itself. The tick ignores it; it is here so that a recording says why.
+inline constexpr std::uint32_t kStall = 1u << 3;
 }  // namespace Command
 
 // What an articulated tool's joints are to do; rigid tools ignore it. Levels: repeated every tick. Single precision

@@ -55,7 +55,7 @@ enum class NodalCarry : std::int32_t { kFarField = 0, kRest = 1, kTurned = 2 };
   X(std::int32_t, nodal_sweeps, "-", 0, 100, "Gauss-Seidel sweeps of the normal problem")                    \
   X(std::int32_t, friction_sweeps, "-", 0, 20, "Gauss-Seidel sweeps of the problem with friction")           \
   X(std::int32_t, articulation, "-", 0, 2, "Articulation: whether pieces of the tool move by joints")        \
-  X(std::int32_t, reserved, "-", 0, 0, "keeps the doubles aligned")                                          \
+  X(std::int32_t, late_ticks_max, "ticks", 2, 1000, "ticks in a row that each missed deadlines: a fault")    \
   X(std::int32_t, nodal_carry, "-", 0, 2, "NodalCarry: where gaps and normals are taken")                    \
   X(std::int32_t, response_law, "-", 0, 2, "ResponseLaw: what carries the normal force")                     \
   X(std::int32_t, response_root, "-", 0, 1, "1: the knots of the tables are roots of depths")                \
@@ -80,6 +80,7 @@ enum class NodalCarry : std::int32_t { kFarField = 0, kRest = 1, kTurned = 2 };
   X(double, force_rate_max_N_per_s, "N/s", 1, 1e7, "fault limiter of the force change")                      \
   X(double, ramp_in_s, "s", 0, 10, "force ramp after arming")                                                \
   X(double, ramp_out_s, "s", 1e-3, 1, "force ramp to zero after a fault")                                    \
+  X(double, stall_max_s, "s", 1e-3, 1, "deadlines missed at one go for so long: a fault")                    \
   X(double, speed_max_m_per_s, "m/s", 0.01, 100, "a device sample that implies a faster motion is rejected") \
   X(double, contact_margin_m, "m", 0, 1, "nodes with a smaller gap take part in the contact problem")        \
   X(double, regularisation, "-", 0, 0.1, "share added to the diagonal of the contact problem")               \

@@ -46,14 +46,17 @@ namespace palpate {
 #define PALPATE_FAULT_BITS(X)                                                                                       \
   X(kNotFinite, 0, "the force computed was not a finite number", "replay the recording; report it")                 \
   X(kDeviceSilent, 1, "the device sent nothing for the silence limit", "check cable, power and bus")                \
-  X(kOverrun, 2, "too many consecutive ticks missed their deadline", "run palpate latency; reduce the load")        \
+  X(kOverrun, 2, "too many ticks in a row missed deadlines (device.late_ticks_max)",                                \
+    "run palpate latency; reduce the load")                                                                         \
   X(kDeviceReported, 3, "the device reported an error or its emergency stop", "release the stop; clear the device") \
   X(kBusOff, 4, "the bus controller went bus-off", "check wiring and termination; restart the interface")           \
   X(kImageInvalid, 5, "the scene image failed its checks", "bake the scene again")                                  \
   X(kCommandInvalid, 6, "the host's command region failed its checks", "restart the host")                          \
   X(kForbiddenCall, 7, "the real-time thread attempted a forbidden system call", "report it")                       \
   X(kHostSilent, 8, "the host's heartbeat stopped while it was required", "restart the host")                       \
-  X(kStateCorrupt, 9, "the state failed its finite check", "replay the recording; report it")
+  X(kStateCorrupt, 9, "the state failed its finite check", "replay the recording; report it")                       \
+  X(kStalled, 10, "the computer stood still once for too long (device.stall_max_ms)",                               \
+    "run palpate doctor; use a real-time kernel and an isolated CPU")
 
 namespace Status {
 #define PALPATE_BIT(name, bit, what, remedy) inline constexpr std::uint32_t name = 1u << bit;

@@ -363,6 +363,8 @@ class Compiler {
     p.silence_hold_ticks = d.silence_hold_ticks;
     p.silence_passive_ticks = d.silence_passive_ticks;
     p.silence_fault_ticks = d.silence_fault_ticks;
+    p.late_ticks_max = d.late_ticks_max;
+    p.stall_max_s = d.stall_max_s;
     p.speed_max_m_per_s = d.speed_max_m_per_s;
   }
 

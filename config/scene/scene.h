@@ -233,6 +233,8 @@ struct DeviceDesc {
   std::int32_t silence_hold_ticks = 1;
   std::int32_t silence_passive_ticks = 5;
   std::int32_t silence_fault_ticks = 50;
+  std::int32_t late_ticks_max = 10;
+  double stall_max_s = 20e-3;
   double speed_max_m_per_s = 5;
 };
 

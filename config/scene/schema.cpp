@@ -370,6 +370,10 @@ const KeySpec kDevice[] = {
     integer<&DeviceDesc::silence_passive_ticks>("silence_passive_ticks", 1, 20,
                                                 "missed samples after which force ramps to zero"),
     integer<&DeviceDesc::silence_fault_ticks>("silence_fault_ticks", 2, 1000, "missed samples that latch a fault"),
+    integer<&DeviceDesc::late_ticks_max>("late_ticks_max", 2, 1000,
+                                         "ticks in a row that each missed deadlines: a fault"),
+    number<&DeviceDesc::stall_max_s>("stall_max_ms", 1, 1000, kMilli,
+                                     "deadlines missed at one go for so long: a fault; at least two periods count"),
     number<&DeviceDesc::speed_max_m_per_s>("speed_max_m_per_s", 0.01, 100, 1,
                                            "a sample that implies a faster motion is rejected"),
 };

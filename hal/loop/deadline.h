@@ -12,8 +12,8 @@ namespace palpate {
 
 struct DeadlineLimits {
   std::int64_t period_ns = 1'000'000;
-  std::uint32_t consecutive_ticks = 10;  // so many ticks in a row that each missed slots: overrun fault
-  std::uint32_t slots_at_once = 20;      // so many slots missed in one go: overrun fault
+  std::uint32_t consecutive_ticks = 10;  // so many ticks in a row that each missed slots: Fault::kOverrun
+  std::uint32_t slots_at_once = 20;      // so many slots missed in one go: Fault::kStalled
 };
 
 class DeadlineTracker {
@@ -46,7 +46,8 @@ class DeadlineTracker {
     worst_missed_ = missed_ > worst_missed_ ? missed_ : worst_missed_;
   }
   std::uint32_t missed() const noexcept { return missed_; }  // slots skipped just before this tick
-  bool fault() const noexcept { return consecutive_ >= limits_.consecutive_ticks || missed_ >= limits_.slots_at_once; }
+  bool late_too_often() const noexcept { return consecutive_ >= limits_.consecutive_ticks; }
+  bool stalled() const noexcept { return missed_ >= limits_.slots_at_once; }
   std::uint64_t total_missed() const noexcept { return total_missed_; }
   std::uint64_t overrun_ticks() const noexcept { return overrun_ticks_; }
   std::uint32_t worst_missed() const noexcept { return worst_missed_; }

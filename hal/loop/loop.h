@@ -20,6 +20,17 @@
 
 namespace palpate {
 
+// The scene's limits (device.late_ticks_max, device.stall_max_ms), in slots of its period.
+inline DeadlineLimits deadline_limits(const ModelParams& params) noexcept {
+  DeadlineLimits limits;
+  limits.period_ns = static_cast<std::int64_t>(params.period_s * 1e9 + 0.5);
+  limits.consecutive_ticks = static_cast<std::uint32_t>(params.late_ticks_max);
+  const double slots = params.stall_max_s / params.period_s + 0.5;
+  // One late wake-up alone costs two slots (skip() above): a smaller limit would latch on what is counted as lateness.
+  limits.slots_at_once = slots < 2 ? 2u : static_cast<std::uint32_t>(slots);
+  return limits;
+}
+
 struct LoopOptions {
   DeadlineLimits deadline;
   std::uint64_t ticks = 0;                   // controller ticks before an orderly stop; 0: until stopped
@@ -200,7 +211,8 @@ class Loop {
     if constexpr (requires { host_.joints(); }) input_.joints = host_.joints();
     input_.device_fault = sample_.faults;
     if (stale_ >= options_.silence_fault_ticks) input_.device_fault |= Fault::kDeviceSilent;
-    if (slots_.fault()) input_.device_fault |= Fault::kOverrun;
+    if (slots_.late_too_often()) input_.device_fault |= Fault::kOverrun;
+    if (slots_.stalled()) input_.device_fault |= Fault::kStalled;
     input_.drive = Drive::kDevice;
   }
 

@@ -57,10 +57,10 @@ void advance_mode(const Model& model, const Input& input, std::uint32_t new_faul
   std::uint32_t faults = new_faults | input.device_fault;
   const bool at_rest = safety.mode == Mode::kIdle || safety.mode == Mode::kFault;
   if (!at_rest && late_ticks >= static_cast<std::uint32_t>(model.params.silence_fault_ticks)) {
-    faults |= input.overrun_ticks > 0 && input.stale_ticks == 0 ? Fault::kOverrun : Fault::kDeviceSilent;
+    faults |= input.overrun_ticks > 0 && input.stale_ticks == 0 ? Fault::kStalled : Fault::kDeviceSilent;
   }
   // At rest nothing is rendered, so a device that is merely silent (not started yet) is no fault; everything else is.
-  if (safety.mode == Mode::kIdle) faults &= ~(Fault::kDeviceSilent | Fault::kOverrun);
+  if (safety.mode == Mode::kIdle) faults &= ~(Fault::kDeviceSilent | Fault::kOverrun | Fault::kStalled);
   safety.fault |= faults;
 
   if (safety.fault != 0 && safety.mode != Mode::kFault) {

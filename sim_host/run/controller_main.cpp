@@ -163,7 +163,7 @@ std::unique_ptr<Transport> connect_device(const Arguments& arguments, double per
 LoopOptions loop_options(const Model& model, const Arguments& arguments) {
   const double period_s = model.params.period_s;
   LoopOptions options;
-  options.deadline.period_ns = static_cast<std::int64_t>(period_s * 1e9 + 0.5);
+  options.deadline = deadline_limits(model.params);
   options.ticks = static_cast<std::uint64_t>(arguments.duration_s / period_s);
   options.start_timeout_ticks = static_cast<std::uint32_t>(kStartTimeout_s / period_s);
   options.silence_fault_ticks = static_cast<std::uint32_t>(model.params.silence_fault_ticks);

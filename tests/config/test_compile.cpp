@@ -134,6 +134,8 @@ ramp_out_s = 0.1
 silence_hold_ticks = 2
 silence_passive_ticks = 6
 silence_fault_ticks = 60
+late_ticks_max = 7
+stall_max_ms = 36
 speed_max_m_per_s = 2
 )");
   const Opened image(compile_scene(scene).bytes);
@@ -150,6 +152,8 @@ speed_max_m_per_s = 2
   EXPECT_EQ(p.silence_hold_ticks, 2);
   EXPECT_EQ(p.silence_passive_ticks, 6);
   EXPECT_EQ(p.silence_fault_ticks, 60);
+  EXPECT_EQ(p.late_ticks_max, 7);
+  EXPECT_DOUBLE_EQ(p.stall_max_s, 0.036);
   EXPECT_DOUBLE_EQ(p.period_s, 0.002);
   EXPECT_DOUBLE_EQ(p.k1_N_per_m, 40);
   EXPECT_DOUBLE_EQ(p.k3_N_per_m3, 4e8);

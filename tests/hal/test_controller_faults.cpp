@@ -55,7 +55,7 @@ TEST(ControllerFault, TenMissedInARowLatch) {
 TEST(ControllerFault, NineDoNot) { expect_passes(run_with(slow_ticks(9, 2)), Mode::kPassive, 9, 18); }
 
 TEST(ControllerFault, TwentyMissedAtOnceLatch) {
-  expect_latches(run_with(slow_ticks(1, 20)), Fault::kOverrun, 1, 21, 20);
+  expect_latches(run_with(slow_ticks(1, 20)), Fault::kStalled, 1, 21, 20);
 }
 
 // Two seconds without a heartbeat, then the ramp; the run ends by itself.

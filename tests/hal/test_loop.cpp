@@ -207,7 +207,7 @@ TEST(Overrun, TooManyInARowLatchTheFaultAndOneLongGapToo) {
   EXPECT_EQ(r[32].input.device_fault, 0u);  // the HAL does not latch; the core does
   Bench once;
   once.wall.during = [&](std::uint64_t step) { once.clock.advance(step == 3 ? 25 * kPeriod_ns : 0); };
-  EXPECT_EQ(once.run(10).faults, Fault::kOverrun);
+  EXPECT_EQ(once.run(10).faults, Fault::kStalled);
   EXPECT_EQ(once.recorder.records[4].input.overrun_ticks, 25u);
 }
 

@@ -45,6 +45,8 @@ inline ModelParams tiny_params() {
   p.silence_hold_ticks = 1;
   p.silence_passive_ticks = 5;
   p.silence_fault_ticks = 20;
+  p.late_ticks_max = 10;
+  p.stall_max_s = 0.02;
   p.period_s = 1e-3;
   p.k1_N_per_m = 40;
   p.k3_N_per_m3 = 3e8;
