@@ -22,9 +22,10 @@ void Recorder::start() {
 }
 
 void Recorder::stop() {
-  if (!thread_.joinable()) return;
+  if (finished_) return;
   stopping_.store(true);
-  thread_.join();
+  if (thread_.joinable()) thread_.join();
+  finish();
 }
 
 void Recorder::run() {
@@ -32,6 +33,10 @@ void Recorder::run() {
     drain();
     std::this_thread::sleep_for(kDrainPeriod);
   }
+}
+
+void Recorder::finish() {
+  finished_ = true;
   drain();
   // Records the reader had to skip after the last one it got are a loss too.
   if (reader_.lost() > lost_) {

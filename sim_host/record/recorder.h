@@ -19,7 +19,11 @@ class Recorder {
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
+  // Drains on a thread of its own until stop(). Without it somebody else calls drain(): a run in virtual time, in which
+  // the records of a chunk, and with them the file's bytes, must not depend on when a thread woke up.
   void start();
+  // Takes what is in the ring.
+  void drain();
   // Takes what is still in the ring, finishes the file and ends the thread. Call when the controller no longer writes,
   // or is not to be listened to any more.
   void stop();
@@ -30,7 +34,7 @@ class Recorder {
 
  private:
   void run();
-  void drain();
+  void finish();
   template <typename Action>
   void on_file(Action action);
 
@@ -41,6 +45,7 @@ class Recorder {
   std::uint64_t records_ = 0;
   std::uint64_t lost_ = 0;
   std::string error_;
+  bool finished_ = false;
   std::atomic<bool> stopping_{false};
   std::thread thread_;
 };

@@ -9,6 +9,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "hal/system/shared_memory.h"
@@ -20,9 +21,11 @@ namespace palpate {
 
 class ControllerLink {
  public:
-  // Starts `program` with `arguments` and `--control-fd`. `device_fd` >= 0 is handed over as `kDeviceDescriptor`.
-  // Throws std::runtime_error when the controller does not come up within 5 s; its own error text is on stderr then.
-  ControllerLink(const std::string& program, std::vector<std::string> arguments, int device_fd);
+  // Starts `program` with `arguments` and `--control-fd`. `device_fd` >= 0 is handed over as `kDeviceDescriptor`, and
+  // of `others` each first as its second. Throws std::runtime_error when the controller does not come up within 5 s;
+  // its own error text is on stderr then.
+  ControllerLink(const std::string& program, std::vector<std::string> arguments, int device_fd,
+                 const std::vector<std::pair<int, int>>& others = {});
 
   const TelemetryRegion& telemetry() const { return *static_cast<const TelemetryRegion*>(telemetry_.data()); }
   MailboxWriter& mailbox() { return *mailbox_writer_; }
@@ -33,6 +36,8 @@ class ControllerLink {
 
   static constexpr int kControlDescriptor = 3;
   static constexpr int kDeviceDescriptor = 4;
+  static constexpr int kDeviceTurnDescriptor = 5;
+  static constexpr int kHostTurnDescriptor = 6;
 
  private:
   SharedMemory mailbox_memory_, telemetry_;

@@ -18,6 +18,7 @@
 #include "hal/bus/bus_budget.h"
 #include "hal/bus/device_address.h"
 #include "hal/bus/loopback.h"
+#include "hal/loop/lockstep.h"
 #include "hal/loop/loop.h"
 #include "hal/system/rt_linux.h"
 #include "hal/system/shared_memory.h"
@@ -41,6 +42,8 @@ constexpr char kHelp[] =
     "  --duration S        stop after S seconds; default: when told to\n"
     "  --cpu N             pin to this CPU; default: any\n"
     "  --priority P        SCHED_FIFO priority 1..98, 0: ordinary scheduling; default 80\n"
+    "  --device-turn-fd N, --host-turn-fd N   inherited sockets: virtual time in lock step with them; default: real "
+    "time\n"
     "Exit codes: 0 done, 1 a fault was latched, 2 bad arguments or image, 3 device, host or memory unavailable,\n"
     "            4 the device sent nothing at start. In every case the last commands sent are zero force, drives off.\n"
     "Example: palpate-rt --image mallet.pal --device can:can0 --cpu 3 --duration 60\n";
@@ -52,7 +55,9 @@ constexpr double kStartTimeout_s = 3.0;
 struct Arguments {
   std::string image, device = "auto";
   int device_fd = -1, control_fd = -1, cpu = -1, priority = 80;
+  int device_turn_fd = -1, host_turn_fd = -1;
   double duration_s = 0;
+  bool virtual_time() const { return device_turn_fd >= 0 || host_turn_fd >= 0; }
 };
 
 // A failed step ends the program with this exit code and message.
@@ -70,11 +75,11 @@ double number(const char* option, const char* text, double lowest, double highes
 
 Arguments parse(int argc, char** argv) {
   Arguments arguments;
-  const option options[] = {{"image", 1, nullptr, 'i'},     {"device", 1, nullptr, 'd'},
-                            {"device-fd", 1, nullptr, 'f'}, {"control-fd", 1, nullptr, 'c'},
-                            {"duration", 1, nullptr, 's'},  {"cpu", 1, nullptr, 'u'},
-                            {"priority", 1, nullptr, 'p'},  {"help", 0, nullptr, 'h'},
-                            {"version", 0, nullptr, 'v'},   {nullptr, 0, nullptr, 0}};
+  const option options[] = {
+      {"image", 1, nullptr, 'i'},          {"device", 1, nullptr, 'd'},       {"device-fd", 1, nullptr, 'f'},
+      {"control-fd", 1, nullptr, 'c'},     {"duration", 1, nullptr, 's'},     {"cpu", 1, nullptr, 'u'},
+      {"priority", 1, nullptr, 'p'},       {"help", 0, nullptr, 'h'},         {"version", 0, nullptr, 'v'},
+      {"device-turn-fd", 1, nullptr, 'D'}, {"host-turn-fd", 1, nullptr, 'H'}, {nullptr, 0, nullptr, 0}};
   const auto integer = [](const char* name, double low, double high) {
     return static_cast<int>(number(name, optarg, low, high));
   };
@@ -86,6 +91,8 @@ Arguments parse(int argc, char** argv) {
     if (c == 's') arguments.duration_s = number("--duration", optarg, 0.001, 1e6);
     if (c == 'u') arguments.cpu = integer("--cpu", -1, 1023);
     if (c == 'p') arguments.priority = integer("--priority", 0, 98);
+    if (c == 'D') arguments.device_turn_fd = integer("--device-turn-fd", 0, 1 << 20);
+    if (c == 'H') arguments.host_turn_fd = integer("--host-turn-fd", 0, 1 << 20);
     if (c == 'h') throw Failure{kOk, kHelp};
     if (c == 'v') throw Failure{kOk, std::string(kBuildId) + "\n"};
     if (c == '?') throw Failure{kUsage, "see palpate-rt --help"};
@@ -199,26 +206,37 @@ struct LoopUsage {
   long heap_calls = 0;  // -1: not counted
 };
 
+// What a run in virtual time asks of the machine: nothing but the system-call filter, which holds there as well.
+RtOptions rt_options(const Arguments& arguments) {
+  RtOptions options;
+  options.priority = arguments.priority;
+  options.cpu = arguments.cpu;
+  if (arguments.virtual_time()) {
+    options.priority = 0;
+    options.lock_memory = options.no_deep_sleep = false;
+  }
+  return options;
+}
+
 // The real-time thread: set-up, system-call filter, loop. Prints only before the filter is in place.
+template <Clock C>
 LoopSummary run_loop(const Arguments& arguments, const Model& model, Core& core, HostConnection& host, DeviceBus& bus,
-                     const std::atomic<bool>& interrupted, LoopUsage& usage) {
+                     C& clock, const std::atomic<bool>& interrupted, LoopUsage& usage) {
   std::atomic<bool> stop{false};
   const auto* mailbox = static_cast<const MailboxRegion*>(host.mailbox.data());
   HostPort port(mailbox, static_cast<std::uint32_t>(kHostSilence_s / model.params.period_s), interrupted, stop);
   TelemetrySink sink(mailbox != nullptr ? &host.writer : nullptr);
   SupervisedDevice device(bus, port);
   ModelController controller(model, core.state, core.scratch);
-  MonotonicClock clock;
   const CartesianKinematics kinematics;
   LoopSummary summary;
   std::thread thread([&] {
-    RtOptions options;
-    options.priority = arguments.priority;
-    options.cpu = arguments.cpu;
-    const RtSetup setup(options);
+    const RtSetup setup(rt_options(arguments));
     std::string reason = "built with a sanitizer, whose own library maps memory at any time";
     const bool filtered = !kSanitized && install_syscall_filter(reason);
-    std::fprintf(stderr, "%s%s\n", setup.text().c_str(),
+    std::fprintf(stderr, "%s%s\n",
+                 arguments.virtual_time() ? "virtual time: in lock step with device and host, nothing here is timed\n"
+                                          : setup.text().c_str(),
                  filtered ? "ok       system-call filter: only what the loop needs"
                           : ("REFUSED  system-call filter: " + reason).c_str());
     drain(bus);
@@ -232,6 +250,21 @@ LoopSummary run_loop(const Arguments& arguments, const Model& model, Core& core,
     summary.faults |= port.faults();
   });
   thread.join();
+  return summary;
+}
+
+LoopSummary run_in_virtual_time(const Arguments& arguments, const Model& model, Core& core, HostConnection& host,
+                                DeviceBus& bus, const std::atomic<bool>& interrupted, LoopUsage& usage) {
+  LockstepClock clock;
+  // The device first: a host that looks in the same step sees the sample's tick not yet, but everything before it.
+  if (arguments.device_turn_fd >= 0) clock.add(arguments.device_turn_fd, "device");
+  if (arguments.host_turn_fd >= 0) clock.add(arguments.host_turn_fd, "host");
+  const LoopSummary summary = run_loop(arguments, model, core, host, bus, clock, interrupted, usage);
+  if (clock.lost() != nullptr) {
+    std::fprintf(stderr, "virtual time: the %s %s at %.3f s; time went on without it\n", clock.lost(),
+                 clock.lost_closed() ? "closed its end" : "did not take its turn for 10 s",
+                 1e-9 * static_cast<double>(clock.lost_ns()));
+  }
   return summary;
 }
 
@@ -254,7 +287,10 @@ int run(int argc, char** argv) {
   const std::unique_ptr<Transport> transport = connect_device(arguments, model.params.period_s, address);
   DeviceBus bus(*transport, address.profile, address.node);
   LoopUsage usage;
-  const LoopSummary summary = run_loop(arguments, model, *core, host, bus, interrupted, usage);
+  MonotonicClock clock;
+  const LoopSummary summary = arguments.virtual_time()
+                                  ? run_in_virtual_time(arguments, model, *core, host, bus, interrupted, usage)
+                                  : run_loop(arguments, model, *core, host, bus, clock, interrupted, usage);
   if (summary.end == LoopEnd::kSilentAtStart) {
     throw Failure{kSilentAtStart, "the device sent nothing at start: check power, cable, bus and node number"};
   }

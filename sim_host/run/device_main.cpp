@@ -19,6 +19,7 @@
 #include "hal/device/device_node.h"
 #include "hal/device/fault_player.h"
 #include "hal/loop/clock.h"
+#include "hal/loop/lockstep.h"
 #include "hal/system/rt_linux.h"
 #include "sim_host/run/hand_path_file.h"
 #include "sim_host/run/plant_options.h"
@@ -32,6 +33,7 @@ constexpr char kHelp[] =
     "palpate-device --device ADDRESS [options]: a simulated device and hand\n"
     "  --device ADDRESS   can:IFACE, usb:/dev/hidgN or loopback[:NAME], each with optional ,classic and ,node=N\n"
     "  --device-fd N      use the inherited socket N instead of opening the loopback\n"
+    "  --turn-fd N        inherited socket to the controller: virtual time in lock step with it; default: real time\n"
     "  --path FILE        the hand's motion: time_s,x_mm,y_mm,z_mm[,rx_deg,ry_deg,rz_deg[,closing]]; default: rests at "
     "the "
     "origin\n"
@@ -49,7 +51,7 @@ struct Failure {
 
 struct Arguments {
   std::string device = "loopback", path, faults, bus_model;
-  int device_fd = -1, priority = 0, cpu = -1;
+  int device_fd = -1, turn_fd = -1, priority = 0, cpu = -1;
   double duration_s = 0;
   PlantOptions plant;
 };
@@ -102,10 +104,11 @@ Arguments parse(int argc, char** argv) {
   const option options[] = {{"device", 1, nullptr, 'd'},   {"device-fd", 1, nullptr, 'f'}, {"path", 1, nullptr, 'p'},
                             {"duration", 1, nullptr, 's'}, {"priority", 1, nullptr, 'r'},  {"cpu", 1, nullptr, 'u'},
                             {"faults", 1, nullptr, 'a'},   {"bus-model", 1, nullptr, 'b'}, {"set", 1, nullptr, 'x'},
-                            {"help", 0, nullptr, 'h'},     {nullptr, 0, nullptr, 0}};
+                            {"help", 0, nullptr, 'h'},     {"turn-fd", 1, nullptr, 't'},   {nullptr, 0, nullptr, 0}};
   for (int c; (c = getopt_long(argc, argv, "", options, nullptr)) != -1;) {
     if (c == 'd') arguments.device = optarg;
     if (c == 'f') arguments.device_fd = static_cast<int>(number("--device-fd", optarg, 0, 1 << 20));
+    if (c == 't') arguments.turn_fd = static_cast<int>(number("--turn-fd", optarg, 0, 1 << 20));
     if (c == 'p') arguments.path = optarg;
     if (c == 's') arguments.duration_s = number("--duration", optarg, 0.001, 1e6);
     if (c == 'r') arguments.priority = static_cast<int>(number("--priority", optarg, 0, 98));
@@ -179,13 +182,17 @@ BusRate bus_rate(const Arguments& arguments, const DeviceAddress& address) {
 }
 
 // The device's own clock, one step per period. A late step is made up for at once: mechanics does not skip time.
-void run_node(DeviceNode& node, FaultPlayer& faults, BusModel* bus, const Arguments& arguments,
+template <Clock C>
+void run_node(DeviceNode& node, FaultPlayer& faults, BusModel* bus, const Arguments& arguments, C& clock,
               const std::atomic<bool>& stop) {
-  MonotonicClock clock;
+  const auto leader_is_there = [&clock] {
+    if constexpr (requires { clock.connected(); }) return clock.connected();
+    return true;
+  };
   const auto steps = static_cast<std::uint64_t>(arguments.duration_s / arguments.plant.period_s);
   std::int64_t deadline_ns = clock.now_ns();
-  for (std::uint64_t i = 0;
-       (steps == 0 || i < steps) && !stop.load(std::memory_order_relaxed) && (node.connected() || faults.unplugged());
+  for (std::uint64_t i = 0; (steps == 0 || i < steps) && !stop.load(std::memory_order_relaxed) && leader_is_there() &&
+                            (node.connected() || faults.unplugged());
        ++i) {
     deadline_ns += faults.period_ns();
     while (bus != nullptr && bus->next_ns() >= 0 && bus->next_ns() < deadline_ns) {
@@ -224,7 +231,13 @@ int run(int argc, char** argv) {
   rt.cpu = arguments.cpu;
   rt.lock_memory = rt.no_deep_sleep = arguments.priority > 0;
   const RtSetup setup(rt);
-  run_node(node, faults, timed ? &bus : nullptr, arguments, stop);
+  MonotonicClock real_time;
+  FollowerClock virtual_time(arguments.turn_fd, stop);
+  if (arguments.turn_fd >= 0) {
+    run_node(node, faults, timed ? &bus : nullptr, arguments, virtual_time, stop);
+  } else {
+    run_node(node, faults, timed ? &bus : nullptr, arguments, real_time, stop);
+  }
   return kOk;
 }
 

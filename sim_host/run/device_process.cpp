@@ -20,6 +20,7 @@ namespace {
 
 constexpr int kDeviceEnd = 3;  // descriptors in the child
 constexpr int kPathFile = 4;
+constexpr int kTurns = 5;
 constexpr double kDegreesPerRadian = 180.0 / 3.14159265358979323846;
 
 // Closes a descriptor at the end of its scope.
@@ -91,38 +92,32 @@ std::vector<std::string> plant_arguments(const SceneDesc& scene) {
 }
 
 DeviceProcess::DeviceProcess(const std::string& program, const SceneImage& scene, const std::string& path,
-                             const std::string& device, int priority) {
+                             const std::string& device, int priority, int turn_fd) {
   if (path.empty() && (!scene.scene || scene.scene->path.point.empty())) {
     throw std::runtime_error("the simulated hand needs a motion: give --path CSV, or a .toml scene with a [path]");
   }
-  int pair[2];
-  if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, pair) != 0) {
-    throw std::runtime_error(fmt::format("socketpair: {}", std::strerror(errno)));
-  }
-  controller_end_ = pair[0];
-  const Descriptor device_end(pair[1]);
   const Descriptor file(path.empty() ? text_file(path_csv(scene.scene->path)) : -1);
   std::vector<std::string> arguments{
       "--device", device, "--device-fd", std::to_string(kDeviceEnd), "--priority", std::to_string(priority)};
-  std::vector<std::pair<int, int>> descriptors{{device_end.fd, kDeviceEnd}};
+  std::vector<std::pair<int, int>> descriptors{{sockets_.end(1), kDeviceEnd}};
   if (file.fd >= 0) descriptors.emplace_back(file.fd, kPathFile);
   arguments.insert(arguments.end(), {"--path", file.fd >= 0 ? fmt::format("/proc/self/fd/{}", kPathFile) : path});
   if (scene.scene) {
     const std::vector<std::string> plant = plant_arguments(*scene.scene);
     arguments.insert(arguments.end(), plant.begin(), plant.end());
   }
+  if (turn_fd >= 0) {
+    descriptors.emplace_back(turn_fd, kTurns);
+    arguments.insert(arguments.end(), {"--turn-fd", std::to_string(kTurns)});
+  }
   process_ = Process::start(program, arguments, descriptors);
+  sockets_.close_end(1);
 }
 
 DeviceProcess::~DeviceProcess() {
   close_controller_end();
   process_.signal(SIGTERM);
   process_.wait(500);  // then Process's destructor insists
-}
-
-void DeviceProcess::close_controller_end() {
-  if (controller_end_ >= 0) close(controller_end_);
-  controller_end_ = -1;
 }
 
 }  // namespace palpate

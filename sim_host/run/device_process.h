@@ -6,25 +6,27 @@
 #include "hal/device/device_sim.h"
 #include "sim_host/bake/scene_image.h"
 #include "sim_host/run/process.h"
+#include "sim_host/run/socket_pair.h"
 
 namespace palpate {
 
 class DeviceProcess {
  public:
   // `path`: CSV of the hand's motion; empty: the scene's own. Throws std::runtime_error when there is neither.
-  // `priority`: SCHED_FIFO of the device, below the controller's; 0: ordinary scheduling.
+  // `priority`: SCHED_FIFO of the device, below the controller's; 0: ordinary scheduling. `turn_fd` >= 0: virtual time
+  // in lock step with the controller at the other end.
   DeviceProcess(const std::string& program, const SceneImage& scene, const std::string& path, const std::string& device,
-                int priority);
+                int priority, int turn_fd = -1);
   ~DeviceProcess();
   DeviceProcess(const DeviceProcess&) = delete;
   DeviceProcess& operator=(const DeviceProcess&) = delete;
 
-  int controller_end() const { return controller_end_; }
+  int controller_end() const { return sockets_.end(0); }
   // Once the controller holds it: then the device notices the controller's end.
-  void close_controller_end();
+  void close_controller_end() { sockets_.close_end(0); }
 
  private:
-  int controller_end_ = -1;
+  SocketPair sockets_;
   Process process_;
 };
 

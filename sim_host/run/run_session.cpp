@@ -18,6 +18,8 @@
 #include "sim_host/record/recorder.h"
 #include "sim_host/run/controller_link.h"
 #include "sim_host/run/device_process.h"
+#include "sim_host/run/host_time.h"
+#include "sim_host/run/socket_pair.h"
 #include "sim_host/run/status_line.h"
 
 namespace palpate {
@@ -27,8 +29,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-// The controller takes 2 s without a heartbeat for the death of its host.
-constexpr milliseconds kHeartbeatPeriod{50};
 // Ticks before arming, so that the force does not ramp in on the first, perhaps wild, ones.
 constexpr std::uint64_t kTicksBeforeArming = 50;
 
@@ -61,12 +61,16 @@ class StopSignals {
 };
 
 std::vector<std::string> controller_arguments(const RunOptions& options, const std::string& image,
-                                              const std::string& device, bool device_inherited) {
+                                              const std::string& device, bool device_inherited, bool virtual_time) {
   std::vector<std::string> arguments{"--image", image,        "--device",
                                      device,    "--priority", std::to_string(options.priority)};
   if (options.cpu >= 0) arguments.insert(arguments.end(), {"--cpu", std::to_string(options.cpu)});
   if (device_inherited) {
     arguments.insert(arguments.end(), {"--device-fd", std::to_string(ControllerLink::kDeviceDescriptor)});
+  }
+  if (virtual_time) {
+    arguments.insert(arguments.end(), {"--device-turn-fd", std::to_string(ControllerLink::kDeviceTurnDescriptor),
+                                       "--host-turn-fd", std::to_string(ControllerLink::kHostTurnDescriptor)});
   }
   return arguments;
 }
@@ -140,20 +144,24 @@ std::string death_text(int exit_code) {
   return exit_code > 1 ? fmt::format("controller ended with exit code {}", exit_code) : "";
 }
 
-CandumpOptions candump_options(const DeviceAddress& address) {
+CandumpOptions candump_options(const DeviceAddress& address, bool virtual_time) {
   CandumpOptions options;
   if (address.kind == TransportKind::kCan) options.interface = address.name;
   options.profile = address.profile;
   options.node = address.node;
-  options.wall_minus_monotonic_ns = wall_minus_monotonic_ns();
+  options.wall_minus_monotonic_ns = virtual_time ? 0 : wall_minus_monotonic_ns();
   return options;
 }
 
 // Watches the controller until the time is over, a signal comes or it ends by itself.
 class Watch {
  public:
-  Watch(ControllerLink& link, const RunOptions& options, const JointScript& joints, SharedSummary& summary)
+  // `recorder`: drained at each look; null when it has a thread of its own.
+  Watch(ControllerLink& link, HostTime& time, Recorder* recorder, const RunOptions& options, const JointScript& joints,
+        SharedSummary& summary)
       : link_(link),
+        time_(time),
+        recorder_(recorder),
         options_(options),
         joints_(joints),
         summary_(summary),
@@ -162,24 +170,38 @@ class Watch {
         all_(std::make_unique<RunSummary>()),
         recent_(std::make_unique<RunSummary>()) {}
 
-  // Returns how long it watched, in seconds.
+  // Returns how long it watched, in seconds of the run.
   double run() {
-    const auto start = Clock::now();
-    const auto end = start + std::chrono::duration<double>(options_.duration_s);
-    const auto elapsed_s = [start] { return std::chrono::duration<double>(Clock::now() - start).count(); };
-    while (Clock::now() < end && stop_signal == 0 && !faulted_ && link_.process().running()) {
-      link_.mailbox().beat();
-      if (!joints_.empty()) link_.mailbox().set_joints(joints_.at(elapsed_s()));
+    while (next() && time_.elapsed_s() < options_.duration_s && stop_signal == 0 && !faulted_) {
+      if (!joints_.empty()) link_.mailbox().set_joints(joints_.at(time_.elapsed_s()));
       look();
-      report(elapsed_s(), false);
-      std::this_thread::sleep_for(kHeartbeatPeriod);
+      report(time_.elapsed_s(), false);
     }
     if (show_) fmt::print(stderr, "\r\x1b[K");
-    report(elapsed_s(), true);
-    return elapsed_s();
+    report(time_.elapsed_s(), true);
+    return time_.elapsed_s();
+  }
+
+  // Ends the controller in order; the heartbeat goes on meanwhile, or a slow stop would look like a dead host. Returns
+  // its exit code.
+  int finish() {
+    constexpr double kLongest_s = 3;
+    link_.mailbox().set(Command::kStop, true);
+    const double from_s = time_.elapsed_s();
+    while (next() && time_.elapsed_s() < from_s + kLongest_s) {
+    }
+    return link_.finish();
   }
 
  private:
+  // The next look: false when there is nobody left to look at.
+  bool next() {
+    if (!time_.next() || !link_.process().running()) return false;
+    link_.mailbox().beat();
+    if (recorder_ != nullptr) recorder_->drain();
+    return true;
+  }
+
   void look() {
     TickRecord newest;
     if (!reader_.newest(newest)) return;
@@ -202,6 +224,8 @@ class Watch {
   }
 
   ControllerLink& link_;
+  HostTime& time_;
+  Recorder* recorder_;
   const RunOptions& options_;
   const JointScript& joints_;
   SharedSummary& summary_;
@@ -214,20 +238,10 @@ class Watch {
   bool faulted_ = false;
 };
 
-// Ends the controller in order; the heartbeat goes on meanwhile, or a slow stop would look like a dead host.
-int finish(ControllerLink& link) {
-  link.mailbox().set(Command::kStop, true);
-  const auto until = Clock::now() + milliseconds(3000);
-  while (link.process().running() && Clock::now() < until) {
-    link.mailbox().beat();
-    std::this_thread::sleep_for(milliseconds(5));
-  }
-  return link.finish();
-}
-
 // Records and watches a controller that has just started, then ends it.
-RunResult follow(ControllerLink& link, const RunOptions& options, const JointScript& joints,
+RunResult follow(ControllerLink& link, HostTime& time, const RunOptions& options, const JointScript& joints,
                  const DeviceAddress& address, const Model& model) {
+  const bool virtual_time = runs_in_virtual_time(options);
   const TelemetryHeader& header = link.telemetry().header;
   std::unique_ptr<RecordingWriter> file;
   if (!options.record.empty()) {
@@ -236,18 +250,20 @@ RunResult follow(ControllerLink& link, const RunOptions& options, const JointScr
   std::unique_ptr<BlackBox> box;
   if (!options.black_box.empty()) {
     box = std::make_unique<BlackBox>(options.black_box, recording_header(header), header.initial_state, &model,
-                                     candump_options(address));
+                                     candump_options(address, virtual_time));
   }
   const auto summary = std::make_unique<SharedSummary>();
   Recorder recorder(link.telemetry(), file.get(), [&](const TickRecord& record) {
     summary->take(record);
     if (box) box->add(record);
   });
-  recorder.start();
+  if (!virtual_time) recorder.start();
+  Watch watch(link, time, virtual_time ? &recorder : nullptr, options, joints, *summary);
   RunResult result;
-  result.elapsed_s = Watch(link, options, joints, *summary).run();
+  result.virtual_time = virtual_time;
+  result.elapsed_s = watch.run();
   result.interrupted = stop_signal != 0;
-  result.controller_exit = finish(link);
+  result.controller_exit = watch.finish();
   recorder.stop();  // the controller has ended: the ring holds its last word
   if (box) {
     box->finish(death_text(result.controller_exit));
@@ -261,6 +277,19 @@ RunResult follow(ControllerLink& link, const RunOptions& options, const JointScr
 }
 
 }  // namespace
+
+bool runs_in_virtual_time(const RunOptions& options) {
+  const DeviceAddress address = device_address(options.device);
+  const bool simulated = wants_simulated_device(address, options.device);
+  if (options.time == RunTime::kVirtual && !simulated) {
+    throw std::runtime_error(
+        fmt::format("virtual time is the simulated device's; {} has its own: use --device loopback, or leave "
+                    "--virtual-time out",
+                    options.device));
+  }
+  if (options.time == RunTime::kAutomatic) return simulated && options.device.starts_with("auto");
+  return options.time == RunTime::kVirtual;
+}
 
 RunResult run_session(const RunOptions& options) {
   const StopSignals signals;
@@ -279,16 +308,33 @@ RunResult run_session(const RunOptions& options) {
   const auto program = [&](const char* name) { return folder.empty() ? sibling_program(name) : folder + "/" + name; };
 
   if (options.before_start) options.before_start();
+  const bool virtual_time = runs_in_virtual_time(options);
+  std::optional<SocketPair> device_turns, host_turns;
+  std::vector<std::pair<int, int>> turns;
+  if (virtual_time) {
+    device_turns.emplace();
+    host_turns.emplace();
+    turns = {{device_turns->end(0), ControllerLink::kDeviceTurnDescriptor},
+             {host_turns->end(0), ControllerLink::kHostTurnDescriptor}};
+  }
   std::optional<DeviceProcess> device;
   if (wants_simulated_device(address, options.device)) {
     device.emplace(program("palpate-device"), scene, options.path, options.device,
-                   std::max(0, options.priority - kDevicePriorityBelow));
+                   virtual_time ? 0 : std::max(0, options.priority - kDevicePriorityBelow),
+                   virtual_time ? device_turns->end(1) : -1);
   }
   ControllerLink link(program("palpate-rt"),
-                      controller_arguments(options, scene.image_path, options.device, device.has_value()),
-                      device ? device->controller_end() : -1);
+                      controller_arguments(options, scene.image_path, options.device, device.has_value(), virtual_time),
+                      device ? device->controller_end() : -1, turns);
   if (device) device->close_controller_end();
-  return follow(link, options, joints, address, image.model());
+  if (!virtual_time) {
+    RealHostTime time;
+    return follow(link, time, options, joints, address, image.model());
+  }
+  device_turns.reset();
+  host_turns->close_end(0);
+  VirtualHostTime time(host_turns->end(1), options.pace);
+  return follow(link, time, options, joints, address, image.model());
 }
 
 }  // namespace palpate

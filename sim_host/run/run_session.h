@@ -13,9 +13,14 @@
 
 namespace palpate {
 
+// Whose time a run takes. Automatic: virtual with the simulated device nobody asked for, real with any that is named.
+enum class RunTime { kAutomatic, kReal, kVirtual };
+
 struct RunOptions {
   std::string scene;            // .toml or .pal
   std::string device = "auto";  // auto, loopback, can:IFACE
+  RunTime time = RunTime::kAutomatic;
+  bool pace = false;  // virtual time no faster than real time
   double duration_s = 10;
   std::string record = "run.plr";  // empty: do not record
   std::string path;                // CSV of the simulated hand's motion; empty: the scene's own
@@ -34,6 +39,7 @@ struct RunOptions {
 
 struct RunResult {
   RunSummary summary;
+  bool virtual_time = false;
   std::uint64_t lost = 0;
   int controller_exit = 0;
   std::string recorder_error;
@@ -43,6 +49,11 @@ struct RunResult {
   double elapsed_s = 0;  // until the stop
   bool faulted() const { return summary.fault != 0; }
 };
+
+// Whether a run with these options takes place in virtual time: controller, simulated device and host in lock step, as
+// fast as the machine can, with the same bits every time. Throws std::runtime_error when that was asked for with a
+// device that has its own time.
+bool runs_in_virtual_time(const RunOptions& options);
 
 // Throws std::runtime_error when the run cannot start, with the table when the traffic does not fit the CAN bus. SIGINT
 // and SIGTERM end it early and in order.

@@ -18,6 +18,20 @@ void time_row(std::string& text, const char* name, const Histogram& times) {
                  us(percentile_ns(times, 0.5)), us(percentile_ns(times, 0.999)), us(times.max_ns), times.cycle_of_max);
 }
 
+void times_table(std::string& text, const RunSummary& summary) {
+  fmt::format_to(std::back_inserter(text), "times   {:<16}{:>10}{:>10}{:>10}   (us)\n", "", "p50", "p99.9", "max");
+  time_row(text, "wake-up latency", summary.wake);
+  time_row(text, "receive", summary.receive);
+  time_row(text, "compute", summary.compute);
+  for (int i = 0; i < kStageCount; ++i) {
+    time_row(text, fmt::format("  {}", stage_name(static_cast<Stage>(i))).c_str(), summary.stage[i]);
+  }
+  time_row(text, "transmit", summary.transmit);
+  time_row(text, "deadline to sent", summary.sent);
+  time_row(text, "telemetry", summary.publish);
+  time_row(text, "whole tick", summary.busy);
+}
+
 void bit_rows(std::string& text, const RunSummary& summary) {
   for (const BitText& bit : status_bit_texts()) {
     const std::uint64_t ticks = summary.status_ticks[bit.bit];
@@ -60,6 +74,10 @@ void add(RunSummary& summary, const TickRecord& record) {
   summary.last_mode = output.mode;
 }
 
+bool is_virtual(const RunSummary& summary) {
+  return summary.ticks > 0 && summary.busy.max_ns == 0 && summary.publish.max_ns == 0;
+}
+
 double rate_Hz(const RunSummary& summary) {
   const std::int64_t span_ns = summary.last_deadline_ns - summary.first_deadline_ns;
   if (summary.ticks < 2 || span_ns <= 0) return 0;
@@ -71,18 +89,12 @@ std::string summary_text(const RunSummary& summary, std::uint64_t lost_records, 
   const auto out = std::back_inserter(text);
   fmt::format_to(out, "ticks   {} at {:.2f} Hz, {} missed, {} without a fresh device sample, {} records lost\n",
                  summary.ticks, rate_Hz(summary), summary.missed_ticks, summary.stale_ticks, lost_records);
-  fmt::format_to(out, "times   {:<16}{:>10}{:>10}{:>10}   (us)\n", "", "p50", "p99.9", "max");
-  time_row(text, "wake-up latency", summary.wake);
-  time_row(text, "receive", summary.receive);
-  time_row(text, "compute", summary.compute);
-  for (int i = 0; i < kStageCount; ++i) {
-    time_row(text, fmt::format("  {}", stage_name(static_cast<Stage>(i))).c_str(), summary.stage[i]);
+  if (is_virtual(summary)) {
+    text += "times   none: in virtual time a tick takes no time; --device loopback measures them\n";
+  } else {
+    times_table(text, summary);
+    text += worst_ticks_text(summary.worst, worst);
   }
-  time_row(text, "transmit", summary.transmit);
-  time_row(text, "deadline to sent", summary.sent);
-  time_row(text, "telemetry", summary.publish);
-  time_row(text, "whole tick", summary.busy);
-  text += worst_ticks_text(summary.worst, worst);
   fmt::format_to(out, "force   {:.3f} N largest on the hand, {:.3f} N in contact, {:.3f} mm deepest\n",
                  summary.device_force_max_N, summary.contact_force_max_N, 1e3 * summary.penetration_max_m);
   fmt::format_to(out, "pools   {} contacts, {} regions, {} stack entries, {} support calls at most\n",

@@ -29,6 +29,8 @@ struct RunSummary {
 };
 
 void add(RunSummary& summary, const TickRecord& record);
+// Whether it ran in virtual time, in which no tick takes any: a real one takes a microsecond or more.
+bool is_virtual(const RunSummary& summary);
 // Ticks per second over the whole run; 0 for fewer than two ticks.
 double rate_Hz(const RunSummary& summary);
 // The report printed at the end of a run, several lines; `worst` of the worst ticks are listed with their parts.

@@ -1,0 +1,129 @@
+// Whole runs in virtual time: three processes in lock step give the same file on a busy machine, and what happens to
+// one of them happens to the run as it would on a wire.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <thread>
+#include <vector>
+
+#include "tests/support/ball_run.h"
+
+namespace palpate {
+namespace {
+
+class RunVirtual : public BallRun {
+ protected:
+  RunVirtual() {
+    options_.time = RunTime::kVirtual;
+    options_.device = "loopback";
+    options_.record = (folder_ / "run.plr").string();
+    options_.duration_s = 1.5;
+  }
+  std::string recording() const {
+    std::ifstream file(options_.record, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+};
+
+// Two processes per core that do nothing but compute.
+class BusyMachine {
+ public:
+  BusyMachine() {
+    for (unsigned i = 0; i < 2 * std::max(1u, std::thread::hardware_concurrency()); ++i) {
+      const pid_t pid = fork();
+      if (pid == 0)
+        for (volatile unsigned long n = 0;;) n = n + 1;
+      child_.push_back(pid);
+    }
+  }
+  ~BusyMachine() {
+    for (const pid_t pid : child_) {
+      kill(pid, SIGKILL);
+      waitpid(pid, nullptr, 0);
+    }
+  }
+
+ private:
+  std::vector<pid_t> child_;
+};
+
+// Our child with this program name, or -1.
+pid_t child_named(const std::string& name) {
+  for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {
+    std::ifstream children(task.path() / "children");
+    for (pid_t pid; children >> pid;) {
+      std::ifstream comm("/proc/" + std::to_string(pid) + "/comm");
+      std::string text;
+      if (std::getline(comm, text) && text == name) return pid;
+    }
+  }
+  return -1;
+}
+
+TEST_F(RunVirtual, GivesTheSameBytesFiveTimesOnABusyMachine) {
+  const RunResult idle = run_session(options_);
+  const std::string expected = recording();
+  EXPECT_TRUE(idle.virtual_time);
+  EXPECT_TRUE(is_virtual(idle.summary));
+  EXPECT_EQ(idle.controller_exit, 0);
+  EXPECT_EQ(idle.summary.missed_ticks + idle.summary.stale_ticks + idle.lost, 0u);
+  EXPECT_GT(idle.summary.contact_force_max_N, 0.05);
+  ASSERT_GT(expected.size(), 100'000u);
+  const BusyMachine busy;
+  for (int i = 0; i < 5; ++i) {
+    const RunResult result = run_session(options_);
+    EXPECT_EQ(result.summary.ticks, idle.summary.ticks);
+    EXPECT_TRUE(recording() == expected) << "run " << i;
+  }
+}
+
+TEST_F(RunVirtual, AKilledDeviceIsASilentOne) {
+  options_.duration_s = 4;
+  bool killed = false;
+  options_.progress = [&](const LiveState& state) {
+    if (killed || state.elapsed_s < 1) return;
+    killed = kill(child_named("palpate-device"), SIGKILL) == 0;
+  };
+  const RunResult result = run_session(options_);
+  ASSERT_TRUE(killed);
+  EXPECT_EQ(result.summary.fault, Fault::kDeviceSilent);
+  EXPECT_EQ(result.summary.last_mode, Mode::kFault);
+  EXPECT_LT(result.elapsed_s, 2);
+}
+
+TEST_F(RunVirtual, AnInterruptedRunIsTheBeginningOfAWholeOne) {
+  run_session(options_);
+  const std::string whole = recording();
+  options_.duration_s = 60;
+  options_.progress = [&](const LiveState&) { kill(getpid(), SIGINT); };
+  const RunResult result = run_session(options_);
+  EXPECT_TRUE(result.interrupted);
+  EXPECT_EQ(result.controller_exit, 0);
+  EXPECT_EQ(result.summary.last_mode, Mode::kIdle);
+  const std::string part = recording();
+  const std::size_t same = static_cast<std::size_t>(
+      std::mismatch(part.begin(), part.end(), whole.begin(), whole.end()).first - part.begin());
+  EXPECT_GT(same, part.size() / 2);
+}
+
+TEST_F(RunVirtual, BelongsToTheSimulatedDevice) {
+  options_.device = "can:vcan77";
+  EXPECT_THROW(runs_in_virtual_time(options_), std::runtime_error);
+  options_.time = RunTime::kAutomatic;
+  EXPECT_FALSE(runs_in_virtual_time(options_));
+  options_.device = "loopback";
+  EXPECT_FALSE(runs_in_virtual_time(options_)) << "named: real time";
+  options_.time = RunTime::kVirtual;
+  EXPECT_TRUE(runs_in_virtual_time(options_));
+  options_.device = "loopback:elsewhere";
+  EXPECT_THROW(runs_in_virtual_time(options_), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace palpate
