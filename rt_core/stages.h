@@ -19,8 +19,6 @@ void collide(const Model& model, State& state, Scratch& scratch) PALPATE_RT;
 void find_regions(const Model& model, State& state, Scratch& scratch) PALPATE_RT;
 // Contact law, coupling between regions, friction; total wrench, energy and tangent stiffness.
 void compute_force(const Model& model, State& state, Scratch& scratch) PALPATE_RT;
-// Beam skeleton: anchor stresses and displacements. Writes state.anchor*.
-void deform(const Model& model, State& state, Scratch& scratch) PALPATE_RT;
 // Virtual coupling, finite check, limits, mode machine. Writes state.safety, state.tool_w, output.device_w, fault,
 // mode.
 void make_safe(const Model& model, State& state, Scratch& scratch, const Input& input, Output& output) PALPATE_RT;

@@ -84,13 +84,6 @@ void visit_state(const Model& model, const State& state, Visitor&& visit) PALPAT
   }
   for (const Region& region : state.region) visit_region(region, visit);  // bound: kMaxRegions
   if (model.params.backend != 0) visit_nodal(state, visit);
-  for (std::int64_t i = 0; i < model.sizes.n_anchor; ++i) {  // bound: kMaxAnchors
-    const AnchorState& a = state.anchor[i];
-    visit("anchor.displacement_w", a.displacement_w);
-    visit("anchor.stress_Pa", a.stress_Pa, a.axial_stress_Pa, a.shear_stress_Pa);
-    for (std::int32_t r = 0; r < kMaxRegions; ++r)
-      if (state.region[r].id != 0) visit("anchor_by_region", state.anchor_by_region[r][i]);
-  }
   visit_safety(state.safety, visit);
   if (model.params.articulation != 0) visit_articulation(model, state.articulation, visit);
 }

@@ -56,13 +56,6 @@ struct Region {
   Vec3 origin_w;  // origin of the deformation p_o on the rest surface
 };
 
-struct AnchorState {
-  Vec3 displacement_w;   // sum over regions
-  double stress_Pa = 0;  // extreme-fibre stress at the anchor, largest over regions
-  double axial_stress_Pa = 0;
-  double shear_stress_Pa = 0;
-};
-
 // What a surface node that pushes remembers (nodal back-end). Written by force.
 struct NodalContact {
   std::int32_t vertex = -1;
@@ -126,8 +119,6 @@ struct State {
   PointState point[kMaxToolPoints];
   Region region[kMaxRegions];
   NodalState nodal;
-  AnchorState anchor[kMaxAnchors];
-  Vec3 anchor_by_region[kMaxRegions][kMaxAnchors];  // displacement of each anchor by each region
   SafetyState safety;
   HighWater high_water;
   ArticulationState articulation;

@@ -78,7 +78,7 @@ enum class Mode : std::int32_t {
 };
 
 // Stages of one tick, in order; the index of StageTimes.
-enum class Stage : std::int32_t { kSense = 0, kCollide, kRegions, kForce, kDeform, kSafety, kPublish };
-inline constexpr std::int32_t kStageCount = 7;
+enum class Stage : std::int32_t { kSense = 0, kCollide, kRegions, kForce, kSafety, kPublish };
+inline constexpr std::int32_t kStageCount = 6;
 
 }  // namespace palpate

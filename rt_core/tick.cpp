@@ -41,8 +41,6 @@ void tick(const Model& model, State& state, Scratch& scratch, const Input& input
   mark(Stage::kRegions);
   compute_force(model, state, scratch);
   mark(Stage::kForce);
-  deform(model, state, scratch);
-  mark(Stage::kDeform);
   make_safe(model, state, scratch, input, output);
   mark(Stage::kSafety);
   publish(state, scratch, output);

@@ -55,8 +55,6 @@ const char* stage_name(Stage stage) {
       return "regions";
     case Stage::kForce:
       return "force";
-    case Stage::kDeform:
-      return "deform";
     case Stage::kSafety:
       return "safety";
     case Stage::kPublish:

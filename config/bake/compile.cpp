@@ -5,6 +5,7 @@
 
 #include "config/bake/bvh_build.h"
 #include "config/bake/fem_body.h"
+#include "config/bake/rbf_system.h"
 #include "config/bake/tool_points.h"
 #include "config/body/anchors.h"
 #include "config/body/body.h"
@@ -13,7 +14,6 @@
 #include "config/hand/preshape.h"
 #include "config/scene/config_error.h"
 #include "config/scene/schema.h"
-#include "rt_core/skeleton/rbf_system.h"
 
 namespace palpate {
 

@@ -41,7 +41,6 @@ void restart_contact(State& state) PALPATE_RT {
   for (PointState& point : state.point) point = PointState{};  // bound: kMaxToolPoints
   for (Region& region : state.region) region = Region{};       // bound: kMaxRegions
   state.nodal = NodalState{};
-  for (AnchorState& anchor : state.anchor) anchor = AnchorState{};
 }
 
 Wrench limited(const Model& model, Wrench wrench, Scratch& scratch) PALPATE_RT {

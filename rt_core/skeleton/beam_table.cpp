@@ -146,29 +146,4 @@ bool solve_beam_table(const Model& model, const SurfaceSpot& spot, Vec3 force_on
              : share_by_stiffness(model, force_on_body_w, skeleton);
 }
 
-BeamTableAnchor beam_table_anchor(const Model& model, const BeamTableSkeleton& skeleton,
-                                  std::int32_t index) PALPATE_RT {
-  BeamTableAnchor result;
-  const Vec3 force = skeleton.force_w[index];
-  Real inner = 0, outer = 0, side = 0, shear_in = 0, shear_out = 0;
-  for (int corner = 0; corner < 3; ++corner) {
-    const Vec3 f = skeleton.spot.weight[corner] * force;
-    const std::size_t at = first_beam(model, skeleton.spot, corner) + static_cast<std::size_t>(index);
-    const BeamResponse& row = model.beam_response[at];
-    result.displacement_w +=
-        {dot(row.release_m_per_N[0], f), dot(row.release_m_per_N[1], f), dot(row.release_m_per_N[2], f)};
-    inner += dot(row.inner_Pa_per_N, f);
-    outer += dot(row.outer_Pa_per_N, f);
-    side += dot(row.side_Pa_per_N, f);
-    result.stress.axial_Pa += dot(row.axial_Pa_per_N, f);
-    shear_in += dot(row.shear_in_Pa_per_N, f);
-    shear_out += dot(row.shear_out_Pa_per_N, f);
-  }
-  const Real extreme = max_of(abs_of(inner), abs_of(outer)) + abs_of(side);
-  result.stress.bending_Pa = max_of(extreme - abs_of(result.stress.axial_Pa), 0.0);
-  result.stress.shear_Pa = square_root(shear_in * shear_in + shear_out * shear_out);
-  if (model.anchor[static_cast<std::size_t>(index)].fixed != 0) result.displacement_w = {};
-  return result;
-}
-
 }  // namespace palpate

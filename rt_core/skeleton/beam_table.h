@@ -6,7 +6,6 @@
 
 #include "rt_core/limits.h"
 #include "rt_core/model.h"
-#include "rt_core/skeleton/straight_beam.h"
 #include "rt_core/state.h"
 
 namespace palpate {
@@ -47,13 +46,5 @@ struct BeamTableSkeleton {
 // beams.
 bool solve_beam_table(const Model& model, const SurfaceSpot& spot, Vec3 force_on_body_w,
                       BeamTableSkeleton& skeleton) PALPATE_RT;
-
-// Stress and displacement of anchor `index` (< count) under its beam's share of the force. stress.bending_Pa is what
-// the extreme fibre adds to the mean, so that |axial| + bending is the stress there. Bound: 3.
-struct BeamTableAnchor {
-  BeamStress stress;
-  Vec3 displacement_w;  // zero for a fixed anchor
-};
-BeamTableAnchor beam_table_anchor(const Model& model, const BeamTableSkeleton& skeleton, std::int32_t index) PALPATE_RT;
 
 }  // namespace palpate

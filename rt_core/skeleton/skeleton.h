@@ -26,12 +26,6 @@ inline BeamSection section_of(const Anchor& anchor) PALPATE_RT {
   return {anchor.section_area_m2, anchor.section_inertia_m4, anchor.section_radius_m};
 }
 
-// Result of one anchor.
-struct SkeletonAnchor {
-  BeamStress stress;
-  Vec3 displacement_w;  // zero for a fixed anchor
-};
-
 // Shape of the skeleton's beams, shared by both laws.
 struct SkeletonSetup {
   BeamMaterial material;
@@ -64,20 +58,14 @@ bool distribute_by_ratios(Real youngs_modulus_Pa, Vec3 force_on_body_w, Skeleton
 bool solve_skeleton(const Model& model, std::span<const Vec3> offset_w, Vec3 contact_w, Vec3 force_on_body_w,
                     Skeleton& skeleton) PALPATE_RT;
 
-// Stress and displacement of anchor `index` (< count) under its beam's share of the force.
-inline SkeletonAnchor skeleton_anchor(const Skeleton& skeleton, const Anchor& anchor, Real poisson_ratio,
-                                      std::int32_t index) PALPATE_RT {
-  SkeletonAnchor result;
+// Displacement of anchor `index` (< count) under its beam's share of the force; zero for a fixed anchor.
+inline Vec3 anchor_displacement(const Skeleton& skeleton, const Anchor& anchor, std::int32_t index) PALPATE_RT {
+  if (anchor.fixed != 0) return {};
+  // K_i^-1 F_i: the skeleton's own displacement in the stiffness law, each beam's own in the paper's.
   const StraightBeam& beam = skeleton.beam[index];
-  const Vec3 force = skeleton.force_w[index];
-  result.stress = anchor_stress(beam, section_of(anchor), poisson_ratio, force);
-  if (anchor.fixed == 0) {
-    // K_i^-1 F_i: the skeleton's own displacement in the stiffness law, each beam's own in the paper's.
-    const bool known = skeleton.common && beam.bending_N_per_m > 0;
-    const Vec3 tip = known ? skeleton.displacement_w : beam_tip_displacement(beam, force);
-    result.displacement_w = released_displacement(beam, tip, anchor.release_length_m);
-  }
-  return result;
+  const bool known = skeleton.common && beam.bending_N_per_m > 0;
+  const Vec3 tip = known ? skeleton.displacement_w : beam_tip_displacement(beam, skeleton.force_w[index]);
+  return released_displacement(beam, tip, anchor.release_length_m);
 }
 
 }  // namespace palpate

@@ -30,20 +30,6 @@ struct StraightBeam {
   Real bending_N_per_m = 0;  // k_b = 1 / (l^3/(3EI) + l/(kappa G S)), or 3EI/l^3
 };
 
-// Stresses on the clamped section of one beam.
-struct BeamStress {
-  Real axial_Pa = 0;  // F_x / S, tension positive
-  Real bending_Pa =
-      0;  // |F_perp| l r / I at the extreme fibre, >= 0. On the centre line, where the paper takes it, it is 0
-  Real shear_Pa = 0;  // tau(0,0) >= 0, along the transverse force
-};
-
-// Shear stresses over a circular section (transverse force along y, coordinates from the centre).
-struct SectionShear {
-  Real xy_Pa = 0;
-  Real xz_Pa = 0;
-};
-
 // k_b >= 1e-6 k_a: the smallest ratio that leaves 3x3 solves ten digits (condition number 1e6).
 inline constexpr Real kLeastBendingRatio = 1e-6;
 
@@ -87,35 +73,6 @@ inline Vec3 beam_tip_displacement(const StraightBeam& beam, Vec3 tip_force) PALP
   if (!(beam.axial_N_per_m > 0 && beam.bending_N_per_m > 0)) return {};
   const Vec3 along = dot(beam.axis, tip_force) * beam.axis;
   return (1.0 / beam.axial_N_per_m) * along + (1.0 / beam.bending_N_per_m) * (tip_force - along);
-}
-
-// Saint-Venant's flexure of a circular section (Luo & Xiao 2006, section V, with the bending function of the circle,
-// phi = (3+2nu) r^2 y/4 + (1+2nu)(y^3 - 3 y z^2)/12): free of traction on the rim, resultant = transverse_force_N.
-inline SectionShear section_shear(const BeamSection& section, Real poisson_ratio, Real transverse_force_N, Real y_m,
-                                  Real z_m) PALPATE_RT {
-  const Real nu = poisson_ratio;
-  const Real denominator = 2.0 * (1.0 + nu) * section.inertia_m4;
-  if (!(denominator > 0)) return {};
-  const Real scale = transverse_force_N / denominator;
-  const Real r2 = section.radius_m * section.radius_m;
-  const Real y2 = y_m * y_m;
-  const Real z2 = z_m * z_m;
-  const Real phi_y = (3.0 + 2.0 * nu) * r2 / 4.0 + (1.0 + 2.0 * nu) * (y2 - z2) / 4.0;
-  const Real phi_z = -(1.0 + 2.0 * nu) * y_m * z_m / 2.0;
-  return {scale * (phi_y + nu * z2 - (1.0 + nu) * y2), scale * phi_z};
-}
-
-// Stresses at the clamped end under tip force `tip_force` (the force on the beam).
-inline BeamStress anchor_stress(const StraightBeam& beam, const BeamSection& section, Real poisson_ratio,
-                                Vec3 tip_force) PALPATE_RT {
-  BeamStress stress;
-  if (!(section.area_m2 > 0 && section.inertia_m4 > 0)) return stress;
-  const Real axial_N = dot(beam.axis, tip_force);
-  const Real transverse_N = norm(tip_force - axial_N * beam.axis);
-  stress.axial_Pa = axial_N / section.area_m2;
-  stress.bending_Pa = transverse_N * beam.length_m * section.radius_m / section.inertia_m4;
-  stress.shear_Pa = section_shear(section, poisson_ratio, transverse_N, 0, 0).xy_Pa;
-  return stress;
 }
 
 // Displacement of the anchor when its clamp is released over `release_length_m` (s): that of the beam's point at x = s,

@@ -4,12 +4,9 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <memory>
 #include <stdexcept>
 
-#include "rt_core/skeleton/beam_table.h"
-#include "rt_core/skeleton/skeleton.h"
-#include "rt_core/skeleton/temporal_order.h"
+#include "sim_host/view/anchors.h"
 #include "sim_host/view/line_plot.h"
 
 namespace palpate {
@@ -17,21 +14,6 @@ namespace palpate {
 namespace {
 
 constexpr std::size_t kMostSeries = 8;
-
-// Adds the force of one region's beams on their tips.
-void add_region(const Model& model, const State& state, std::int32_t slot, std::vector<Vec3>& sum) {
-  const Region& region = state.region[slot];
-  const Vec3 force = -(region.normal_force_N * region.normal_w + region.friction_force_w);
-  if (uses_beam_table(model)) {
-    const auto skeleton = std::make_unique<BeamTableSkeleton>();
-    if (!solve_beam_table(model, locate_contact(model, state, slot), force, *skeleton)) return;
-    for (std::size_t a = 0; a < sum.size(); ++a) sum[a] += skeleton->force_w[a];
-    return;
-  }
-  const auto skeleton = std::make_unique<Skeleton>();
-  if (!solve_skeleton(model, {}, region.centre_w, force, *skeleton)) return;
-  for (std::size_t a = 0; a < sum.size(); ++a) sum[a] += skeleton->force_w[a];
-}
 
 // Numbers of the anchors, from 1, that ever carry most.
 std::vector<int> strongest_anchors(std::span<const AnchorSample> samples) {
@@ -52,14 +34,13 @@ std::vector<int> strongest_anchors(std::span<const AnchorSample> samples) {
 }  // namespace
 
 AnchorSample sample_anchors(const Model& model, const State& state, double time_s, double depth_m) {
-  AnchorSample sample{time_s, depth_m, {}, {}};
-  std::vector<Vec3> force(model.anchor.size());
-  for (std::int32_t slot = 0; slot < kMaxRegions; ++slot)
-    if (is_in_contact(state.region[slot])) add_region(model, state, slot, force);
-  for (std::size_t a = 0; a < force.size(); ++a) {
-    sample.force_N.push_back(norm(force[a]));
-    sample.stress_Pa.push_back(state.anchor[a].stress_Pa);
+  AnchorSample sample{time_s, depth_m, {}, {}, 0};
+  const AnchorField field = anchors_of(model, state);
+  for (std::size_t a = 0; a < model.anchor.size(); ++a) {
+    sample.force_N.push_back(norm(field.anchor[a].force_w));
+    sample.stress_Pa.push_back(field.anchor[a].stress_Pa);
   }
+  sample.degenerate = field.degenerate;
   return sample;
 }
 

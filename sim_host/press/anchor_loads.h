@@ -1,6 +1,7 @@
 // What the skeleton's anchors carry while a tool presses: a table and a plot of force against depth.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,11 +12,12 @@
 
 namespace palpate {
 
-// One tick: per anchor the force of its beams on their tips, summed over regions, and the stress in the state.
+// One tick: per anchor the force of its beams on their tips, summed over regions, and the largest stress.
 struct AnchorSample {
   double time_s = 0, depth_m = 0;
   std::vector<double> force_N;
   std::vector<double> stress_Pa;
+  std::int32_t degenerate = 0;  // regions whose skeleton had no usable stiffness
 };
 AnchorSample sample_anchors(const Model& model, const State& state, double time_s, double depth_m);
 

@@ -92,14 +92,24 @@ struct Collected {
       *strongest = state;
     }
     rows += 1;
-    for (std::size_t bit = 0; bit < std::size(status); ++bit) {
-      if ((output.status >> bit & 1u) == 0) continue;
-      if (status[bit].ticks++ == 0) status[bit].first_s = row.time_s;
-    }
+    see(output.status, row.time_s);
     fault |= output.fault;
     instructions_max = std::max(instructions_max, row.instructions);
     depth_max_m = std::max(depth_max_m, output.penetration_m);
     samples.push_back({row.time_s, output.contact_w.force_N, output.penetration_m, output.regions});
+  }
+  // The tick asks for no skeleton, so a degenerate one shows here only.
+  void add_anchors(AnchorSample sample) {
+    if (sample.degenerate > 0) see(Status::kSkeletonDegenerate, sample.time_s);
+    anchors.push_back(std::move(sample));
+  }
+
+ private:
+  void see(std::uint32_t bits, double time_s) {
+    for (std::size_t bit = 0; bit < std::size(status); ++bit) {
+      if ((bits >> bit & 1u) == 0) continue;
+      if (status[bit].ticks++ == 0) status[bit].first_s = time_s;
+    }
   }
 };
 
@@ -181,8 +191,7 @@ int run_press(const PressOptions& options) {
         [&](const PressRow& row, const State& now, const Scratch&) {
           all.add(row, now);
           csv.add(row);
-          if (wants_anchors)
-            all.anchors.push_back(sample_anchors(model, now, row.time_s, row.record.output.penetration_m));
+          if (wants_anchors) all.add_anchors(sample_anchors(model, now, row.time_s, row.record.output.penetration_m));
           if (vtu && (all.rows - 1) % static_cast<std::uint64_t>(options.every) == 0) vtu->add(model, now, row.time_s);
           progress.at(all.rows);
         });

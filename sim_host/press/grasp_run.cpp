@@ -5,9 +5,8 @@
 #include <stdexcept>
 
 #include "config/hand/hand_model.h"
-#include "rt_core/skeleton/skeleton.h"
-#include "rt_core/skeleton/temporal_order.h"
 #include "sim_host/press/press.h"
+#include "sim_host/view/anchors.h"
 
 namespace palpate {
 
@@ -39,24 +38,11 @@ std::size_t end_of_hold(const std::vector<TimedPose>& poses) {
   return last;
 }
 
-// Extreme-fibre stress at each anchor, summed over the regions' beams that end there (State keeps the largest only):
-// what all contacts do together, as an upper bound, since the fibres need not coincide.
+// Extreme-fibre stress at each anchor, summed over the regions' beams that end there.
 std::vector<double> anchor_stresses_Pa(const Model& model, const State& state) {
-  std::vector<double> stress(model.anchor.size(), 0.0);
-  Vec3 offset[kMaxAnchors];
-  for (std::int32_t slot = 0; slot < kMaxRegions; ++slot) {
-    const Region& region = state.region[slot];
-    if (!is_in_contact(region)) continue;
-    const Vec3 on_body = -(region.normal_force_N * region.normal_w + region.friction_force_w);
-    Skeleton skeleton;
-    const std::span<const Vec3> offsets = earlier_displacements(model, state, slot, offset);
-    if (!solve_skeleton(model, offsets, region.centre_w, on_body, skeleton)) continue;
-    for (std::int32_t a = 0; a < skeleton.count; ++a) {
-      const auto at = static_cast<std::size_t>(a);
-      const BeamStress beam = skeleton_anchor(skeleton, model.anchor[at], model.params.poisson_ratio, a).stress;
-      stress[at] += std::abs(beam.axial_Pa) + beam.bending_Pa;
-    }
-  }
+  const AnchorField field = anchors_of(model, state);
+  std::vector<double> stress;
+  for (std::size_t a = 0; a < model.anchor.size(); ++a) stress.push_back(field.anchor[a].stress_sum_Pa);
   return stress;
 }
 
@@ -81,11 +67,8 @@ void keep_hold(const Model& model, const PressRow& row, const State& state, Gras
   }
 }
 
-bool is_at_rest(const Model& model, const State& state, const Output& output) {
-  bool rest = output.contact_w == Wrench{} && output.energy_J == 0 && output.regions == 0;
-  for (std::size_t a = 0; a < model.anchor.size(); ++a)
-    rest = rest && state.anchor[a].displacement_w == Vec3{} && state.anchor[a].stress_Pa == 0;
-  return rest;
+bool is_at_rest(const Output& output) {
+  return output.contact_w == Wrench{} && output.energy_J == 0 && output.regions == 0;
 }
 
 }  // namespace
@@ -116,7 +99,7 @@ GraspRun run_grasp(const Model& model, const SceneDesc& scene, const GraspOption
             for (std::size_t a = 0; a < stress.size(); ++a) run.stress_Pa[a].push_back(stress[a]);
           }
           if (n == hold_end) keep_hold(model, row, now, run);
-          if (n + 1 == poses.size()) run.back_at_rest = is_at_rest(model, now, row.record.output);
+          if (n + 1 == poses.size()) run.back_at_rest = is_at_rest(row.record.output);
           n += 1;
         });
   return run;

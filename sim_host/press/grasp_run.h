@@ -22,7 +22,7 @@ struct GraspOptions {
 struct GraspRun {
   std::string name;
   std::vector<double> time_s;
-  // Summed over the regions: see the note in grasp_run.cpp. History: per anchor, per sample.
+  // Summed over the regions (AnchorLoad::stress_sum_Pa). History: per anchor, per sample.
   std::vector<std::vector<double>> stress_Pa;
   // At the end of the hold: the last tick with every finger told to be as closed as it ever is.
   std::unique_ptr<State> held;
@@ -32,7 +32,7 @@ struct GraspRun {
   std::int32_t regions = 0;
   std::uint32_t status = 0;   // of that tick
   double chatter = 0;         // largest relative change of the summed normal force per tick over the last 0.2 s of hold
-  bool back_at_rest = false;  // no force, no displacement, no energy at the end
+  bool back_at_rest = false;  // no force, no region (so no displacement), no energy at the end
   double residual_max_m = 0;
 };
 

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "rt_core/contact/nodes/nodal.h"
-#include "rt_core/skeleton/surface.h"
 #include "sim_host/view/imprint.h"
+#include "sim_host/view/surface_shape.h"
 
 namespace palpate {
 

@@ -8,6 +8,7 @@
 
 #include "config/hand/hand_model.h"
 #include "rt_core/tool/carrier.h"
+#include "sim_host/view/anchors.h"
 #include "sim_host/view/plot.h"
 #include "sim_host/view/png_file.h"
 #include "sim_host/view/stroke_font.h"
@@ -156,9 +157,10 @@ void Renderer::draw_body() {
 }
 
 void Renderer::draw_anchors() {
+  const AnchorField field = anchors_of(model_, state_);
   for (std::size_t k = 0; k < model_.anchor.size(); ++k) {
     const Anchor& anchor = model_.anchor[k];
-    const Vec3 at = anchor.position_m + (anchor.fixed != 0 ? Vec3{} : state_.anchor[k].displacement_w);
+    const Vec3 at = anchor.position_m + (anchor.fixed != 0 ? Vec3{} : field.anchor[k].displacement_w);
     solid_.draw(sphere_mesh({at, {}}, 0.014 * model_.params.surface_size_m), projection_,
                 anchor.fixed != 0 ? kAnchorFixed : kAnchorFree);
   }

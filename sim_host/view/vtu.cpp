@@ -91,17 +91,17 @@ std::string surface_vtu(const Model& model, const DeformedSurface& surface) {
                   array("Float32", "displacement_magnitude_mm", 1, magnitude) + array("Float32", "normal", 3, normal));
 }
 
-std::string anchors_vtu(const Model& model, const State& state) {
+std::string anchors_vtu(const Model& model, const AnchorField& field) {
   constexpr std::uint8_t kVertexCell = 1;
   std::vector<float> position, displacement, stress, axial, shear;
   std::vector<std::uint8_t> fixed;
   Cells cells;
   for (std::size_t i = 0; i < model.anchor.size(); ++i) {
     append(position, model.anchor[i].position_m);
-    append(displacement, state.anchor[i].displacement_w);
-    stress.push_back(static_cast<float>(state.anchor[i].stress_Pa));
-    axial.push_back(static_cast<float>(state.anchor[i].axial_stress_Pa));
-    shear.push_back(static_cast<float>(state.anchor[i].shear_stress_Pa));
+    append(displacement, field.anchor[i].displacement_w);
+    stress.push_back(static_cast<float>(field.anchor[i].stress_Pa));
+    axial.push_back(static_cast<float>(field.anchor[i].axial_stress_Pa));
+    shear.push_back(static_cast<float>(field.anchor[i].shear_stress_Pa));
     fixed.push_back(model.anchor[i].fixed != 0 ? 1 : 0);
     cells.connectivity.push_back(static_cast<std::int32_t>(i));
     cells.offsets.push_back(static_cast<std::int32_t>(i) + 1);
@@ -122,7 +122,7 @@ VtuSeries::VtuSeries(const std::string& folder) : folder_(folder) {
 void VtuSeries::add(const Model& model, const State& state, double time_s) {
   const std::size_t n = times_s_.size();
   write_file(fmt::format("{}/surface_{:06}.vtu", folder_, n), surface_vtu(model, deformed_surface(model, state)));
-  write_file(fmt::format("{}/anchors_{:06}.vtu", folder_, n), anchors_vtu(model, state));
+  write_file(fmt::format("{}/anchors_{:06}.vtu", folder_, n), anchors_vtu(model, anchors_of(model, state)));
   times_s_.push_back(time_s);
 }
 

@@ -9,6 +9,7 @@
 
 #include "rt_core/model.h"
 #include "rt_core/state.h"
+#include "sim_host/view/anchors.h"
 #include "sim_host/view/deformed_surface.h"
 
 namespace palpate {
@@ -17,7 +18,7 @@ namespace palpate {
 // displacement_m, displacement_magnitude_mm, normal (of the deformed surface).
 std::string surface_vtu(const Model& model, const DeformedSurface& surface);
 // Anchors: points at rest; point arrays displacement_m, stress_Pa, axial_stress_Pa, shear_stress_Pa, fixed.
-std::string anchors_vtu(const Model& model, const State& state);
+std::string anchors_vtu(const Model& model, const AnchorField& field);
 
 // A folder of numbered surface and anchor files; created if missing. Throws std::runtime_error on failure.
 class VtuSeries {

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "config/hand/hand_model.h"
-#include "rt_core/skeleton/surface.h"
 #include "sim_host/press/grasp_run.h"
 #include "sim_host/view/deformed_surface.h"
 #include "sim_host/view/imprint.h"
+#include "sim_host/view/surface_shape.h"
 #include "tests/support/baked_scene.h"
 
 namespace palpate::test {

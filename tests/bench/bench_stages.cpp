@@ -21,8 +21,7 @@ namespace palpate::test {
 namespace {
 
 constexpr int kRuns = 5;  // of the whole script: 40,000 ticks
-constexpr const char* kStageNames[kStageCount] = {"sense",  "collide", "regions", "force",
-                                                  "deform", "safety",  "publish"};
+constexpr const char* kStageNames[kStageCount] = {"sense", "collide", "regions", "force", "safety", "publish"};
 
 double now_ns() {
   timespec t{};

@@ -34,7 +34,7 @@ END {
   finish()
   if (ticks == 0 || worst == 0) { print "no tick was counted"; exit 1 }
   # In the tick's order; a callee that is no stage (a compiler's memset, say) comes last.
-  stages = split("sense collide find_regions compute_force deform make_safe", order, " ")
+  stages = split("sense collide find_regions compute_force make_safe", order, " ")
   for (i = 1; i <= stages; i++) delete others[order[i]]
   for (s in others) order[++stages] = s
   printf "%-22s %12s %12s %16s\n", "stage (instructions)", "worst tick", "most, any", "mean, in contact"

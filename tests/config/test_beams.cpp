@@ -12,6 +12,7 @@
 #include "rt_core/image.h"
 #include "rt_core/skeleton/beam_table.h"
 #include "rt_core/surface/closest_point.h"
+#include "sim_host/view/anchors.h"
 
 namespace palpate {
 namespace {

@@ -29,7 +29,6 @@ TEST(StateHash, IgnoresPaddingAndDeadEntries) {
   *copy = *f.state;
   copy->region[5].stretch_w.x = 1;            // slot 5 is empty
   copy->point[kMaxToolPoints - 1].gap_m = 1;  // beyond n_tool_point
-  copy->anchor[kMaxAnchors - 1].stress_Pa = 1;
   EXPECT_EQ(hash_state(f.model, *f.state), hash_state(f.model, *copy));
   EXPECT_EQ(first_difference(f.model, *f.state, *copy), nullptr);
 }
@@ -51,8 +50,6 @@ TEST(StateHash, SeesAndNamesEachLiveField) {
       {"region.id", [](State& s) { s.region[3].born_tick = 1; }},
       {"region.stretch_w", [](State& s) { s.region[3].stretch_w.y = 1e-12; }},
       {"region.friction", [](State& s) { s.region[3].friction = FrictionMode::kSlip; }},
-      {"anchor.displacement_w", [](State& s) { s.anchor[0].displacement_w.x = 1; }},
-      {"anchor_by_region", [](State& s) { s.anchor_by_region[3][0].z = 1; }},
       {"safety.mode", [](State& s) { s.safety.fault = 1; }},
       {"safety.ramp", [](State& s) { s.safety.ramp = 0.5; }},
       {"safety.last_device_w", [](State& s) { s.safety.last_device_w.torque_Nm.z = 1e-20; }},

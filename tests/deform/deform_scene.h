@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "rt_core/skeleton/rbf_system.h"
+#include "config/bake/rbf_system.h"
 #include "rt_core/state.h"
 
 namespace palpate::deform_test {

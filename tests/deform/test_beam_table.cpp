@@ -8,6 +8,7 @@
 #include "config/beams/circular_beam.h"
 #include "rt_core/skeleton/beam_table.h"
 #include "rt_core/status.h"
+#include "sim_host/view/anchors.h"
 #include "tests/deform/deform_scene.h"
 
 namespace palpate {

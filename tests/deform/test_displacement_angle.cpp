@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "rt_core/skeleton/displacement_angle.h"
+#include "sim_host/view/displacement_angle.h"
 #include "tests/deform/deform_scene.h"
 
 namespace palpate {

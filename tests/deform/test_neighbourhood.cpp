@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "rt_core/skeleton/neighbourhood.h"
+#include "sim_host/view/neighbourhood.h"
 #include "tests/deform/deform_scene.h"
 
 namespace palpate {

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "rt_core/skeleton/rbf.h"
+#include "sim_host/view/rbf_surface.h"
 #include "tests/deform/deform_scene.h"
 
 namespace palpate {

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "rt_core/skeleton/straight_beam.h"
+#include "sim_host/view/anchors.h"
 #include "tests/deform/deform_scene.h"
 
 namespace palpate {
@@ -78,7 +79,7 @@ TEST(StraightBeam, BadInputGivesNoStiffness) {
   EXPECT_EQ(stiffness(kRubber, circle(1e-3), {nan, 0, 0}, 2e-3), 0);
   EXPECT_EQ(stiffness(kRubber, circle(1e-3), {}, 0), 0);  // no length and no guard
   EXPECT_EQ(beam_tip_displacement(StraightBeam{}, {1, 2, 3}), Vec3{});
-  EXPECT_EQ(anchor_stress(StraightBeam{}, BeamSection{}, 0.3, {1, 2, 3}).axial_Pa, 0);
+  EXPECT_EQ(straight_beam_stress(StraightBeam{}, BeamSection{}, 0.3, {1, 2, 3}).axial_Pa, 0);
 }
 
 TEST(StraightBeam, BendingNeverVanishesBesideTheAxialStiffness) {
@@ -90,13 +91,26 @@ TEST(StraightBeam, BendingNeverVanishesBesideTheAxialStiffness) {
 TEST(StraightBeam, StressesAtTheClamp) {
   const double l = 0.04, r = 6e-3, nu = 0.47;
   const StraightBeam beam = beam_along_x(l, r, BeamTheory::kTimoshenko);
-  const BeamStress stress = anchor_stress(beam, circle(r), nu, {-2, 0.3, 0.4});
+  const BeamStress stress = straight_beam_stress(beam, circle(r), nu, {-2, 0.3, 0.4});
   EXPECT_NEAR(stress.axial_Pa, -2 / (kPi * r * r), 1e-9);
   EXPECT_NEAR(stress.bending_Pa, 0.5 * l * 4 / (kPi * r * r * r), 1e-8);
   EXPECT_NEAR(stress.shear_Pa, (3 + 2 * nu) / (2 * (1 + nu)) * 0.5 / (kPi * r * r), 1e-9);
 }
 
-// The shear field must carry exactly the transverse force and leave the rim free of traction, for any nu.
+// Shear stresses over a circular section by Saint-Venant's flexure (transverse force along y, coordinates from the
+// centre), with the bending function of the circle, phi = (3+2nu) r^2 y/4 + (1+2nu)(y^3 - 3 y z^2)/12.
+struct SectionShear {
+  double xy_Pa, xz_Pa;
+};
+SectionShear section_shear(const BeamSection& section, double nu, double force_N, double y, double z) {
+  const double scale = force_N / (2 * (1 + nu) * section.inertia_m4), r2 = section.radius_m * section.radius_m;
+  const double phi_y = (3 + 2 * nu) * r2 / 4 + (1 + 2 * nu) * (y * y - z * z) / 4;
+  const double phi_z = -(1 + 2 * nu) * y * z / 2;
+  return {scale * (phi_y + nu * z * z - (1 + nu) * y * y), scale * phi_z};
+}
+
+// The shear field whose centre is reported must carry exactly the transverse force and leave the rim free of traction,
+// for any nu.
 TEST(StraightBeam, SectionShearIsInEquilibrium) {
   const double r = 6e-3, force = 1.7;
   for (const double nu : {0.0, 0.3, 0.47, 0.5}) {
@@ -132,6 +146,9 @@ TEST(StraightBeam, SectionShearIsInEquilibrium) {
     EXPECT_NEAR(sum_z / force, 0, 1e-12) << nu;
     EXPECT_LT(rim, 1e-13) << nu;
     EXPECT_LT(divergence, 1e-9) << nu;
+    const StraightBeam beam = beam_along_x(0.04, r, BeamTheory::kTimoshenko);
+    EXPECT_NEAR(straight_beam_stress(beam, circle(r), nu, {0, force, 0}).shear_Pa,
+                section_shear(circle(r), nu, force, 0, 0).xy_Pa, 1e-12 * mean);
   }
 }
 

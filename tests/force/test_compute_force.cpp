@@ -9,11 +9,11 @@
 #include <random>
 #include <utility>
 
+#include "config/bake/rbf_system.h"
 #include "force_scene.h"
 #include "rt_core/contact/cubic_law.h"
 #include "rt_core/contact/far_field.h"
 #include "rt_core/contact/points/coupled_regions.h"
-#include "rt_core/skeleton/rbf_system.h"
 #include "rt_core/skeleton/transfer.h"
 
 namespace palpate {
@@ -405,8 +405,10 @@ TEST(ComputeForce, TemporalCouplingAddsWhatLaterRegionsTransfer) {
     s.run();
     const Real own[2] = {s.state->region[0].normal_force_N, s.state->region[1].normal_force_N};
     const int first = second_is_later ? 0 : 1, later = 1 - first;
-    const Vec3 transferred = transferred_force_w(s.model, *s.state, later, first);
-    const Real added = dot(transferred, s.state->region[first].normal_w);
+    const std::int32_t order[2] = {first, later};
+    Real sum[2] = {};
+    EXPECT_TRUE(add_transferred_forces(s.model, *s.state, order, 2, sum));
+    const Real added = sum[0];
     EXPECT_GT(std::abs(added), 1e-3);  // the scene does couple
     s.set_coupling(CouplingLaw::kTemporal);
     s.run();

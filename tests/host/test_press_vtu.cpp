@@ -83,11 +83,10 @@ TEST_F(Vtu, SurfaceHoldsPointsTrianglesAndDisplacement) {
 }
 
 TEST_F(Vtu, AnchorsHoldDisplacementAndStress) {
-  const auto state = std::make_unique<State>();
-  reset(*state);
-  state->anchor[2].displacement_w = {0, 1e-3, 0};
-  state->anchor[2].stress_Pa = 1234;
-  const std::string text = anchors_vtu(model_, *state);
+  AnchorField field;
+  field.anchor[2].displacement_w = {0, 1e-3, 0};
+  field.anchor[2].stress_Pa = 1234;
+  const std::string text = anchors_vtu(model_, field);
   EXPECT_EQ(test::xml_error(text), "");
   EXPECT_EQ(array_of<std::uint8_t>(text, "fixed").size(), model_.anchor.size());
   EXPECT_FLOAT_EQ(array_of<float>(text, "stress_Pa")[2], 1234);

@@ -112,9 +112,10 @@ void press(const Model& model, const State& state, Scratch& scratch, Region& reg
 
 // The paper's mutual contributions (Luo & Xiao 2006): every region born later adds, along the normal, what its skeleton
 // carries over. All are taken from the regions' own normal forces (and last tick's friction) before any is added.
-void add_transferred(const Model& model, State& state, const SortedContacts& sorted) PALPATE_RT {
+void add_transferred(const Model& model, State& state, Scratch& scratch, const SortedContacts& sorted) PALPATE_RT {
   Real added[kMaxRegions] = {};
-  add_transferred_forces(model, state, sorted.slot, sorted.region_count, added);
+  if (!add_transferred_forces(model, state, sorted.slot, sorted.region_count, added))
+    scratch.status |= Status::kSkeletonDegenerate;
   for (std::int32_t i = 0; i < sorted.region_count; ++i) {  // bound: kMaxContacts points
     Region& region = state.region[sorted.slot[i]];
     const Real own = region.normal_force_N;
@@ -166,7 +167,7 @@ void compute_force(const Model& model, State& state, Scratch& scratch) PALPATE_R
           stiffness);
   }
   const CouplingLaw coupling = static_cast<CouplingLaw>(model.params.coupling_law);
-  if (coupling == CouplingLaw::kTemporal) add_transferred(model, state, sorted);
+  if (coupling == CouplingLaw::kTemporal) add_transferred(model, state, scratch, sorted);
   for (std::int32_t r = 0; r < sorted.region_count; ++r) {  // bound: kMaxRegions
     Region& region = state.region[sorted.slot[r]];
     slide_on_points(model, state, region, sorted.contacts[r], scratch.vector[kSelfCompliance][r], stiffness);

@@ -2,7 +2,6 @@
 // state.point (but region), scratch.contact. Bound: n_tool_point queries. Status: kContactsDropped,
 // kTraversalTruncated.
 #include "rt_core/contact/nodes/nodal.h"
-#include "rt_core/skeleton/surface.h"
 #include "rt_core/stages.h"
 #include "rt_core/surface/closest_point.h"
 #include "rt_core/surface/smooth_foot.h"
@@ -88,9 +87,7 @@ class Collider {
                                                                             now_(state.tool_w),
                                                                             before_(state.tool_previous_w),
                                                                             root_(root_box(model)) {
-    const bool temporal = static_cast<CouplingLaw>(model.params.coupling_law) == CouplingLaw::kTemporal;
     smooth_ = !model.corner_normal.empty();
-    reach_m_ = kSearchMargin_m + (temporal ? max_of(displacement_bound(model, state), 0.0) : 0.0);
   }
 
   void visit(std::size_t index) PALPATE_RT {
@@ -102,7 +99,7 @@ class Collider {
     const Real gap = distance_to(root_, now_(piece.pose_tool.position_m)) - piece.bounding_radius_m;
     const std::int32_t end = piece.first_point + piece.point_count;
     for (std::int32_t i = piece.first_point; i < end; ++i) {  // bound: kMaxToolPoints over all pieces
-      if (gap > reach_m_ + kRefreshMargin_m) {
+      if (gap > kSearchMargin_m + kRefreshMargin_m) {
         skip(state_.point[i], gap);
       } else {
         visit_point(i);
@@ -115,15 +112,16 @@ class Collider {
     PointState& point = state_.point[index];
     const Vec3 p = now_(model_.tool_point[static_cast<std::size_t>(index)].position_tool_m);
     // Written so that a NaN in any term measures the point.
-    if (point.gap_bound_m > reach_m_) {
+    if (point.gap_bound_m > kSearchMargin_m) {
       const Real bound = point.gap_bound_m - moved(index, p);
       const bool its_turn = (static_cast<std::uint64_t>(index) + state_.tick) % kTurns == 0;
-      if (bound > reach_m_ && !(its_turn && bound < reach_m_ + kRefreshMargin_m)) return skip(point, bound);
+      if (bound > kSearchMargin_m && !(its_turn && bound < kSearchMargin_m + kRefreshMargin_m))
+        return skip(point, bound);
     }
     if (!(point.gap_m < 0)) {
       // Far from the body its box says as much as its surface, and costs nothing next to a cold search.
       const Real gap = distance_to(root_, p) - model_.tool_point[static_cast<std::size_t>(index)].margin_m;
-      if (gap > reach_m_ + kRefreshMargin_m) return skip(point, gap);
+      if (gap > kSearchMargin_m + kRefreshMargin_m) return skip(point, gap);
     }
     measure(index, p);
   }
@@ -236,7 +234,6 @@ class Collider {
   Scratch& scratch_;
   RigidMap now_, before_;  // of the piece being visited
   const Box root_;
-  Real reach_m_ = 0;
   bool smooth_ = false;
 };
 

@@ -1,4 +1,4 @@
-#include "rt_core/skeleton/neighbourhood.h"
+#include "sim_host/view/neighbourhood.h"
 
 #include "rt_core/math.h"
 
@@ -10,22 +10,22 @@ constexpr Real kLeastContactRadius = 0.05;  // of the reach
 constexpr Real kMostContactRadius = 0.9;    // of the reach
 
 // ln(R/r) - (1 - r^2/R^2)/2 as a function of q = r/R.
-Real c1_profile(Real q) PALPATE_RT { return -math::log(q) - 0.5 * (1.0 - q * q); }
+Real c1_profile(Real q) { return -math::log(q) - 0.5 * (1.0 - q * q); }
 
 }  // namespace
 
-LogLaw log_law(Real contact_radius_m, Real reach_m, Real u_contact, Real u_far) PALPATE_RT {
+LogLaw log_law(Real contact_radius_m, Real reach_m, Real u_contact, Real u_far) {
   if (!(contact_radius_m > 0 && contact_radius_m < reach_m)) return {u_far, 0};
   const Real b = (u_contact - u_far) / math::log(reach_m / contact_radius_m);
   return {u_contact + b * math::log(contact_radius_m), b};
 }
 
-Real contact_radius_m(Real area_m2, Real reach_m) PALPATE_RT {
+Real contact_radius_m(Real area_m2, Real reach_m) {
   const Real radius_m = area_m2 > 0 ? square_root(area_m2 / kPi) : 0.0;
   return clamp_to(radius_m, kLeastContactRadius * reach_m, kMostContactRadius * reach_m);
 }
 
-Neighbourhood make_neighbourhood(NeighbourhoodLaw law, Real contact_radius_m, Real reach_m) PALPATE_RT {
+Neighbourhood make_neighbourhood(NeighbourhoodLaw law, Real contact_radius_m, Real reach_m) {
   Neighbourhood result;
   const bool usable = contact_radius_m > 0 && reach_m < kHuge && contact_radius_m <= kMostContactRadius * reach_m;
   if (!usable) return result;
@@ -42,7 +42,7 @@ Neighbourhood make_neighbourhood(NeighbourhoodLaw law, Real contact_radius_m, Re
   return result;
 }
 
-Real neighbourhood_blend(const Neighbourhood& n, Real distance_m) PALPATE_RT {
+Real neighbourhood_blend(const Neighbourhood& n, Real distance_m) {
   if (n.law == NeighbourhoodLaw::kNone || !(distance_m < n.reach_m)) return 0;
   if (distance_m <= n.contact_radius_m) return 1;
   Real g = 0;
@@ -62,7 +62,7 @@ Real neighbourhood_blend(const Neighbourhood& n, Real distance_m) PALPATE_RT {
   return clamp_to(g, 0.0, 1.0);  // rounding may leave the interval at its ends
 }
 
-Real region_size_factor(Real area_m2, Real reference_area_m2) PALPATE_RT {
+Real region_size_factor(Real area_m2, Real reference_area_m2) {
   if (!(area_m2 > 0 && reference_area_m2 > 0 && reference_area_m2 < area_m2)) return 1;
   return square_root(reference_area_m2 / area_m2);
 }

@@ -1,12 +1,11 @@
-// The deformed surface, evaluated at any point of the rest surface: for drawing and export, never fed back into
-// contact.
+// The deformed surface, evaluated at any point of the rest surface: for drawing and export.
 #pragma once
 
 #include <cstdint>
 
-#include "rt_core/skeleton/neighbourhood.h"
-#include "rt_core/skeleton/rbf.h"
 #include "rt_core/state.h"
+#include "sim_host/view/neighbourhood.h"
+#include "sim_host/view/rbf_surface.h"
 
 namespace palpate {
 
@@ -38,17 +37,11 @@ struct ShapeField {
 // reaches them or the contact sits on them. Regions are superposed: another region's far field adds to d_c, as it is
 // what the depth was reduced by. d_c = -(depth_equivalent_m * omega) F/|F| with F the region's total force on the tool,
 // omega = region_size_factor.
-void prepare_shape(const Model& model, const State& state, ShapeField& field) PALPATE_RT;
+void prepare_shape(const Model& model, const State& state, ShapeField& field);
 
 // Displacement (m, world) of the rest-surface point `rest_point_w`. `vertex` is its index in Model::vertex_m, or -1:
 // the displacement-angle law needs the vertex's patch and normal, and uses the RBF interpolation where there is none.
 // Cost: about 60 + 15 n_rbf operations, and a logarithm or arcsine per region within reach.
-Vec3 displacement_at(const Model& model, const ShapeField& field, Vec3 rest_point_w, std::int32_t vertex) PALPATE_RT;
-
-// Upper bound (m) of the global part of the displacement over the body: what contact search must be inflated by if it
-// uses the far-field shape. Local dents are excluded, except with NeighbourhoodLaw::kNone, where they are part of the
-// global shape. Safe, not tight: each region's interpolant is bounded by sum |c_k| |x_k - x_0| plus its tail at x_0
-// (the coefficients sum to zero, so this holds at any distance), a linear tail over sqrt(3) surface_size_m around x_0.
-double displacement_bound(const Model& model, const State& state) PALPATE_RT;
+Vec3 displacement_at(const Model& model, const ShapeField& field, Vec3 rest_point_w, std::int32_t vertex);
 
 }  // namespace palpate

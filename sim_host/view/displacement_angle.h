@@ -20,6 +20,6 @@ struct PatchCorner {
 // returned.
 //   m = sum w_i |d_i|, theta = sum w_i theta_i / sum w_i, d = m (cos theta n + sin theta t).
 // `normal` is the outward unit normal at the point. Not superposable: apply it per contact and add.
-Vec3 displacement_by_angle(const PatchCorner (&corner)[3], Vec3 normal) PALPATE_RT;
+Vec3 displacement_by_angle(const PatchCorner (&corner)[3], Vec3 normal);
 
 }  // namespace palpate

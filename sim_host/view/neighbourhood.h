@@ -12,7 +12,7 @@ struct LogLaw {
   Real b = 0;
 };
 // The logarithmic law through u(contact_radius_m) = u_contact and u(reach_m) = u_far. Needs 0 < contact_radius < reach.
-LogLaw log_law(Real contact_radius_m, Real reach_m, Real u_contact, Real u_far) PALPATE_RT;
+LogLaw log_law(Real contact_radius_m, Real reach_m, Real u_contact, Real u_far);
 
 // Blend factor g(r): 1 for r <= a (contact radius), 0 for r >= R (reach), continuous and falling between.
 //   kLog   g = ln(R/r) / ln(R/a): the paper's law, the plane (line-load) solution; kink at R.
@@ -31,15 +31,15 @@ struct Neighbourhood {
 
 // a = sqrt(area / pi) clipped to [0.05 R, 0.9 R]: below, a point contact would make the dent a needle; above, the law's
 // denominator vanishes. An area that is not a positive number gives the lower end.
-Real contact_radius_m(Real area_m2, Real reach_m) PALPATE_RT;
+Real contact_radius_m(Real area_m2, Real reach_m);
 // Precomputes the law. contact_radius_m in (0, 0.9 reach_m]; anything else, or reach_m <= 0, gives law kNone.
-Neighbourhood make_neighbourhood(NeighbourhoodLaw law, Real contact_radius_m, Real reach_m) PALPATE_RT;
+Neighbourhood make_neighbourhood(NeighbourhoodLaw law, Real contact_radius_m, Real reach_m);
 // g(r), in [0, 1].
-Real neighbourhood_blend(const Neighbourhood& neighbourhood, Real distance_m) PALPATE_RT;
+Real neighbourhood_blend(const Neighbourhood& neighbourhood, Real distance_m);
 
 // The paper's modification factor omega = min(1, sqrt(A_ref / A)): a larger region makes a shallower dent. The paper
 // counts mesh points, which depends on the mesh; area does not, and for a flat punch at given force depth falls as
 // 1/sqrt(A). Applied to the dent that is drawn, never to a force. 1 when an area is not positive.
-Real region_size_factor(Real area_m2, Real reference_area_m2) PALPATE_RT;
+Real region_size_factor(Real area_m2, Real reference_area_m2);
 
 }  // namespace palpate

@@ -1,4 +1,4 @@
-#include "rt_core/skeleton/rbf_system.h"
+#include "config/bake/rbf_system.h"
 
 #include <utility>
 

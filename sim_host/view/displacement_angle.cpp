@@ -1,10 +1,10 @@
-#include "rt_core/skeleton/displacement_angle.h"
+#include "sim_host/view/displacement_angle.h"
 
 #include "rt_core/math.h"
 
 namespace palpate {
 
-Vec3 displacement_by_angle(const PatchCorner (&corner)[3], Vec3 normal) PALPATE_RT {
+Vec3 displacement_by_angle(const PatchCorner (&corner)[3], Vec3 normal) {
   Real magnitude = 0;
   Real angle = 0;
   Real angle_weight = 0;

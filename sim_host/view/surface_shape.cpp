@@ -1,30 +1,33 @@
-#include "rt_core/skeleton/surface.h"
+#include "sim_host/view/surface_shape.h"
 
-#include "rt_core/skeleton/displacement_angle.h"
-#include "rt_core/skeleton/temporal_order.h"
+#include <memory>
+
+#include "rt_core/contact/regions/contact_order.h"
 #include "rt_core/tool/carrier.h"
+#include "sim_host/view/anchors.h"
+#include "sim_host/view/displacement_angle.h"
 
 namespace palpate {
 namespace {
 
-bool uses_angles(const Model& model) PALPATE_RT {
+bool uses_angles(const Model& model) {
   return model.params.shape_law == static_cast<std::int32_t>(ShapeLaw::kDisplacementAngle);
 }
 
 // The patch of a vertex, or nullptr where the displacement-angle law cannot be used.
-const PatchWeight* patch_of(const Model& model, std::int32_t vertex) PALPATE_RT {
+const PatchWeight* patch_of(const Model& model, std::int32_t vertex) {
   if (!uses_angles(model) || vertex < 0) return nullptr;
   const auto at = static_cast<std::size_t>(vertex);
   return at < model.patch.size() && at < model.vertex_normal.size() ? &model.patch[at] : nullptr;
 }
 
 // Area for which the contact law holds per unit weight: the same for every tool point by construction of the weights.
-Real reference_area_m2(const Model& model) PALPATE_RT {
+Real reference_area_m2(const Model& model) {
   if (model.tool_point.empty() || !(model.tool_point[0].weight > 0)) return 0;
   return model.tool_point[0].area_m2 / model.tool_point[0].weight;
 }
 
-Vec3 dent_of(const Model& model, const Region& region) PALPATE_RT {
+Vec3 dent_of(const Model& model, const Region& region) {
   const Vec3 force = region.normal_force_N * region.normal_w + region.friction_force_w;
   const Real omega = region_size_factor(region.area_m2, reference_area_m2(model));
   const Vec3 dent = (-omega * region.depth_equivalent_m) * unit_or(force, region.normal_w);
@@ -33,7 +36,7 @@ Vec3 dent_of(const Model& model, const Region& region) PALPATE_RT {
 
 // Adds the contact point as an interpolation node that moves by d_c: u += psi(x) (d_c - u(p)), spread over
 // coefficients.
-void add_contact_node(const Model& model, const Vec3 (&own)[kMaxRbf], ShapeRegion& r, ShapeField& field) PALPATE_RT {
+void add_contact_node(const Model& model, const Vec3 (&own)[kMaxRbf], ShapeRegion& r, ShapeField& field) {
   make_rbf_contact(model, r.contact_w, r.node);
   const auto n = static_cast<std::int32_t>(model.sizes.n_rbf);
   if (r.node.at_anchor >= 0) {
@@ -51,7 +54,7 @@ void add_contact_node(const Model& model, const Vec3 (&own)[kMaxRbf], ShapeRegio
 }
 
 // Radius of a region's dent: the largest of its parts' own, else the scene's.
-Real reach_of(const Model& model, const State& state, std::int32_t slot) PALPATE_RT {
+Real reach_of(const Model& model, const State& state, std::int32_t slot) {
   Real reach = 0;
   if (!is_articulated(model)) return model.params.neighbourhood_radius_m;
   for (std::size_t p = 0; p < model.piece.size(); ++p) {  // bound: kMaxToolPoints over all pieces
@@ -63,7 +66,8 @@ Real reach_of(const Model& model, const State& state, std::int32_t slot) PALPATE
   return reach > 0 ? reach : model.params.neighbourhood_radius_m;
 }
 
-void prepare_region(const Model& model, const State& state, std::int32_t slot, ShapeField& field) PALPATE_RT {
+void prepare_region(const Model& model, const State& state, const AnchorField& anchors, std::int32_t slot,
+                    ShapeField& field) {
   const Region& region = state.region[slot];
   ShapeRegion& r = field.region[field.count++];
   r = {};
@@ -74,10 +78,7 @@ void prepare_region(const Model& model, const State& state, std::int32_t slot, S
   const Real reach_m = reach_of(model, state, slot);
   r.local = make_neighbourhood(static_cast<NeighbourhoodLaw>(model.params.neighbourhood_law),
                                contact_radius_m(region.area_m2, reach_m), reach_m);
-  const auto anchors = static_cast<std::int32_t>(model.sizes.n_anchor);
-  for (std::int32_t i = 0; i < anchors && i < kMaxAnchors; ++i) {
-    r.anchor_displacement_w[i] = state.anchor_by_region[slot][i];
-  }
+  for (std::int32_t i = 0; i < anchors.count; ++i) r.anchor_displacement_w[i] = anchors.by_region_w[slot][i];
   if (!field.interpolated) return;
 
   Vec3 own[kMaxRbf];
@@ -95,7 +96,7 @@ void prepare_region(const Model& model, const State& state, std::int32_t slot, S
 // One region by displacement angles. The global value at the contact point is not a vertex's, so the blend runs towards
 // d_c from the value at x: u + (d_c - u) g, equally exact at the contact and equally zero beyond the reach.
 Vec3 displacement_by_patch(const Model& model, const ShapeRegion& r, const PatchWeight& patch, const RbfVector& g,
-                           Vec3 x, Vec3 normal) PALPATE_RT {
+                           Vec3 x, Vec3 normal) {
   PatchCorner corner[3];
   for (std::int32_t k = 0; k < 3; ++k) {
     const std::int32_t a = patch.anchor[k];
@@ -110,17 +111,18 @@ Vec3 displacement_by_patch(const Model& model, const ShapeRegion& r, const Patch
 
 }  // namespace
 
-void prepare_shape(const Model& model, const State& state, ShapeField& field) PALPATE_RT {
+void prepare_shape(const Model& model, const State& state, ShapeField& field) {
   field.count = 0;
   field.interpolated = rbf_available(model);
+  const auto anchors = std::make_unique<AnchorField>(anchors_of(model, state));
   for (Vec3& c : field.coefficient_w) c = {};
   for (std::int32_t slot = 0; slot < kMaxRegions; ++slot) {
     const Region& region = state.region[slot];
-    if (is_in_contact(region) && is_finite(region.centre_w)) prepare_region(model, state, slot, field);
+    if (is_in_contact(region) && is_finite(region.centre_w)) prepare_region(model, state, *anchors, slot, field);
   }
 }
 
-Vec3 displacement_at(const Model& model, const ShapeField& field, Vec3 rest_point_w, std::int32_t vertex) PALPATE_RT {
+Vec3 displacement_at(const Model& model, const ShapeField& field, Vec3 rest_point_w, std::int32_t vertex) {
   if (field.count == 0) return {};
   RbfVector g{};
   if (field.interpolated) rbf_terms(model, rest_point_w, g);
@@ -139,69 +141,6 @@ Vec3 displacement_at(const Model& model, const ShapeField& field, Vec3 rest_poin
     sum += distance_m * r.node_coefficient_w + neighbourhood_blend(r.local, distance_m) * r.local_amplitude_w;
   }
   return sum;
-}
-
-namespace {
-
-// Bound of |u| for the interpolant of anchor displacements alone.
-Real anchors_bound(const Model& model, const Vec3 (&displacement)[kMaxAnchors], Vec3 centre) PALPATE_RT {
-  const auto anchors = static_cast<std::int32_t>(model.sizes.n_anchor);
-  Vec3 c[kMaxRbf];
-  rbf_coefficients(model, displacement, c);
-  Real bound = 0;
-  for (std::int32_t i = 0; i < anchors; ++i) {
-    bound += norm(c[i]) * norm(model.anchor[static_cast<std::size_t>(i)].position_m - centre);
-  }
-  Vec3 tail = c[anchors];
-  if (model.params.rbf_tail == 1) {
-    tail += centre.x * c[anchors + 1] + centre.y * c[anchors + 2] + centre.z * c[anchors + 3];
-    const Real steepest = norm(c[anchors + 1]) + norm(c[anchors + 2]) + norm(c[anchors + 3]);
-    bound += steepest * square_root(3.0) * model.params.surface_size_m;
-  }
-  return bound + norm(tail);
-}
-
-// Bound of |psi|, taken about the contact point: tight even for a contact close to an anchor, where coefficients of
-// opposite sign and nearly equal place grow without limit.
-Real node_weight_bound(const Model& model, const RbfContact& node) PALPATE_RT {
-  const auto anchors = static_cast<std::int32_t>(model.sizes.n_anchor);
-  const Vec3 p = node.point_w;
-  Real bound = 0;
-  for (std::int32_t i = 0; i < anchors; ++i) {
-    bound += abs_of(node.q[i]) * norm(model.anchor[static_cast<std::size_t>(i)].position_m - p);
-  }
-  Real tail = node.q[anchors];
-  if (model.params.rbf_tail == 1) {
-    const Vec3 slope{node.q[anchors + 1], node.q[anchors + 2], node.q[anchors + 3]};
-    tail += dot(slope, p);
-    bound += norm(slope) * square_root(3.0) * model.params.surface_size_m;
-  }
-  return (bound + abs_of(tail)) * abs_of(node.inverse_s);
-}
-
-}  // namespace
-
-double displacement_bound(const Model& model, const State& state) PALPATE_RT {
-  ShapeField field;
-  prepare_shape(model, state, field);
-  const auto anchors = static_cast<std::int32_t>(field.interpolated ? model.sizes.n_anchor : 0);
-  Vec3 centre;
-  for (std::int32_t i = 0; i < anchors; ++i) centre += model.anchor[static_cast<std::size_t>(i)].position_m;
-  if (anchors > 0) centre = (1.0 / anchors) * centre;
-
-  Real bound = 0;
-  for (std::int32_t i = 0; i < field.count; ++i) {  // <= kMaxRegions
-    const ShapeRegion& r = field.region[i];
-    Real largest = 0;  // the displacement-angle law never exceeds its corners
-    for (const Vec3& d : r.anchor_displacement_w) largest = max_of(largest, norm(d));
-    Real own = field.interpolated ? anchors_bound(model, r.anchor_displacement_w, centre) : 0.0;
-    if (uses_angles(model)) own = max_of(own, largest);
-    if (r.local.law == NeighbourhoodLaw::kNone && field.interpolated) {
-      own += node_weight_bound(model, r.node) * (norm(r.dent_w) + own);
-    }
-    bound += own;
-  }
-  return bound;
 }
 
 }  // namespace palpate

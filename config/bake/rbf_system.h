@@ -1,18 +1,12 @@
-// The linear system of the surface interpolation, inverted once when a scene is baked. Host code; no heap.
+// The linear system of the surface interpolation, inverted once when a scene is baked.
 #pragma once
 
-#include <cstdint>
 #include <span>
 
-#include "rt_core/limits.h"
+#include "rt_core/skeleton/rbf.h"
 #include "rt_core/vec.h"
 
 namespace palpate {
-
-inline constexpr std::int32_t kMaxRbf = kMaxAnchors + 4;
-
-// Polynomial terms beside the radial functions: 1 (constant tail, tail = 0) or 4 (linear tail, tail = 1).
-inline constexpr std::int32_t rbf_tail_size(std::int32_t tail) PALPATE_RT { return tail == 1 ? 4 : 1; }
 
 // Inverts M = [Phi P; P^T 0], Phi_ij = |x_i - x_j| in metres, P = [1] or [1 x y z] (the biharmonic interpolant of
 // Cui & Xiao 2008). Writes the n x n inverse, n = anchors.size() + rbf_tail_size(tail), row-major, symmetric, into
