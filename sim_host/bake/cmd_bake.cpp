@@ -24,8 +24,7 @@ struct BakeOptions {
 
 int dump_image(const std::string& path) {
   const ImageFile image(path);
-  const MappedFile file(path);
-  fmt::print("{}", image_dump(*reinterpret_cast<const ImageHeader*>(file.bytes().data()), image.model()));
+  fmt::print("{}", image_dump(*reinterpret_cast<const ImageHeader*>(image.bytes().data()), image.model()));
   return kExitOk;
 }
 

@@ -2,9 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <stdexcept>
+
 namespace palpate {
 
-ImageFile::ImageFile(const std::string& path) : file_(path) {
+ImageFile::ImageFile(const std::string& path) {
+  std::string error;
+  file_ = PrivateFile::read(path, error);
+  if (!file_) throw std::runtime_error(error);
   const ImageResult result = open_image(file_.bytes(), model_);
   if (result.error == ImageError::kNone) return;
   const std::string at = result.index >= 0 ? fmt::format("[{}]", result.index) : "";

@@ -1,10 +1,10 @@
-// A scene image mapped from its file, checked completely.
+// A scene image copied from its file, then checked completely.
 #pragma once
 
 #include <string>
 
+#include "hal/system/private_file.h"
 #include "rt_core/image.h"
-#include "sim_host/record/recording.h"
 
 namespace palpate {
 
@@ -13,9 +13,10 @@ class ImageFile {
  public:
   explicit ImageFile(const std::string& path);
   const Model& model() const { return model_; }
+  std::span<const std::byte> bytes() const { return file_.bytes(); }
 
  private:
-  MappedFile file_;
+  PrivateFile file_;
   Model model_;
 };
 

@@ -1,12 +1,7 @@
 // palpate-rt: the controller. Opens a baked image, connects to the device and (if started by one) to the host, makes
 // itself a real-time thread, and runs the loop. No parser, no graphics; everything is allocated before the first tick.
-#include <fcntl.h>
 #include <getopt.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
-#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -20,6 +15,7 @@
 #include "hal/bus/loopback.h"
 #include "hal/loop/lockstep.h"
 #include "hal/loop/loop.h"
+#include "hal/system/private_file.h"
 #include "hal/system/rt_linux.h"
 #include "hal/system/shared_memory.h"
 #include "rt_core/image.h"
@@ -101,19 +97,13 @@ Arguments parse(int argc, char** argv) {
   return arguments;
 }
 
-// Maps the image for the life of the process.
-Model load_image(const std::string& path) {
-  const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  struct stat status {};
-  if (fd < 0 || fstat(fd, &status) != 0 || status.st_size <= 0) {
-    throw Failure{kUsage, path + ": cannot read: " + std::strerror(errno)};
-  }
-  const auto size = static_cast<std::size_t>(status.st_size);
-  void* data = mmap(nullptr, size, PROT_READ, MAP_PRIVATE | MAP_POPULATE, fd, 0);
-  close(fd);
-  if (data == MAP_FAILED) throw Failure{kUnavailable, path + ": cannot map: " + std::strerror(errno)};
+// Checks a copy that nobody else can change, and binds the model to it. `file` must live as long as the model.
+Model load_image(const std::string& path, PrivateFile& file) {
+  std::string error;
+  file = PrivateFile::read(path, error);
+  if (!file) throw Failure{kUsage, error};
   Model model;
-  const ImageResult result = open_image({static_cast<const std::byte*>(data), size}, model);
+  const ImageResult result = open_image(file.bytes(), model);
   if (result.error != ImageError::kNone) {
     throw Failure{kUsage, path + ": " + result.field + ": " + describe(result.error) + "; bake the scene again"};
   }
@@ -278,7 +268,8 @@ void print_usage(const LoopUsage& usage) {
 int run(int argc, char** argv) {
   const Arguments arguments = parse(argc, argv);
   const std::atomic<bool>& interrupted = install_stop_signals();
-  const Model model = load_image(arguments.image);
+  PrivateFile image;
+  const Model model = load_image(arguments.image, image);
   const auto core = std::make_unique<Core>();
   reset(core->state);
   HostConnection host;
