@@ -46,23 +46,31 @@ struct Input {
   JointCommand joints;
 };
 
+// X(type, name, stage, meaning). Every field of Output, so that replay and the state hash of the determinism test
+// compare them all: a field that is added here is compared.
+#define PALPATE_OUTPUT_FIELDS(X)                                                                                     \
+  X(Wrench, device_w, "safety", "what the device must render, about the handle's origin; passed every safety check") \
+  X(Wrench, contact_w, "force", "of the object on the tool, about its origin, before coupling and limits")           \
+  X(Pose, tool_w, "safety", "where the virtual tool is")                                                             \
+  X(double, penetration_m, "regions", "deepest sample depth")                                                        \
+  X(double, energy_J, "force", "stored elastic energy of contact and friction springs")                              \
+  X(double, residual_m, "force", "of the coupled region solve")                                                      \
+  X(double, strain, "force", "largest strain at the gauges of a finite-element body")                                \
+  X(double, ramp, "safety", "0..1 force ramp")                                                                       \
+  X(std::uint32_t, status, "safety", "Status bits")                                                                  \
+  X(std::uint32_t, fault, "safety", "latched Fault bits")                                                            \
+  X(Mode, mode, "safety", "Mode")                                                                                    \
+  X(std::int32_t, regions, "regions", "in contact")                                                                  \
+  X(std::int32_t, contacts, "collide", "in contact")                                                                 \
+  X(std::int32_t, reserved, "safety", "0")                                                                           \
+  X(Wrench, palm_w, "force",                                                                                         \
+    "hand only: what the palm must exert on the body to balance fingers and weight, about "                          \
+    "the tool's origin")
+
 struct Output {
-  Wrench device_w;           // what the device must render, about the handle's origin; passed every safety check
-  Wrench contact_w;          // force of the object on the tool, about the tool's origin, before coupling and limits
-  Pose tool_w;               // where the virtual tool is
-  double penetration_m = 0;  // deepest sample depth
-  double energy_J = 0;       // stored elastic energy of contact and friction springs
-  double residual_m = 0;     // of the coupled region solve
-  double strain = 0;         // largest strain at the gauges of a finite-element body
-  double ramp = 0;           // 0..1 force ramp
-  std::uint32_t status = 0;  // Status bits
-  std::uint32_t fault = 0;   // latched Fault bits
-  Mode mode = Mode::kIdle;
-  std::int32_t regions = 0;
-  std::int32_t contacts = 0;
-  std::int32_t reserved = 0;
-  Wrench palm_w;  // hand only: what the palm must exert on the body to balance fingers and weight, about the tool's
-                  // origin
+#define PALPATE_FIELD(type, name, stage, meaning) type name{};
+  PALPATE_OUTPUT_FIELDS(PALPATE_FIELD)
+#undef PALPATE_FIELD
 };
 
 static_assert(std::is_trivially_copyable_v<Input> && std::is_trivially_copyable_v<Output>);

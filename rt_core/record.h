@@ -10,14 +10,20 @@
 
 namespace palpate {
 
+// X(type, name, stage, meaning). Compared by replay, as PALPATE_OUTPUT_FIELDS is.
+#define PALPATE_REGION_RECORD_FIELDS(X)                                             \
+  X(std::uint32_t, id, "regions", "unique since reset")                             \
+  X(std::int32_t, point_count, "regions", "tool points or nodes in contact")        \
+  X(Vec3, centre_w, "force", "equivalent contact point on the rest surface")        \
+  X(Vec3, force_w, "force", "on the tool, friction included")                       \
+  X(double, depth_equivalent_m, "force", "depth at which the law gives this force") \
+  X(std::int32_t, friction, "force", "FrictionMode")                                \
+  X(std::int32_t, reserved, "force", "0")
+
 struct RegionRecord {
-  std::uint32_t id;
-  std::int32_t point_count;
-  Vec3 centre_w;  // equivalent contact point on the rest surface
-  Vec3 force_w;   // on the tool, friction included
-  double depth_equivalent_m;
-  std::int32_t friction;  // FrictionMode
-  std::int32_t reserved;
+#define PALPATE_FIELD(type, name, stage, meaning) type name;
+  PALPATE_REGION_RECORD_FIELDS(PALPATE_FIELD)
+#undef PALPATE_FIELD
 };
 
 // Where the time of one period went, in ns. Taken by the HAL loop, never inside rt_core.

@@ -4,6 +4,7 @@
 
 #include <cstring>
 #include <memory>
+#include <string_view>
 
 #include "rt_core/tick.h"
 
@@ -27,13 +28,14 @@ std::string text_of(const Pose& p) {
 class FirstDifference {
  public:
   explicit FirstDifference(ReplayResult& result) : result_(&result) {}
+  // `index`: of the region the field belongs to, or -1.
   template <typename T>
-  void check(const char* stage, const std::string& field, const T& recorded, const T& replayed) {
+  void check(const char* stage, const char* field, const T& recorded, const T& replayed, std::int32_t index = -1) {
     static_assert(std::has_unique_object_representations_v<T> || sizeof(T) % sizeof(double) == 0);
     if (found_ || std::memcmp(&recorded, &replayed, sizeof(T)) == 0) return;
     found_ = true;
     result_->stage = stage;
-    result_->field = field;
+    result_->field = index < 0 ? field : fmt::format("region[{}].{}", index, field);
     result_->recorded = text_of(recorded);
     result_->replayed = text_of(replayed);
   }
@@ -44,47 +46,49 @@ class FirstDifference {
   bool found_ = false;
 };
 
-void check_regions(const TickRecord& a, const TickRecord& b, FirstDifference& difference) {
-  difference.check("regions", "region_count", a.region_count, b.region_count);
+// In this order, because a difference in an early stage explains those after it.
+constexpr std::string_view kStageOrder[] = {"sense", "collide", "regions", "force", "safety", "state"};
+
+constexpr bool is_ordered(std::string_view stage) {
+  for (const std::string_view known : kStageOrder)
+    if (stage == known) return true;
+  return false;
+}
+#define PALPATE_FIELD(type, name, stage, meaning) static_assert(is_ordered(stage), #name);
+PALPATE_OUTPUT_FIELDS(PALPATE_FIELD)
+PALPATE_REGION_RECORD_FIELDS(PALPATE_FIELD)
+#undef PALPATE_FIELD
+
+// What one stage left in two records of one tick.
+void check_stage(std::string_view stage, const TickRecord& a, const TickRecord& b, FirstDifference& difference) {
+  if (stage == "sense") difference.check("sense", "tick", a.tick, b.tick);
+  if (stage == "regions") difference.check("regions", "region_count", a.region_count, b.region_count);
+#define PALPATE_FIELD(type, name, of, meaning) \
+  if (stage == of) difference.check(of, "output." #name, a.output.name, b.output.name);
+  PALPATE_OUTPUT_FIELDS(PALPATE_FIELD)
+#undef PALPATE_FIELD
   for (std::int32_t i = 0; i < a.region_count && i < kMaxRegions; ++i) {
-    const RegionRecord &x = a.region[i], &y = b.region[i];
-    const auto name = [&](const char* field) { return fmt::format("region[{}].{}", i, field); };
-    difference.check("regions", name("id"), x.id, y.id);
-    difference.check("regions", name("point_count"), x.point_count, y.point_count);
+#define PALPATE_FIELD(type, name, of, meaning) \
+  if (stage == of) difference.check(of, #name, a.region[i].name, b.region[i].name, i);
+    PALPATE_REGION_RECORD_FIELDS(PALPATE_FIELD)
+#undef PALPATE_FIELD
   }
-  for (std::int32_t i = 0; i < a.region_count && i < kMaxRegions; ++i) {
-    const RegionRecord &x = a.region[i], &y = b.region[i];
-    const auto name = [&](const char* field) { return fmt::format("region[{}].{}", i, field); };
-    difference.check("force", name("centre_w"), x.centre_w, y.centre_w);
-    difference.check("force", name("force_w"), x.force_w, y.force_w);
-    difference.check("force", name("depth_equivalent_m"), x.depth_equivalent_m, y.depth_equivalent_m);
-    difference.check("force", name("friction"), x.friction, y.friction);
-  }
+}
+
+void check_high_water(const HighWater& a, const HighWater& b, FirstDifference& difference) {
+  static_assert(sizeof(HighWater) == 4 * sizeof(std::int32_t), "compare the new field here");
+  difference.check("collide", "high_water.contacts", a.contacts, b.contacts);
+  difference.check("collide", "high_water.regions", a.regions, b.regions);
+  difference.check("collide", "high_water.traversal_stack", a.traversal_stack, b.traversal_stack);
+  difference.check("collide", "high_water.gjk_support_calls", a.gjk_support_calls, b.gjk_support_calls);
 }
 
 }  // namespace
 
 bool first_record_difference(const TickRecord& recorded, const TickRecord& replayed, ReplayResult& result) {
   FirstDifference difference(result);
-  const Output &a = recorded.output, &b = replayed.output;
-  difference.check("sense", "tick", recorded.tick, replayed.tick);
-  difference.check("collide", "output.contacts", a.contacts, b.contacts);
-  difference.check("collide", "high_water.traversal_stack", recorded.high_water.traversal_stack,
-                   replayed.high_water.traversal_stack);
-  difference.check("collide", "high_water.gjk_support_calls", recorded.high_water.gjk_support_calls,
-                   replayed.high_water.gjk_support_calls);
-  difference.check("regions", "output.regions", a.regions, b.regions);
-  difference.check("regions", "output.penetration_m", a.penetration_m, b.penetration_m);
-  check_regions(recorded, replayed, difference);
-  difference.check("force", "output.contact_w", a.contact_w, b.contact_w);
-  difference.check("force", "output.energy_J", a.energy_J, b.energy_J);
-  difference.check("force", "output.residual_m", a.residual_m, b.residual_m);
-  difference.check("safety", "output.tool_w", a.tool_w, b.tool_w);
-  difference.check("safety", "output.device_w", a.device_w, b.device_w);
-  difference.check("safety", "output.ramp", a.ramp, b.ramp);
-  difference.check("safety", "output.mode", a.mode, b.mode);
-  difference.check("safety", "output.fault", a.fault, b.fault);
-  difference.check("safety", "output.status", a.status, b.status);
+  for (const std::string_view stage : kStageOrder) check_stage(stage, recorded, replayed, difference);
+  check_high_water(recorded.high_water, replayed.high_water, difference);
   difference.check("state", "state_hash (no recorded output differs)", recorded.state_hash, replayed.state_hash);
   return difference.found();
 }
@@ -97,13 +101,13 @@ ReplayResult replay(RecordingReader& recording, const Model& model, const Replay
                     header.scene_hash, header.scene_name, header.image_path, model.scene_hash, model.name));
   }
   ReplayResult result;
-  State state = recording.initial_state();
   const auto scratch = std::make_unique<Scratch>();
   TickRecord recorded;
   if (!recording.state_known()) {
     throw RecordingError(
         "a slice of a longer run without the state before its first tick: it can be listed (--dump) but not replayed");
   }
+  State state = recording.initial_state(model);
   std::uint64_t expected = recording.first_sequence();
   while (recording.next(recorded)) {
     if (recorded.sequence != expected) {

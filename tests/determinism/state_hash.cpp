@@ -26,20 +26,21 @@ std::uint64_t mix(std::uint64_t hash, std::uint64_t word) {
   return hash ^ (hash >> 29);
 }
 
-std::uint64_t mix(std::uint64_t hash, Real value) {
-  std::uint64_t word = 0;
-  std::memcpy(&word, &value, sizeof(word));
-  return mix(hash, word);
+template <class T>
+std::uint64_t mix_words(std::uint64_t hash, const T& value) {
+  static_assert(sizeof(T) == 4 || sizeof(T) % 8 == 0, "no padding may get in");
+  std::uint64_t word[(sizeof(T) + 7) / 8] = {};
+  std::memcpy(word, &value, sizeof(T));
+  for (const std::uint64_t w : word) hash = mix(hash, w);
+  return hash;
 }
 
 // Everything the host or the device sees of a tick.
 std::uint64_t hash_output(std::uint64_t hash, const Output& o) {
-  for (const Wrench& w : {o.device_w, o.contact_w}) {
-    for (const Vec3& v : {w.force_N, w.torque_Nm}) hash = mix(mix(mix(hash, v.x), v.y), v.z);
-  }
-  hash = mix(mix(mix(mix(hash, o.penetration_m), o.energy_J), o.residual_m), o.ramp);
-  hash = mix(mix(hash, std::uint64_t{o.status}), std::uint64_t{o.fault});
-  return mix(hash, static_cast<std::uint64_t>(o.regions) << 32 | static_cast<std::uint32_t>(o.contacts));
+#define PALPATE_FIELD(type, name, stage, meaning) hash = mix_words(hash, o.name);
+  PALPATE_OUTPUT_FIELDS(PALPATE_FIELD)
+#undef PALPATE_FIELD
+  return hash;
 }
 
 struct Summary {
