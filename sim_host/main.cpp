@@ -39,6 +39,7 @@ int main(int argc, char** argv) {
   palpate::add_press_command(app, exit_code);
   palpate::add_run_command(app, exit_code);
   palpate::add_replay_command(app, exit_code);
+  palpate::add_recover_command(app, exit_code);
   palpate::add_latency_command(app, exit_code);
   palpate::add_picture_command(app, exit_code);
   palpate::add_grasp_command(app, exit_code);

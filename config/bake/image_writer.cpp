@@ -1,7 +1,11 @@
 #include "config/bake/image_writer.h"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 
 #include "config/scene/config_error.h"
@@ -66,8 +70,10 @@ std::vector<std::byte> write_image(const ImageContents& contents) {
 }
 
 bool save_image(const std::string& path, const std::vector<std::byte>& bytes, std::string& error) {
-  const std::string temporary = path + ".part";
-  std::FILE* file = std::fopen(temporary.c_str(), "wb");
+  // A new file of its own name: what lies at a name that can be guessed, a link say, is never written through.
+  std::string temporary = path + ".XXXXXX";
+  const int fd = mkostemp(temporary.data(), O_CLOEXEC);
+  std::FILE* file = fd >= 0 && fchmod(fd, 0644) == 0 ? fdopen(fd, "wb") : nullptr;
   if (file == nullptr) {
     error = path + ": cannot write: " + std::strerror(errno) + "; check that the folder exists and is writable";
     return false;

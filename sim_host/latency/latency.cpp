@@ -9,7 +9,8 @@
 
 #include "hal/loop/clock.h"
 #include "hal/system/rt_linux.h"
-#include "sim_host/record/recording.h"
+#include "sim_host/record/mapped_file.h"
+#include "sim_host/record/recording_reader.h"
 #include "sim_host/status_text.h"
 
 namespace palpate {

@@ -12,11 +12,12 @@
 namespace palpate {
 
 BlackBox::BlackBox(std::string prefix, const RecordingHeader& header, const State& initial_state, const Model* model,
-                   CandumpOptions candump)
+                   CandumpOptions candump, std::vector<PackedPiece> image)
     : prefix_(std::move(prefix)),
       header_(header),
       candump_(std::move(candump)),
       model_(model),
+      image_(std::move(image)),
       ring_(kBlackBoxTicks),
       state_(initial_state),
       scratch_(std::make_unique<Scratch>()) {}
@@ -65,7 +66,10 @@ void BlackBox::dump() {
   dump.cause = std::exchange(cause_, {});
   faults_ += 1;
   if (dumps_.size() >= kBlackBoxMostDumps || count_ == 0) return;
-  const std::string base = fmt::format("{}.fault-{}", prefix_, dumps_.size() + 1);
+  // Never over the black box of an earlier run.
+  const auto name = [this] { return fmt::format("{}.fault-{}.plr", prefix_, number_); };
+  while (free_name(name()) != name()) number_ += 1;  // bound: files in the folder
+  const std::string base = fmt::format("{}.fault-{}", prefix_, number_);
   dump.recording = base + ".plr";
   dump.log = base + ".log";
   dump.sequence = cause_sequence_;
@@ -81,7 +85,7 @@ void BlackBox::dump() {
 }
 
 void BlackBox::write_recording(const BlackBoxDump& dump) {
-  RecordingWriter file(dump.recording, header_, state_);
+  RecordingWriter file(PartFile(dump.recording, WhenItExists::kRefuse), header_, state_, image_);
   file.begin_slice(at(0).sequence, dump.replayable);
   for (std::size_t i = 0; i < count_; ++i) {
     const std::uint64_t expected = i == 0 ? at(0).sequence : at(i - 1).sequence + 1;

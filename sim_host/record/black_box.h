@@ -15,7 +15,7 @@
 #include "rt_core/model.h"
 #include "rt_core/state.h"
 #include "sim_host/record/candump_log.h"
-#include "sim_host/record/recording.h"
+#include "sim_host/record/recording_writer.h"
 
 namespace palpate {
 
@@ -36,9 +36,10 @@ struct BlackBoxDump {
 
 class BlackBox {
  public:
-  // `model` may be null: then only slices that begin with the run can be replayed. It must outlive this.
+  // `model` may be null: then only slices that begin with the run can be replayed. It must outlive this. `image`: goes
+  // into every slice, so that it can be replayed without the scene.
   BlackBox(std::string prefix, const RecordingHeader& header, const State& initial_state, const Model* model,
-           CandumpOptions candump);
+           CandumpOptions candump, std::vector<PackedPiece> image = {});
 
   // Every record of the run in order, from one thread.
   void add(const TickRecord& record);
@@ -61,6 +62,7 @@ class BlackBox {
   RecordingHeader header_;
   CandumpOptions candump_;
   const Model* model_;
+  std::vector<PackedPiece> image_;
   std::vector<TickRecord> ring_;
   std::size_t first_ = 0, count_ = 0;
   State state_;  // before the record state_sequence_, if state_known_
@@ -72,6 +74,7 @@ class BlackBox {
   std::uint64_t cause_sequence_ = 0;
   std::uint32_t ticks_after_ = 0;
   std::uint64_t faults_ = 0;
+  std::size_t number_ = 1;  // in the name of the next dump
   std::vector<BlackBoxDump> dumps_;
   std::string error_;
 };

@@ -5,10 +5,12 @@
 #include <cstring>
 #include <memory>
 
-#include "sim_host/bake/image_file.h"
 #include "sim_host/build_id.h"
 #include "sim_host/cli.h"
+#include "sim_host/record/mapped_file.h"
 #include "sim_host/record/record_csv.h"
+#include "sim_host/record/recorded_image.h"
+#include "sim_host/record/recording_reader.h"
 #include "sim_host/record/replay.h"
 
 namespace palpate {
@@ -54,12 +56,12 @@ int run_replay(const ReplayOptions& options) {
   std::unique_ptr<RecordCsv> csv;
   if (!options.dump.empty()) csv = std::make_unique<RecordCsv>(options.dump);
   if (!recording.state_known()) return list_only(recording, csv.get());
-  const ImageFile image(options.image.empty() ? header.image_path : options.image);
+  const RecordedScene scene(recording, options.image);
   if (std::strcmp(header.build_id, kBuildId) != 0) {
     fmt::print("recorded by another build, verifying all the same\n  recorded {}\n  this one {}\n", header.build_id,
                kBuildId);
   }
-  return report(replay(recording, image.model(), [&](const TickRecord& recorded, const TickRecord&) {
+  return report(replay(recording, scene.model(), [&](const TickRecord& recorded, const TickRecord&) {
     if (csv) csv->add(recorded);
   }));
 }
@@ -70,7 +72,8 @@ void add_replay_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<ReplayOptions>();
   CLI::App* command = app.add_subcommand("replay", "Run a recording again and compare every tick, bit for bit");
   command->add_option("RECORDING", options->recording, "file written by `palpate run --record`")->required();
-  command->add_option("--image", options->image, "scene image, when it is no longer where the recording says");
+  command->add_option("--image", options->image,
+                      "scene image to use; default: the one the recording names, or the one inside it");
   command->add_option("--dump", options->dump, "write one row per recorded tick to this CSV file");
   command->footer(
       "Prints `identical: N ticks` and exits with 0, or names the first tick, stage and field that differ and exits\n"

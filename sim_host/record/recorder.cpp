@@ -1,5 +1,7 @@
 #include "sim_host/record/recorder.h"
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <utility>
 
@@ -44,10 +46,11 @@ void Recorder::finish() {
     lost_ += number;
     on_file([&] { file_->add_lost(expected_, number); });
   }
-  on_file([&] { file_->finish(); });
+  if (file_ != nullptr && file_->records() > 0) on_file([&] { file_->finish(); });
 }
 
-// The file system may refuse at any moment (disk full); the run goes on and the error is reported at its end.
+// The file system may refuse at any moment (disk full): said at once, while the disk may still be cleared for the next
+// run; this run goes on, and what was written stays.
 template <typename Action>
 void Recorder::on_file(Action action) {
   if (file_ == nullptr || !error_.empty()) return;
@@ -55,6 +58,7 @@ void Recorder::on_file(Action action) {
     action();
   } catch (const RecordingError& error) {
     error_ = error.what();
+    fmt::print(stderr, "\npalpate: recording stops here, the run goes on: {}\n", error_);
   }
 }
 

@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "rt_core/telemetry.h"
-#include "sim_host/record/recording.h"
+#include "sim_host/record/recording_writer.h"
 
 namespace palpate {
 
@@ -27,7 +27,7 @@ class Recorder {
   // Takes what is still in the ring, finishes the file and ends the thread. Call when the controller no longer writes,
   // or is not to be listened to any more.
   void stop();
-  // After stop(): empty, or why the file is incomplete.
+  // After stop(): empty, or why the file is incomplete. Said on stderr as soon as it is known.
   const std::string& error() const { return error_; }
   std::uint64_t records() const { return records_; }
   std::uint64_t lost() const { return lost_; }

@@ -5,21 +5,20 @@
 //   chunks: u32 tag, u32 count, u32 payload bytes, u32 CRC-32 of the 12 bytes before and of the payload; payload
 //     HEAD  one RecordingHeader        first
 //     STAT  one State: initial state   second
-//     SLIC  {first sequence, 1 if STAT is the state before it}: only in a slice of a longer run, third
+//     IMAG  a piece of the scene image, compressed (zlib), `count` bytes when unpacked; in order, next; may be absent
+//     SLIC  {first sequence, 1 if STAT is the state before it}: only in a slice of a longer run, next
 //     TICK  `count` records: TickRecord up to `region`, then region_count RegionRecords each
 //     LOST  {first sequence, number}: records the recorder did not get
 //     END   {records, lost}: the recording was finished properly; nothing follows
 //
 // Every byte lies under a checksum. A damaged or cut file is reported with the offset of the first bad chunk, and
-// everything before it stays readable.
+// everything before it stays readable. While it is written the file is NAME.part, locked; finish() renames it.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <stdexcept>
-#include <string>
-#include <vector>
 
 #include "rt_core/record.h"
 #include "rt_core/telemetry.h"
@@ -44,105 +43,49 @@ struct RecordingHeader {
 // The header of a run whose controller shares `telemetry`. The texts are terminated, whatever the region holds.
 RecordingHeader recording_header(const TelemetryHeader& telemetry);
 
-// Writes a recording. Every function throws RecordingError when the file system refuses.
-class RecordingWriter {
- public:
-  RecordingWriter(const std::string& path, RecordingHeader header, const State& initial_state);
-  ~RecordingWriter();
-  RecordingWriter(const RecordingWriter&) = delete;
-  RecordingWriter& operator=(const RecordingWriter&) = delete;
+// The format, for writer and reader.
+namespace plr {
 
-  // Before the first add(): this is a slice of a longer run, whose first record has sequence `first`. `state_known`:
-  // the initial state is the one before that record; otherwise the slice can be listed but not replayed.
-  void begin_slice(std::uint64_t first, bool state_known);
-  void add(const TickRecord& record);
-  // Declares that `number` records from sequence `first` on are missing here.
-  void add_lost(std::uint64_t first, std::uint64_t number);
-  // Hands everything added so far to the kernel: from then on it survives the death of this process.
-  void flush();
-  // Footer and fsync: from then on it survives a power cut.
-  void finish();
-  std::uint64_t records() const { return records_; }
-  std::uint64_t lost() const { return lost_; }
+inline constexpr std::uint64_t kMagic = 0x003130434552504Cull;  // bytes "LPREC01\0"
+inline constexpr std::uint32_t kVersion = 2;
+inline constexpr std::uint32_t kRecordsPerChunk = 256;
+inline constexpr std::size_t kRecordPrefix = offsetof(TickRecord, region);
+// Of the image, unpacked, in one chunk; packed it may be a little more.
+inline constexpr std::uint32_t kImagePieceBytes = 256 * 1024;
+inline constexpr std::size_t kMostChunkBytes = kRecordsPerChunk * sizeof(TickRecord);
+static_assert(kImagePieceBytes + 1024 < kMostChunkBytes);
 
- private:
-  void write_chunk(std::uint32_t tag, std::uint32_t count, std::span<const std::byte> payload);
-  void write_all(const void* data, std::size_t bytes);
+constexpr std::uint32_t tag_of(const char (&text)[5]) {
+  std::uint32_t tag = 0;
+  for (int i = 3; i >= 0; --i) tag = tag << 8 | static_cast<unsigned char>(text[i]);
+  return tag;
+}
+inline constexpr std::uint32_t kHead = tag_of("HEAD"), kState = tag_of("STAT"), kImage = tag_of("IMAG"),
+                               kSlice = tag_of("SLIC"), kTick = tag_of("TICK"), kLost = tag_of("LOST"),
+                               kEnd = tag_of("END ");
 
-  std::string path_;
-  int fd_ = -1;
-  std::vector<std::byte> pending_;
-  std::uint32_t pending_records_ = 0;
-  std::uint64_t records_ = 0;
-  std::uint64_t lost_ = 0;
+struct Prefix {
+  std::uint64_t magic;
+  std::uint32_t version;
+  std::uint32_t crc;
+};
+struct ChunkHeader {
+  std::uint32_t tag, count, bytes, crc;
+};
+struct Slice {
+  std::uint64_t first, state_known;
+};
+struct Lost {
+  std::uint64_t first, number;
+};
+struct End {
+  std::uint64_t records, lost;
 };
 
-// Reads a recording from memory. The constructor throws RecordingError unless prefix, header and initial state are
-// intact and of this build's layout.
-class RecordingReader {
- public:
-  explicit RecordingReader(std::span<const std::byte> bytes);
+// CRC-32 (IEEE 802.3, that of zlib), continued from `start`. Here because the controller, which writes its own black
+// box, links no library.
+std::uint32_t crc32(const void* data, std::size_t bytes, std::uint32_t start = 0);
 
-  const RecordingHeader& header() const { return header_; }
-  const State& initial_state() const { return initial_state_; }
-  // Sequence of the first record; 1 unless this is a slice of a longer run.
-  std::uint64_t first_sequence() const { return first_sequence_; }
-  // Whether the initial state is the one before the first record, so that a replay can start there.
-  bool state_known() const { return state_known_; }
-  // Next record in order; false at the end or at the first damage. A gap in record.sequence is a loss.
-  bool next(TickRecord& record);
-  // After next() returned false: empty if the recording is whole, otherwise what is wrong and where.
-  const std::string& error() const { return error_; }
-  // After next() returned false: the file ended before its footer, as while it is still being written. Then extend()
-  // goes on with `bytes`, the same file grown longer, from the first record not read yet.
-  bool cut() const { return cut_; }
-  void extend(std::span<const std::byte> bytes);
-  std::uint64_t records() const { return records_; }
-  // Records declared lost so far.
-  std::uint64_t lost() const { return lost_; }
-
- private:
-  struct Chunk {
-    std::uint32_t tag = 0;
-    std::uint32_t count = 0;
-    std::span<const std::byte> payload;
-  };
-
-  Chunk read_chunk();
-  Chunk expect_chunk(std::uint32_t tag, std::size_t bytes);
-  void read_prefix();
-  void decode(TickRecord& record);
-  void finish(const Chunk& chunk);
-  void read_slice();
-
-  std::span<const std::byte> bytes_;
-  std::size_t offset_ = 0;        // of the next chunk
-  std::size_t chunk_offset_ = 0;  // of the current one
-  std::span<const std::byte> ticks_;
-  std::uint32_t ticks_left_ = 0;
-  RecordingHeader header_;
-  State initial_state_;
-  std::uint64_t records_ = 0;
-  std::uint64_t lost_ = 0;
-  std::uint64_t first_sequence_ = 1;
-  bool state_known_ = true;
-  bool ended_ = false;
-  bool cut_ = false;
-  std::string error_;
-};
-
-// A file mapped read-only. Throws RecordingError when it cannot be opened or is empty.
-class MappedFile {
- public:
-  explicit MappedFile(const std::string& path);
-  ~MappedFile();
-  MappedFile(const MappedFile&) = delete;
-  MappedFile& operator=(const MappedFile&) = delete;
-  std::span<const std::byte> bytes() const { return {data_, size_}; }
-
- private:
-  const std::byte* data_ = nullptr;
-  std::size_t size_ = 0;
-};
+}  // namespace plr
 
 }  // namespace palpate

@@ -3,28 +3,29 @@
 #pragma once
 
 #include <functional>
-#include <memory>
 #include <string>
 
-#include "sim_host/record/recording.h"
+#include "sim_host/record/mapped_file.h"
+#include "sim_host/record/recording_reader.h"
 
 namespace palpate {
 
 class RecordingFollower {
  public:
-  // Throws RecordingError when the file cannot be read or its header is not complete.
+  // `path`: of the finished recording; it is found while it is still PATH.part. Throws RecordingError when the file
+  // cannot be read or its header is not complete.
   explicit RecordingFollower(const std::string& path);
 
   // Hands every tick written since the last call to `listen`; returns how many. Throws RecordingError on damage.
   std::uint64_t read(const std::function<void(const TickRecord&)>& listen);
   // The footer was read: nothing more will come.
   bool ended() const { return ended_; }
-  const RecordingHeader& header() const { return reader_->header(); }
+  const RecordingHeader& header() const { return reader_.header(); }
 
  private:
   std::string path_;
-  std::unique_ptr<MappedFile> file_;
-  std::unique_ptr<RecordingReader> reader_;
+  MappedFile file_;
+  RecordingReader reader_;
   bool ended_ = false;
 };
 

@@ -7,7 +7,7 @@
 
 #include "rt_core/model.h"
 #include "rt_core/state.h"
-#include "sim_host/record/recording.h"
+#include "sim_host/record/recording_reader.h"
 
 namespace palpate {
 

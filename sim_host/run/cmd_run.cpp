@@ -17,6 +17,7 @@ struct RunCommand {
   RunOptions run;
   bool no_record = false, no_black_box = false, live = false, virtual_time = false, real_time = false;
   int worst = 3;
+  CLI::Option* record_option = nullptr;
 };
 
 // One line about the real-time checklist, when something on it fails.
@@ -56,6 +57,7 @@ void settle_time(RunCommand& command) {
 
 int run(RunCommand& command) {
   RunOptions& options = command.run;
+  if (command.record_option->count() == 0) options.record = free_name(options.record);
   if (command.no_record) options.record.clear();
   if (!command.no_black_box) {
     options.black_box =
@@ -70,13 +72,15 @@ int run(RunCommand& command) {
   if (result.summary.ticks > 0) fmt::print("{}", summary_text(result.summary, result.lost, command.worst));
   if (result.summary.ticks == 0) {
     fmt::print("nothing ran, nothing was recorded\n");
-    if (!options.record.empty()) std::filesystem::remove(options.record);
   } else if (!options.record.empty() && result.recorder_error.empty()) {
     fmt::print("record  {} ({} ticks){}\n", options.record, result.summary.ticks,
                result.interrupted ? ", stopped by signal" : "");
   }
   print_black_box(result);
-  if (!result.recorder_error.empty()) fmt::print(stderr, "palpate: recording incomplete: {}\n", result.recorder_error);
+  if (!result.recorder_error.empty()) {
+    fmt::print(stderr, "palpate: recording incomplete: {}\n         `palpate recover {}{}` keeps what is there\n",
+               result.recorder_error, options.record, kPartSuffix);
+  }
   if (result.controller_exit != 0) {
     fmt::print(stderr, "palpate: the controller ended with exit code {}\n", result.controller_exit);
   }
@@ -106,7 +110,11 @@ void add_run_command(CLI::App& app, int& exit_code) {
                  "the simulated device in real time; default with --device loopback")
       ->excludes(virtual_time);
   command->add_flag("--pace", options->pace, "virtual time no faster than real time");
-  command->add_option("--record", options->record, "recording to write")->capture_default_str();
+  settings->record_option = command->add_option("--record", options->record,
+                                                "recording to write; refused when it exists; default: run.plr, or "
+                                                "run-2.plr, run-3.plr ... when that exists");
+  command->add_flag("--overwrite", options->overwrite,
+                    "replace the recording of that name once the new one is complete");
   command->add_flag("--no-record", settings->no_record, "write no recording");
   command->add_option("--path", options->path,
                       "motion of the simulated hand, CSV: time_s,x_mm,y_mm,z_mm[,rx_deg,ry_deg,rz_deg]; default: the "

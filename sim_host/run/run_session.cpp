@@ -15,7 +15,9 @@
 #include "hal/bus/device_address.h"
 #include "sim_host/bake/image_file.h"
 #include "sim_host/bake/scene_image.h"
+#include "sim_host/record/recorded_image.h"
 #include "sim_host/record/recorder.h"
+#include "sim_host/record/recording_writer.h"
 #include "sim_host/run/controller_link.h"
 #include "sim_host/run/device_process.h"
 #include "sim_host/run/host_time.h"
@@ -153,6 +155,13 @@ CandumpOptions candump_options(const DeviceAddress& address, bool virtual_time) 
   return options;
 }
 
+// What a recording of so long a run takes at most in practice: two regions a tick, an image that does not pack well.
+double recording_bytes(double duration_s, const ImageFile& image) {
+  const double ticks = duration_s / image.model().params.period_s;
+  return ticks * static_cast<double>(plr::kRecordPrefix + 2 * sizeof(RegionRecord)) +
+         static_cast<double>(sizeof(State) + image.bytes().size());
+}
+
 // Watches the controller until the time is over, a signal comes or it ends by itself.
 class Watch {
  public:
@@ -240,17 +249,19 @@ class Watch {
 
 // Records and watches a controller that has just started, then ends it.
 RunResult follow(ControllerLink& link, HostTime& time, const RunOptions& options, const JointScript& joints,
-                 const DeviceAddress& address, const Model& model) {
+                 const DeviceAddress& address, const ImageFile& image, std::optional<PartFile> record_file) {
   const bool virtual_time = runs_in_virtual_time(options);
   const TelemetryHeader& header = link.telemetry().header;
+  const std::vector<PackedPiece> packed = pack_image(image.bytes());
   std::unique_ptr<RecordingWriter> file;
-  if (!options.record.empty()) {
-    file = std::make_unique<RecordingWriter>(options.record, recording_header(header), header.initial_state);
+  if (record_file) {
+    file = std::make_unique<RecordingWriter>(std::move(*record_file), recording_header(header), header.initial_state,
+                                             packed);
   }
   std::unique_ptr<BlackBox> box;
   if (!options.black_box.empty()) {
-    box = std::make_unique<BlackBox>(options.black_box, recording_header(header), header.initial_state, &model,
-                                     candump_options(address, virtual_time));
+    box = std::make_unique<BlackBox>(options.black_box, recording_header(header), header.initial_state, &image.model(),
+                                     candump_options(address, virtual_time), packed);
   }
   const auto summary = std::make_unique<SharedSummary>();
   Recorder recorder(link.telemetry(), file.get(), [&](const TickRecord& record) {
@@ -294,9 +305,15 @@ bool runs_in_virtual_time(const RunOptions& options) {
 RunResult run_session(const RunOptions& options) {
   const StopSignals signals;
   const DeviceAddress address = device_address(options.device);
+  // First of all: a name that is taken is no reason to bake, let alone to move anything.
+  std::optional<PartFile> record;
+  if (!options.record.empty()) {
+    record.emplace(options.record, options.overwrite ? WhenItExists::kReplace : WhenItExists::kRefuse);
+  }
   SceneImage scene = prepare_scene(options.scene, options.image, options.record);
   const ImageFile image(scene.image_path);
   check_bus(address, image.model().params.period_s);
+  if (record) require_space(options.record, recording_bytes(options.duration_s, image));
   std::vector<TimedJoints> scripted;
   if (scene.scene && options.path.empty()) scripted = scripted_joints(scene.scene->path);
   const JointScript joints(options.joints, image.model(), scripted);
@@ -329,12 +346,12 @@ RunResult run_session(const RunOptions& options) {
   if (device) device->close_controller_end();
   if (!virtual_time) {
     RealHostTime time;
-    return follow(link, time, options, joints, address, image.model());
+    return follow(link, time, options, joints, address, image, std::move(record));
   }
   device_turns.reset();
   host_turns->close_end(0);
   VirtualHostTime time(host_turns->end(1), options.pace);
-  return follow(link, time, options, joints, address, image.model());
+  return follow(link, time, options, joints, address, image, std::move(record));
 }
 
 }  // namespace palpate

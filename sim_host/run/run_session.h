@@ -23,6 +23,7 @@ struct RunOptions {
   bool pace = false;  // virtual time no faster than real time
   double duration_s = 10;
   std::string record = "run.plr";  // empty: do not record
+  bool overwrite = false;          // an existing recording of that name is replaced once the new one is complete
   std::string path;                // CSV of the simulated hand's motion; empty: the scene's own
   JointOptions joints;             // told to an articulated tool through the mailbox
   std::string image;               // where to write the image of a .toml scene; empty: beside the recording

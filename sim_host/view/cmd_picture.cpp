@@ -7,12 +7,13 @@
 #include <stdexcept>
 
 #include "rt_core/tick.h"
-#include "sim_host/bake/image_file.h"
 #include "sim_host/bake/scene_model.h"
 #include "sim_host/cli.h"
 #include "sim_host/cli_checks.h"
 #include "sim_host/press/pose_csv.h"
-#include "sim_host/record/recording.h"
+#include "sim_host/record/mapped_file.h"
+#include "sim_host/record/recorded_image.h"
+#include "sim_host/record/recording_reader.h"
 #include "sim_host/view/picture.h"
 #include "sim_host/view/plot.h"
 
@@ -67,7 +68,7 @@ void state_at(const MappedFile& file, const Model& model, std::uint64_t wanted, 
         fmt::format("recorded with scene {:016x}, but this image is {:016x}; name the right --image",
                     recording.header().scene_hash, model.scene_hash));
   }
-  state = recording.initial_state();
+  state = recording.initial_state(model);
   const auto scratch = std::make_unique<Scratch>();
   TickRecord record;
   Output output;
@@ -84,7 +85,7 @@ void state_at(const MappedFile& file, const Model& model, std::uint64_t wanted, 
 
 int draw_recording(const DrawOptions& options, const MappedFile& file) {
   const RecordingReader recording(file.bytes());
-  const ImageFile image(options.image.empty() ? recording.header().image_path : options.image);
+  const RecordedScene scene(recording, options.image);
   const History history = read_history(file);
   const std::uint64_t wanted = options.tick >= 0 ? static_cast<std::uint64_t>(options.tick) : history.strongest_tick;
   if (wanted < history.first_tick || wanted > history.last_tick) {
@@ -92,15 +93,15 @@ int draw_recording(const DrawOptions& options, const MappedFile& file) {
         fmt::format("--tick {}: the recording holds ticks {} to {}", wanted, history.first_tick, history.last_tick));
   }
   const auto state = std::make_unique<State>();
-  state_at(file, image.model(), wanted, *state);
+  state_at(file, scene.model(), wanted, *state);
   PictureOptions picture;
   picture.width = options.width;
   picture.height = options.height;
-  picture.title = fmt::format("{}, tick {}", image.model().name, wanted);
-  save_picture(options.output, image.model(), *state, picture);
+  picture.title = fmt::format("{}, tick {}", scene.model().name, wanted);
+  save_picture(options.output, scene.model(), *state, picture);
   fmt::print("wrote   {} (tick {})\n", options.output, wanted);
   if (!options.plot.empty()) {
-    force_history_plot(history.samples, image.model().name).save(options.plot);
+    force_history_plot(history.samples, scene.model().name).save(options.plot);
     fmt::print("wrote   {}\n", options.plot);
   }
   return kExitOk;

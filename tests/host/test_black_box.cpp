@@ -12,6 +12,8 @@
 
 #include "rt_core/tick.h"
 #include "sim_host/record/black_box.h"
+#include "sim_host/record/mapped_file.h"
+#include "sim_host/record/recording_reader.h"
 #include "sim_host/record/replay.h"
 #include "tests/support/tiny_image.h"
 

@@ -7,7 +7,8 @@
 #include <stdexcept>
 
 #include "sim_host/bake/scene_model.h"
-#include "sim_host/record/recording.h"
+#include "sim_host/record/mapped_file.h"
+#include "sim_host/record/recording_reader.h"
 #include "sim_host/run/joint_script.h"
 #include "sim_host/run/process.h"
 #include "tests/support/ball_run.h"

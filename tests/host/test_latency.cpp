@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sim_host/latency/latency.h"
-#include "sim_host/record/recording.h"
+#include "sim_host/record/recording_writer.h"
 
 namespace palpate {
 namespace {

@@ -8,6 +8,7 @@
 
 #include "sim_host/latency/live_table.h"
 #include "sim_host/record/recording_follower.h"
+#include "sim_host/record/recording_writer.h"
 
 namespace palpate {
 namespace {
@@ -29,7 +30,11 @@ class Live : public testing::Test {
     reset(*state_);
     writer_ = std::make_unique<RecordingWriter>(path_, RecordingHeader{}, *state_);
   }
-  ~Live() override { std::filesystem::remove(path_); }
+  ~Live() override {
+    writer_.reset();
+    std::filesystem::remove(path_);
+    std::filesystem::remove(path_ + kPartSuffix);
+  }
   void write(std::uint64_t ticks) {
     for (std::uint64_t i = 0; i < ticks; ++i) writer_->add(tick_of(++written_));
     writer_->flush();
@@ -58,26 +63,29 @@ TEST_F(Live, EveryTickArrivesOnceAndInOrder) {
 
 TEST_F(Live, AHalfWrittenChunkIsWaitedFor) {
   write(50);
-  const auto size = std::filesystem::file_size(path_);
-  std::ifstream whole(path_, std::ios::binary);
+  const std::string part = path_ + kPartSuffix;
+  const auto size = std::filesystem::file_size(part);
+  std::ifstream whole(part, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(whole), {}};
-  const std::string copy = path_ + ".part";
-  const auto put = [&](std::uintmax_t number) {
-    std::ofstream(copy, std::ios::binary).write(bytes.data(), static_cast<long>(number));
+  const std::string copy = path_ + ".copy";
+  long put_bytes = 0;
+  const auto put = [&](long number) {
+    std::ofstream(copy, std::ios::binary | std::ios::app).write(bytes.data() + put_bytes, number - put_bytes);
+    put_bytes = number;
   };
-  put(size - 100);
+  put(static_cast<long>(size) - 100);
   RecordingFollower follower(copy);
   std::uint64_t seen = 0;
   const auto listen = [&](const TickRecord&) { seen += 1; };
   EXPECT_EQ(follower.read(listen), 0u);
-  put(size);
+  put(static_cast<long>(size));
   EXPECT_EQ(follower.read(listen), 50u);
   std::filesystem::remove(copy);
 }
 
 TEST_F(Live, DamageIsNotWaitedFor) {
   write(50);
-  std::fstream file(path_, std::ios::binary | std::ios::in | std::ios::out);
+  std::fstream file(path_ + kPartSuffix, std::ios::binary | std::ios::in | std::ios::out);
   file.seekp(-10, std::ios::end);
   file.put('\x55');
   file.close();

@@ -11,8 +11,10 @@
 #include <iterator>
 #include <memory>
 
+#include "sim_host/record/mapped_file.h"
 #include "sim_host/record/recorder.h"
-#include "sim_host/record/recording.h"
+#include "sim_host/record/recording_reader.h"
+#include "sim_host/record/recording_writer.h"
 
 namespace palpate {
 namespace {
@@ -94,7 +96,7 @@ TEST(Recording, RoundTrip) {
   EXPECT_STREQ(reader.header().build_id, "build A");
   EXPECT_STREQ(reader.header().image_path, "scene.pal");
   EXPECT_EQ(reader.header().scene_hash, 0xabcdefu);
-  EXPECT_EQ(reader.initial_state().next_region_id, 42u);
+  EXPECT_EQ(reader.stored_state().next_region_id, 42u);
   std::uint64_t records = 0;
   EXPECT_EQ(read_back(bytes, records), "");
   EXPECT_EQ(records, 5u);
@@ -172,8 +174,8 @@ TEST(Recording, FileOfAKilledHostHoldsEverythingFlushed) {
   writer.add(record_of(2));
   writer.flush();
   std::uint64_t records = 0;
-  const std::string error = read_back(read_all(path), records);
-  std::filesystem::remove(path);
+  const std::string error = read_back(read_all(writer.part_path()), records);
+  std::filesystem::remove(writer.part_path());
   EXPECT_NE(error.find("ends without its footer"), std::string::npos) << error;
   EXPECT_EQ(records, 2u);
 }
@@ -235,7 +237,8 @@ TEST(Recording, FullDiskIsReportedAndDoesNotStopTheRun) {
   recorder.stop();
   setrlimit(RLIMIT_FSIZE, &before);
   std::signal(SIGXFSZ, old_handler);
-  std::filesystem::remove(path);
+  EXPECT_FALSE(std::filesystem::exists(path)) << "only a complete recording gets its name";
+  std::filesystem::remove(path + kPartSuffix);
   EXPECT_NE(recorder.error().find("cannot write"), std::string::npos) << recorder.error();
   EXPECT_EQ(recorder.records(), 1000u);  // it kept listening
 }

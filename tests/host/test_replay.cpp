@@ -8,8 +8,12 @@
 #include <filesystem>
 #include <functional>
 
+#include "rt_core/state_check.h"
 #include "rt_core/tick.h"
 #include "sim_host/bake/image_file.h"
+#include "sim_host/record/mapped_file.h"
+#include "sim_host/record/recording_reader.h"
+#include "sim_host/record/recording_writer.h"
 #include "sim_host/record/replay.h"
 #include "tests/support/tiny_image.h"
 
@@ -32,6 +36,7 @@ struct RecordedRun {
     std::strcpy(header.image_path, "tiny.pal");
     RecordingWriter writer(path, header, initial);
     State state = initial;
+    if (check_state(model, state).field != nullptr) reset(state);  // a hostile file, made by nobody's tick
     Scratch scratch;
     for (std::uint64_t i = 0; i < kTicks; ++i) {
       Input input;
@@ -119,6 +124,60 @@ TEST(Replay, AlteredResultsNameStageAndField) {
               r.output.energy_J = 9;
             }),
             "force:output.energy_J");
+}
+
+// Every field of a record's outputs, from the tables themselves: 100 N of tampering with palm_w once replayed as
+// identical (2026-11-21).
+TEST(Replay, EveryFieldOfTheOutputIsCompared) {
+  TickRecord clean{};
+  clean.region_count = 1;
+  ReplayResult result;
+  EXPECT_FALSE(first_record_difference(clean, clean, result));
+  std::size_t bytes_of_output = 0, bytes_of_region = 0;
+  const auto expect_seen = [&](auto spoil, const std::string& name) {
+    TickRecord spoilt = clean;
+    spoil(spoilt);
+    ReplayResult found;
+    EXPECT_TRUE(first_record_difference(clean, spoilt, found)) << name;
+    EXPECT_EQ(found.field, name);
+  };
+  // The last bit of the field: of a vector's last component, say.
+  const auto flip = [](auto& field) { reinterpret_cast<unsigned char*>(&field)[sizeof(field) - 1] ^= 1; };
+#define PALPATE_FIELD(type, name, stage, meaning)                                      \
+  expect_seen([&](TickRecord& record) { flip(record.output.name); }, "output." #name); \
+  bytes_of_output += sizeof(type);
+  PALPATE_OUTPUT_FIELDS(PALPATE_FIELD)
+#undef PALPATE_FIELD
+#define PALPATE_FIELD(type, name, stage, meaning)                                            \
+  expect_seen([&](TickRecord& record) { flip(record.region[0].name); }, "region[0]." #name); \
+  bytes_of_region += sizeof(type);
+  PALPATE_REGION_RECORD_FIELDS(PALPATE_FIELD)
+#undef PALPATE_FIELD
+  EXPECT_EQ(bytes_of_output, sizeof(Output)) << "no byte outside the table";
+  EXPECT_EQ(bytes_of_region, sizeof(RegionRecord));
+  expect_seen([](TickRecord& record) { record.high_water.contacts += 1; }, "high_water.contacts");
+  expect_seen([](TickRecord& record) { record.high_water.regions += 1; }, "high_water.regions");
+  expect_seen([](TickRecord& record) { record.high_water.traversal_stack += 1; }, "high_water.traversal_stack");
+  expect_seen([](TickRecord& record) { record.high_water.gjk_support_calls += 1; }, "high_water.gjk_support_calls");
+  expect_seen([](TickRecord& record) { record.tick += 1; }, "tick");
+  expect_seen([](TickRecord& record) { record.region_count = 0; }, "region_count");
+}
+
+TEST(Replay, AnInitialStateThatTheSceneCannotHaveIsRefused) {
+  const auto error_of = [](auto spoil) {
+    RecordedRun run;
+    spoil(run.initial);
+    run.record();
+    try {
+      run.replay_it();
+    } catch (const RecordingError& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  EXPECT_NE(error_of([](State& s) { s.point[0].triangle = 1 << 30; }).find("point.triangle[0]"), std::string::npos);
+  EXPECT_NE(error_of([](State& s) { s.nodal.count = 3; }).find("nodal.count"), std::string::npos);
+  EXPECT_EQ(error_of([](State&) {}), "accepted");
 }
 
 TEST(Replay, GapEndsTheVerificationAndIsCounted) {

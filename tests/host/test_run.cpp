@@ -13,7 +13,10 @@
 #include <thread>
 
 #include "sim_host/bake/image_file.h"
+#include "sim_host/record/mapped_file.h"
 #include "sim_host/record/recorder.h"
+#include "sim_host/record/recording_reader.h"
+#include "sim_host/record/recording_writer.h"
 #include "sim_host/record/replay.h"
 #include "sim_host/run/controller_link.h"
 #include "sim_host/run/device_process.h"

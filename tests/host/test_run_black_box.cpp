@@ -8,6 +8,8 @@
 #include <string>
 
 #include "sim_host/bake/image_file.h"
+#include "sim_host/record/mapped_file.h"
+#include "sim_host/record/recording_reader.h"
 #include "sim_host/record/replay.h"
 #include "sim_host/run/run_session.h"
 #include "tests/support/ball_run.h"

@@ -9,7 +9,8 @@
 #include <string>
 
 #include "sim_host/bake/image_file.h"
-#include "sim_host/record/recording.h"
+#include "sim_host/record/mapped_file.h"
+#include "sim_host/record/recording_reader.h"
 #include "sim_host/status_text.h"
 
 namespace palpate {

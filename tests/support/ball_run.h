@@ -45,6 +45,7 @@ class BallRun : public testing::Test {
     options_.device = "loopback";
     options_.priority = 0;  // works without privileges
     options_.quiet = true;
+    options_.overwrite = true;  // some tests run twice
     options_.program_folder =
         (std::filesystem::read_symlink("/proc/self/exe").parent_path().parent_path() / "bin").string();
   }
