@@ -28,6 +28,8 @@ static_assert(std::endian::native == std::endian::little, "images and wire frame
 // Largest finite-looking magnitude accepted anywhere: beyond it a value is treated as garbage, not as physics.
 inline constexpr Real kHuge = 1e12;
 
+inline constexpr Real kPi = 3.14159265358979323846;
+
 // Comparisons are written so that NaN takes the `false` branch.
 inline bool is_finite(Real x) PALPATE_RT { return x >= -kHuge && x <= kHuge; }
 inline Real min_of(Real a, Real b) PALPATE_RT { return a < b ? a : b; }

@@ -50,20 +50,20 @@ struct Input {
 // compare them all: a field that is added here is compared.
 #define PALPATE_OUTPUT_FIELDS(X)                                                                                     \
   X(Wrench, device_w, "safety", "what the device must render, about the handle's origin; passed every safety check") \
-  X(Wrench, contact_w, "force", "of the object on the tool, about its origin, before coupling and limits")           \
+  X(Wrench, contact_w, "account", "of the object on the tool, about its origin, before coupling and limits")         \
   X(Pose, tool_w, "safety", "where the virtual tool is")                                                             \
-  X(double, penetration_m, "regions", "deepest sample depth")                                                        \
-  X(double, energy_J, "force", "stored elastic energy of contact and friction springs")                              \
-  X(double, residual_m, "force", "of the coupled region solve")                                                      \
-  X(double, strain, "force", "largest strain at the gauges of a finite-element body")                                \
+  X(double, penetration_m, "rows", "deepest sample depth")                                                           \
+  X(double, energy_J, "account", "stored elastic energy of contact and friction springs")                            \
+  X(double, residual_m, "solve", "of the coupled region solve")                                                      \
+  X(double, strain, "account", "largest strain at the gauges of a finite-element body")                              \
   X(double, ramp, "safety", "0..1 force ramp")                                                                       \
   X(std::uint32_t, status, "safety", "Status bits")                                                                  \
   X(std::uint32_t, fault, "safety", "latched Fault bits")                                                            \
   X(Mode, mode, "safety", "Mode")                                                                                    \
-  X(std::int32_t, regions, "regions", "in contact")                                                                  \
-  X(std::int32_t, contacts, "collide", "in contact")                                                                 \
+  X(std::int32_t, regions, "rows", "in contact")                                                                     \
+  X(std::int32_t, contacts, "rows", "in contact")                                                                    \
   X(std::int32_t, reserved, "safety", "0")                                                                           \
-  X(Wrench, palm_w, "force",                                                                                         \
+  X(Wrench, palm_w, "account",                                                                                       \
     "hand only: what the palm must exert on the body to balance fingers and weight, about "                          \
     "the tool's origin")
 

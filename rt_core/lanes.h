@@ -129,4 +129,13 @@ inline Vec3x4 load4(const Vec3* from) PALPATE_RT {
 // n rounded up to whole lanes.
 constexpr std::int32_t whole_lanes(std::int32_t n, std::int32_t lanes) { return (n + lanes - 1) / lanes * lanes; }
 
+// Of four points.
+inline Vec3x4 into(const RigidFrame& frame, const Vec3x4& point_w) PALPATE_RT {
+  const Vec3x4 d = point_w - splat4(frame.origin);
+  return {dot(splat4(frame.x), d), dot(splat4(frame.y), d), dot(splat4(frame.z), d)};
+}
+inline Vec3x4 direction_out(const RigidFrame& frame, const Vec3x4& d) PALPATE_RT {
+  return d.x * splat4(frame.x) + d.y * splat4(frame.y) + d.z * splat4(frame.z);
+}
+
 }  // namespace palpate

@@ -54,9 +54,10 @@ inline constexpr std::int32_t kFootWalk = 8;
 // Newton steps, with bisection as guard, of one tip's series law: 4 suffice for every law tested; 64 bisections alone
 // reach double precision. Overflow: Status::kNotConverged.
 inline constexpr std::int32_t kSeriesIterations = 64;
-// Damped Newton steps of several coupled tips, and halvings of one step. Overflow: Status::kNotConverged.
+// Newton steps of several coupled tips. Overflow: Status::kNotConverged.
 inline constexpr std::int32_t kTipNewtonIterations = 10;
-inline constexpr std::int32_t kTipStepHalvings = 4;
+// Halvings of one Newton step of coupled regions that makes things worse.
+inline constexpr std::int32_t kStepHalvings = 4;
 // A lost region keeps its identity this long and this close, so a bounce does not lose its friction history.
 inline constexpr std::int32_t kRegionMemoryTicks = 50;
 inline constexpr double kRegionMemoryDistance_m = 2e-3;

@@ -19,7 +19,7 @@ constexpr Real kLn2High = 0x1.62e42fefa3800p-1, kLn2Low = 0x1.ef35793c76730p-45,
 // pi/2 in three parts; the first two have 36 bits, so their products with up to 17-bit counts are exact.
 constexpr Real kHalfPi1 = 0x1.921fb54440000p+0, kHalfPi2 = 0x1.68c234c4c0000p-39, kHalfPi3 = 0x1.98a2e03707345p-77;
 constexpr Real kTwoOverPi = 0x1.45f306dc9c883p-1;
-constexpr Real kPi = 0x1.921fb54442d18p+1, kPiLow = 0x1.1a62633145c07p-53;
+constexpr Real kPiLow = 0x1.1a62633145c07p-53;
 
 std::uint64_t bits_of(Real x) PALPATE_RT { return std::bit_cast<std::uint64_t>(x); }
 

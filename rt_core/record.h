@@ -11,14 +11,14 @@
 namespace palpate {
 
 // X(type, name, stage, meaning). Compared by replay, as PALPATE_OUTPUT_FIELDS is.
-#define PALPATE_REGION_RECORD_FIELDS(X)                                             \
-  X(std::uint32_t, id, "regions", "unique since reset")                             \
-  X(std::int32_t, point_count, "regions", "tool points or nodes in contact")        \
-  X(Vec3, centre_w, "force", "equivalent contact point on the rest surface")        \
-  X(Vec3, force_w, "force", "on the tool, friction included")                       \
-  X(double, depth_equivalent_m, "force", "depth at which the law gives this force") \
-  X(std::int32_t, friction, "force", "FrictionMode")                                \
-  X(std::int32_t, reserved, "force", "0")
+#define PALPATE_REGION_RECORD_FIELDS(X)                                               \
+  X(std::uint32_t, id, "rows", "unique since reset")                                  \
+  X(std::int32_t, point_count, "rows", "tool points or nodes in contact")             \
+  X(Vec3, centre_w, "account", "equivalent contact point on the rest surface")        \
+  X(Vec3, force_w, "account", "on the tool, friction included")                       \
+  X(double, depth_equivalent_m, "account", "depth at which the law gives this force") \
+  X(std::int32_t, friction, "account", "FrictionMode")                                \
+  X(std::int32_t, reserved, "account", "0")
 
 struct RegionRecord {
 #define PALPATE_FIELD(type, name, stage, meaning) type name;

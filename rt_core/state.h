@@ -5,8 +5,10 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "rt_core/contact/nodes/contact_problem.h"
+#include "rt_core/contact/contact_stiffness.h"
+#include "rt_core/contact/nodes/node_problem.h"
 #include "rt_core/contact/nodes/region_motion.h"
+#include "rt_core/contact/problem.h"
 #include "rt_core/io.h"
 #include "rt_core/limits.h"
 #include "rt_core/model.h"
@@ -15,7 +17,7 @@ namespace palpate {
 
 enum class FrictionMode : std::int32_t { kFree = 0, kStick = 1, kSlip = 2 };
 
-// Per-tool-point contact memory. Written by collide.
+// Per-tool-point contact memory. Written by find_rows.
 struct PointState {
   Vec3 closest_w;    // on the rest surface
   Vec3 normal_w;     // outward unit normal there (pseudo-normal on edges and vertices)
@@ -23,7 +25,7 @@ struct PointState {
   double gap_bound_m =
       0;  // lower bound of gap_m when the query was skipped (the point cannot have reached the surface)
   std::int32_t triangle = -1;  // last closest triangle: warm start
-  std::int32_t region = -1;    // slot in State::region, or -1. Written by regions.
+  std::int32_t region = -1;    // slot in State::region, or -1
 };
 
 // A contact region: a cluster of tool points with an identity that lasts.
@@ -56,7 +58,7 @@ struct Region {
   Vec3 origin_w;  // origin of the deformation p_o on the rest surface
 };
 
-// What a surface node that pushes remembers (nodal back-end). Written by force.
+// What a surface node that pushes remembers (nodes). Written by account.
 struct NodalContact {
   std::int32_t vertex = -1;
   std::int32_t piece = -1;
@@ -97,7 +99,7 @@ struct ArticulationState {
   Pose motion_previous_tool[kMaxPieces];
   Vec3 axis_tool[kMaxJoints];      // of each joint where it is now
   Vec3 origin_tool_m[kMaxJoints];  // a point on it
-  // Normal contact load of each piece, of the last tick. Written by compute_force.
+  // Normal contact load of each piece, of the last tick. Written by contact.
   Vec3 piece_force_tool_N[kMaxPieces];
   Vec3 piece_torque_tool_Nm[kMaxPieces];  // about the tool's origin
 };
@@ -124,21 +126,7 @@ struct State {
   ArticulationState articulation;
 };
 
-// One tool point in contact. Written by collide, completed by regions and force.
-struct Contact {
-  std::int32_t point = 0;   // index of the tool point
-  std::int32_t region = 0;  // slot in State::region
-  std::int32_t piece = -1;  // of the tool; -1: the one its tool point belongs to
-  std::int32_t reserved = 0;
-  Vec3 position_w;  // where the force acts: the surface point
-  Vec3 normal_w;
-  double depth_m = 0;  // on the rest surface, > 0
-  double weight = 0;   // of the contact law
-  double area_m2 = 0;  // of the surface it stands for
-  double force_N = 0;  // normal force on the tool
-};
-
-// Where a tool point's centre stands over the smooth surface (rt_core/surface/smooth_foot.h). Written by collide when
+// Where a tool point's centre stands over the smooth surface (rt_core/surface/smooth_foot.h). Written by find_rows when
 // the model has corner normals; indexed by piece: such tools have one point per piece at most.
 struct SurfaceFoot {
   Vec3 centre_w;  // of the tool point
@@ -156,17 +144,14 @@ struct Scratch {
   Wrench contact_wrench_w;  // sum over regions, on the tool, about the tool's origin
   double energy_J = 0;
   double residual_m = 0;
-  double matrix[4][kMaxRegions * kMaxRegions];  // coupled solve
-  double vector[8][kMaxRegions];
-  std::int32_t driven = 0;  // the tool's pose is given, nobody holds it by a spring
-  double strain = 0;        // largest at the gauges (nodal)
-  Pose tool_corrected_w;    // where the tool balances (nodal)
+  RowsByRegion rows;           // points, tips: written by solve
+  RegionSystem system;         // of the region solver
+  ContactStiffness stiffness;  // of normal loads so far
+  std::int32_t driven = 0;     // the tool's pose is given, nobody holds it by a spring
+  double strain = 0;           // largest at the gauges (nodal)
+  Pose tool_corrected_w;       // where the tool balances
   ContactProblem nodal;
 };
-
-inline std::int32_t piece_of(const Model& model, const Contact& contact) PALPATE_RT {
-  return contact.piece >= 0 ? contact.piece : model.tool_point[static_cast<std::size_t>(contact.point)].piece;
-}
 
 static_assert(std::is_trivially_copyable_v<State> && std::is_trivially_copyable_v<Scratch>);
 static_assert(sizeof(State) < 256 * 1024, "State must stay below 256 KiB");

@@ -77,8 +77,24 @@ enum class Mode : std::int32_t {
   kFault = 5,    // latched, zero force
 };
 
-// Stages of one tick, in order; the index of StageTimes.
-enum class Stage : std::int32_t { kSense = 0, kCollide, kRegions, kForce, kSafety, kPublish };
-inline constexpr std::int32_t kStageCount = 6;
+// The stages of one tick, in order: X(name, function, shown, what it does). `contact` is stamped in three parts, one
+// for each step of a method (contact/contact.h).
+#define PALPATE_STAGES(X)                                                        \
+  X(kSense, sense, "sense", "device sample; where the tool goes")                \
+  X(kArticulate, articulate, "articulate", "joints of an articulated tool")      \
+  X(kFindRows, find_rows, "rows", "contact: what touches, and where")            \
+  X(kSolve, solve, "solve", "contact: the forces that balance")                  \
+  X(kAccount, account, "account", "contact: wrench, energy, tangent, memory")    \
+  X(kSafety, make_safe, "safety", "coupling wrench, finite check, limits, mode") \
+  X(kPublish, publish, "publish", "output")
+
+enum class Stage : std::int32_t {
+#define PALPATE_STAGE(name, function, shown, what) name,
+  PALPATE_STAGES(PALPATE_STAGE)
+#undef PALPATE_STAGE
+};
+#define PALPATE_STAGE(name, function, shown, what) +1
+inline constexpr std::int32_t kStageCount = 0 PALPATE_STAGES(PALPATE_STAGE);
+#undef PALPATE_STAGE
 
 }  // namespace palpate

@@ -1,13 +1,8 @@
 #include "rt_core/tick.h"
 
-#include "rt_core/tool/articulate.h"
-#include "rt_core/tool/carrier.h"
-
 namespace palpate {
 
-namespace {
-
-void publish(const State& state, const Scratch& scratch, Output& output) PALPATE_RT {
+void publish(State& state, const Scratch& scratch, Output& output) PALPATE_RT {
   output.contact_w = scratch.contact_wrench_w;
   output.palm_w = scratch.palm_w;
   output.tool_w = state.tool_w;
@@ -23,29 +18,20 @@ void publish(const State& state, const Scratch& scratch, Output& output) PALPATE
     output.regions += 1;
     output.penetration_m = max_of(output.penetration_m, region.depth_max_m);
   }
+  state.tick += 1;
 }
-
-}  // namespace
 
 void tick(const Model& model, State& state, Scratch& scratch, const Input& input, Output& output,
           const StageProbe& probe) PALPATE_RT {
-  const auto mark = [&probe](Stage stage) PALPATE_RT {
-    if (probe.mark != nullptr) probe.mark(probe.context, stage);
-  };
   sense(model, state, scratch, input);
-  if (is_articulated(model)) articulate(model, state, scratch, input);
-  mark(Stage::kSense);
-  collide(model, state, scratch);
-  mark(Stage::kCollide);
-  find_regions(model, state, scratch);
-  mark(Stage::kRegions);
-  compute_force(model, state, scratch);
-  mark(Stage::kForce);
+  probe.passed(Stage::kSense);
+  articulate(model, state, scratch, input);
+  probe.passed(Stage::kArticulate);
+  contact(model, state, scratch, probe);
   make_safe(model, state, scratch, input, output);
-  mark(Stage::kSafety);
+  probe.passed(Stage::kSafety);
   publish(state, scratch, output);
-  state.tick += 1;
-  mark(Stage::kPublish);
+  probe.passed(Stage::kPublish);
 }
 
 }  // namespace palpate

@@ -47,18 +47,11 @@ const char* mode_name(Mode mode) {
 
 const char* stage_name(Stage stage) {
   switch (stage) {
-    case Stage::kSense:
-      return "sense";
-    case Stage::kCollide:
-      return "collide";
-    case Stage::kRegions:
-      return "regions";
-    case Stage::kForce:
-      return "force";
-    case Stage::kSafety:
-      return "safety";
-    case Stage::kPublish:
-      return "publish";
+#define PALPATE_STAGE(name, function, shown, what) \
+  case Stage::name:                                \
+    return shown;
+    PALPATE_STAGES(PALPATE_STAGE)
+#undef PALPATE_STAGE
   }
   return "?";
 }

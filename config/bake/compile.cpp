@@ -19,8 +19,6 @@ namespace palpate {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 // Whether pieces press with whole tips instead of many tool points.
 bool has_tips(const SceneDesc& scene) {
   return scene.contact.law == ContactLaw::kTool || scene.contact.law == ContactLaw::kTable;

@@ -10,8 +10,6 @@ namespace palpate {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 void add_ring(std::vector<Vec3>& point, double radius, double z, std::int32_t count, double phase) {
   for (std::int32_t k = 0; k < count; ++k) {
     const double angle = 2 * kPi * (k + phase) / count;

@@ -9,7 +9,6 @@ namespace palpate {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 // Samples around an axis, half a step off: for rings of 3, 4, 5, 6, 8, 10 or 12 points symmetric and never equally far
 // from two of them, so that symmetric points get equal areas.
 constexpr std::int32_t kAround = 240;

@@ -10,7 +10,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kPi = 3.14159265358979323846;
 // Below these an arc is a straight beam: the circular formulas lose C22's digits with the cube of the angle.
 constexpr double kLeastAngle = 1e-3;
 constexpr double kLeastSagitta = 1e-3;  // of the chord

@@ -7,7 +7,6 @@ namespace palpate {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kClearanceSamples = 9;  // per fibre
 constexpr int kCurvatures = 16;       // of the family of circles through both points
 constexpr int kPlanes = 6;            // turned about the chord

@@ -12,7 +12,6 @@ namespace palpate {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 // Grid cells across the thinnest wall: the trilinear distance then errs by 1 % of the wall at its middle.
 constexpr double kCellsPerWall = 8;
 // How far a beam may leave the facetted surface, of the wall: facets lie inside the smooth surface they stand for.

@@ -8,8 +8,6 @@ namespace palpate {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
 // Cells around the axis and rows along the profile, 2 x around x rows triangles: as many as asked for, nearly square,

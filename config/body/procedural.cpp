@@ -10,8 +10,6 @@ namespace palpate {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
 // Points of the f-fold subdivision of the icosahedron's faces, shared along edges, on the unit sphere.

@@ -9,8 +9,6 @@ namespace palpate {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
 void add_quad(PlaneMesh& plane, std::array<std::int32_t, 4> q, bool rising) {

@@ -8,7 +8,6 @@ namespace palpate {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kDegree = kPi / 180;
 
 Quat turn_x(double angle) { return rotation_of({angle, 0, 0}); }

@@ -10,7 +10,6 @@ namespace palpate {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kPoints = 64;
 // Steps of the tabulated kernel per unit of distance / thickness: its cubics are then within 1e-12.
 constexpr double kStepsPerUnit = 200;

@@ -15,7 +15,6 @@ namespace palpate {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 // Latitudes of a round body from pole to pole: neighbouring curves of an ellipsoid of 4 : 3 differ by 0.4 % at most.
 constexpr int kLatitudes = 64;
 // Rings, and cells along half a side: places within a cell share a curve.

@@ -17,7 +17,6 @@ namespace palpate {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 // Least stiffness of the whole law as a share of the local one: below it the far field is nearly unstable.
 constexpr double kLeastStiffness = 0.05;
 

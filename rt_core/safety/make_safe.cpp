@@ -1,6 +1,5 @@
 // The last stage of every tick, in every mode, for every model:
-//   virtual coupling -> finite? -> magnitude -> mode gain -> rate.
-#include "rt_core/contact/nodes/nodal.h"
+//   wrench of the virtual coupling -> finite? -> magnitude -> mode gain -> rate.
 #include "rt_core/safety/mode_machine.h"
 #include "rt_core/stages.h"
 #include "rt_core/tool/virtual_coupling.h"
@@ -17,21 +16,6 @@ bool clamp_length(Vec3& v, double limit) PALPATE_RT {
   if (length <= limit) return false;
   v = (limit / length) * v;
   return true;
-}
-
-// Moves the tool to its corrected pose and returns the wrench the coupling exerts on the handle there.
-Wrench couple(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
-  if (is_nodal(model)) {  // the pose was found together with the pushes
-    state.safety.tool_corrected_w = scratch.tool_corrected_w;
-    return coupling_wrench(model, state.device_w, state.safety.tool_corrected_w);
-  }
-  const Wrench on_handle = coupling_wrench(model, state.device_w, state.tool_w);
-  const Wrench on_tool{-on_handle.force_N, -on_handle.torque_Nm};
-  Twist correction;
-  if (!correct(model, state, scratch.contact_wrench_w, on_tool, correction))
-    scratch.status |= Status::kCouplingSingular;
-  state.safety.tool_corrected_w = moved(state.tool_w, correction);
-  return coupling_wrench(model, state.device_w, state.safety.tool_corrected_w);
 }
 
 // After a non-finite number anywhere: drop contact memory and start again from the handle's pose.
@@ -76,8 +60,8 @@ void make_safe(const Model& model, State& state, Scratch& scratch, const Input& 
   SafetyState& safety = state.safety;
   const bool driven = input.drive == Drive::kTool;
   Wrench wrench = scratch.contact_wrench_w;
-  if (!driven && is_finite_wrench(wrench)) wrench = couple(model, state, scratch);
-  if (driven) safety.tool_corrected_w = state.tool_w;
+  if (driven || is_finite_wrench(wrench)) safety.tool_corrected_w = scratch.tool_corrected_w;
+  if (!driven && is_finite_wrench(wrench)) wrench = coupling_wrench(model, state.device_w, safety.tool_corrected_w);
 
   std::uint32_t faults = 0;
   if (!is_finite_wrench(wrench)) faults |= Fault::kNotFinite;

@@ -25,12 +25,6 @@ void start_at(State& state, const Pose& pose) PALPATE_RT {
 
 void sense(const Model& model, State& state, Scratch& scratch, const Input& input) PALPATE_RT {
   scratch.status = 0;
-  scratch.contact_count = 0;
-  scratch.contact_wrench_w = {};
-  scratch.palm_w = {};
-  scratch.energy_J = 0;
-  scratch.residual_m = 0;
-  scratch.strain = 0;
   const bool driven = input.drive == Drive::kTool;  // a press: poses may jump, nobody is holding a device
   scratch.driven = driven ? 1 : 0;
   const bool accepted = driven ? is_finite(input.pose_w) : is_plausible(model, state, input);

@@ -1,6 +1,8 @@
 #include "rt_core/tool/articulate.h"
 
 #include "rt_core/math.h"
+#include "rt_core/stages.h"
+#include "rt_core/tool/carrier.h"
 
 namespace palpate {
 
@@ -135,6 +137,7 @@ void place_links(const Model& model, const double* joint, Pose* link_tool, Vec3*
 }
 
 void articulate(const Model& model, State& state, Scratch& scratch, const Input& input) PALPATE_RT {
+  if (!is_articulated(model)) return;
   ArticulationState& a = state.articulation;
   const bool first = a.started == 0;
   if (first) {
@@ -149,6 +152,7 @@ void articulate(const Model& model, State& state, Scratch& scratch, const Input&
 }
 
 void load_pieces(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
+  if (!is_articulated(model)) return;
   ArticulationState& a = state.articulation;
   for (std::size_t p = 0; p < model.piece.size(); ++p) {  // bound: kMaxPieces
     a.piece_force_tool_N[p] = {};
@@ -159,10 +163,9 @@ void load_pieces(const Model& model, State& state, Scratch& scratch) PALPATE_RT 
   for (std::int32_t i = 0; i < contacts; ++i) {  // bound: kMaxContacts
     const Contact& contact = scratch.contact[i];
     if (!(contact.force_N > 0)) continue;
-    const std::int32_t piece = piece_of(model, contact);
     const Vec3 force = rotate(to_tool, contact.force_N * contact.normal_w);
-    a.piece_force_tool_N[piece] += force;
-    a.piece_torque_tool_Nm[piece] += cross(inverse_transform(state.tool_w, contact.position_w), force);
+    a.piece_force_tool_N[contact.piece] += force;
+    a.piece_torque_tool_Nm[contact.piece] += cross(inverse_transform(state.tool_w, contact.position_w), force);
   }
   if (static_cast<Articulation>(model.params.articulation) == Articulation::kHand) balance_palm(model, state, scratch);
 }

@@ -1,23 +1,15 @@
-// Articulated tools: joints that move the tool's pieces. Rigid tools never come here.
+// Articulated tools: joints that move the tool's pieces. The stage `articulate` is declared in stages.h.
 #pragma once
 
-#include "rt_core/io.h"
 #include "rt_core/model.h"
 #include "rt_core/state.h"
 
 namespace palpate {
 
-// Part of the stage `sense`, for articulated tools only. Moves the joints towards the command of `input`, at their
-// bounded speeds, within their limits, and never so that a part loaded above the stop force would be pressed harder;
-// then places every piece. At the first tick the joints stand at their open positions. Reads the loads of the last
-// tick. Writes state.articulation (but the loads), scratch.status: kJointLimited, kJointStopped. Bound: kMaxPieces *
-// kMaxJoints.
-void articulate(const Model& model, State& state, Scratch& scratch, const Input& input) PALPATE_RT;
-
 // Load of each piece from the contacts of this tick, for the next tick's stops; and the palm's share of a hand's
 // balance: what it must exert on the body against the fingers' forces and the body's weight (scratch.palm_w;
-// Status::kGraspUnstable when it would have to pull). Part of the stage `force`, for articulated tools only. Bound:
-// kMaxContacts.
+// Status::kGraspUnstable when it would have to pull). Part of the stage contact; a rigid tool has no joints to stop:
+// returns at once. Bound: kMaxContacts.
 void load_pieces(const Model& model, State& state, Scratch& scratch) PALPATE_RT;
 
 // Frame of every link in the tool frame for the joint positions `joint`; writes sizes.n_joint poses, and the joints'

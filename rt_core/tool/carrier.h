@@ -10,13 +10,25 @@ namespace palpate {
 inline bool is_articulated(const Model& model) PALPATE_RT {
   return model.params.articulation != static_cast<std::int32_t>(Articulation::kRigid);
 }
-// Tool-frame coordinates with all joints at zero (ToolPiece, ToolPoint) to the world, now and at the last tick.
+// Tool-frame coordinates with all joints at zero (ToolPiece, ToolPoint) to the world: with the tool at `tool_w` and the
+// joints of this tick or of the last; or as the tool stands now and stood at the last tick.
+inline Pose carrier_at(const Model& model, const State& state, const Pose& tool_w, std::int32_t piece) PALPATE_RT {
+  return is_articulated(model) ? tool_w * state.articulation.motion_tool[piece] : tool_w;
+}
+inline Pose carrier_previous_at(const Model& model, const State& state, const Pose& tool_w,
+                                std::int32_t piece) PALPATE_RT {
+  return is_articulated(model) ? tool_w * state.articulation.motion_previous_tool[piece] : tool_w;
+}
 inline Pose carrier_w(const Model& model, const State& state, std::int32_t piece) PALPATE_RT {
-  return is_articulated(model) ? state.tool_w * state.articulation.motion_tool[piece] : state.tool_w;
+  return carrier_at(model, state, state.tool_w, piece);
 }
 inline Pose carrier_previous_w(const Model& model, const State& state, std::int32_t piece) PALPATE_RT {
-  if (!is_articulated(model)) return state.tool_previous_w;
-  return state.tool_previous_w * state.articulation.motion_previous_tool[piece];
+  return carrier_previous_at(model, state, state.tool_previous_w, piece);
+}
+// The frame in which places of contact keep still against one another: the tool's, or for a tool whose parts move
+// against one another the body's.
+inline Pose lean_frame_w(const Model& model, const State& state) PALPATE_RT {
+  return is_articulated(model) ? Pose{} : state.tool_w;
 }
 
 }  // namespace palpate

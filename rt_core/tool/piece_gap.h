@@ -148,23 +148,4 @@ template <class Vector>
 
 inline PieceGap piece_gap(const ToolPiece& piece, Vec3 p) PALPATE_RT { return piece_gap<Vec3>(piece, p); }
 
-// Places a piece in the world: columns of its rotation, and its origin.
-struct PieceFrame {
-  Vec3 x, y, z, origin;
-  explicit PieceFrame(const Pose& pose) PALPATE_RT : x(rotate(pose.orientation, {1, 0, 0})),
-                                                     y(rotate(pose.orientation, {0, 1, 0})),
-                                                     z(rotate(pose.orientation, {0, 0, 1})),
-                                                     origin(pose.position_m) {}
-  Vec3 into(Vec3 point_w) const PALPATE_RT {
-    const Vec3 d = point_w - origin;
-    return {dot(x, d), dot(y, d), dot(z, d)};
-  }
-  Vec3 direction_out(Vec3 d) const PALPATE_RT { return d.x * x + d.y * y + d.z * z; }
-  Vec3x4 into(const Vec3x4& point_w) const PALPATE_RT {
-    const Vec3x4 d = point_w - splat4(origin);
-    return {dot(splat4(x), d), dot(splat4(y), d), dot(splat4(z), d)};
-  }
-  Vec3x4 direction_out(const Vec3x4& d) const PALPATE_RT { return d.x * splat4(x) + d.y * splat4(y) + d.z * splat4(z); }
-};
-
 }  // namespace palpate

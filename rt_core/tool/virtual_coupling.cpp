@@ -80,6 +80,17 @@ bool correct(const Model& model, const State& state, const Wrench& contact_w, co
                 correction);
 }
 
+void balance_tool(const Model& model, const State& state, Scratch& scratch) PALPATE_RT {
+  scratch.tool_corrected_w = scratch.driven ? state.tool_w : state.safety.tool_corrected_w;
+  const Wrench& contact_w = scratch.contact_wrench_w;
+  if (scratch.driven || !is_finite(contact_w.force_N) || !is_finite(contact_w.torque_Nm)) return;
+  const Wrench on_handle = coupling_wrench(model, state.device_w, state.tool_w);
+  const Wrench on_tool{-on_handle.force_N, -on_handle.torque_Nm};
+  Twist correction;
+  if (!correct(model, state, contact_w, on_tool, correction)) scratch.status |= Status::kCouplingSingular;
+  scratch.tool_corrected_w = moved(state.tool_w, correction);
+}
+
 Wrench coupling_wrench(const Model& model, const Pose& device_w, const Pose& tool_w) PALPATE_RT {
   const Twist offset = twist_between(device_w, tool_w);
   return {model.params.coupling_N_per_m * offset.translation_m, model.params.coupling_Nm_per_rad * offset.rotation_rad};

@@ -33,6 +33,10 @@ bool follow(const Model& model, const State& state, const Twist& handle, Twist& 
 bool correct(const Model& model, const State& state, const Wrench& contact_w, const Wrench& coupling_on_tool_w,
              Twist& correction) PALPATE_RT;
 
+// Where the tool goes under this tick's contact wrench: scratch.tool_corrected_w. As it is when something drives it;
+// where it was when the wrench is no number. Status: kCouplingSingular.
+void balance_tool(const Model& model, const State& state, Scratch& scratch) PALPATE_RT;
+
 // Wrench of the coupling spring on the handle, about the handle's origin: pulls the handle towards the tool.
 Wrench coupling_wrench(const Model& model, const Pose& device_w, const Pose& tool_w) PALPATE_RT;
 

@@ -8,7 +8,7 @@
 #include <chrono>
 #include <memory>
 
-#include "rt_core/contact/nodes/nodal.h"
+#include "rt_core/contact/contact.h"
 #include "rt_core/tick.h"
 
 namespace palpate {
@@ -75,7 +75,7 @@ void press(const Model& model, std::span<const TimedPose> poses, const PressDriv
   Output output;
   // A nodal body's tick finds pushes, friction and the tool's place in one problem. One Newton step per tick outside of
   // it would throw a slipping tool, which has no mass, from one sense of sliding to the other for ever.
-  const bool held_in_tick = drive.hand_N_per_m > 0 && is_nodal(model);
+  const bool held_in_tick = drive.hand_N_per_m > 0 && method_of(model) == Method::kNodes;
   const Model held = held_in_tick ? held_by_hand(model, drive.hand_N_per_m) : model;
   for (const TimedPose& pose : poses) {
     row = {};

@@ -47,7 +47,9 @@ class FirstDifference {
 };
 
 // In this order, because a difference in an early stage explains those after it.
-constexpr std::string_view kStageOrder[] = {"sense", "collide", "regions", "force", "safety", "state"};
+#define PALPATE_STAGE(name, function, shown, what) shown,
+constexpr std::string_view kStageOrder[] = {PALPATE_STAGES(PALPATE_STAGE) "state"};
+#undef PALPATE_STAGE
 
 constexpr bool is_ordered(std::string_view stage) {
   for (const std::string_view known : kStageOrder)
@@ -62,7 +64,7 @@ PALPATE_REGION_RECORD_FIELDS(PALPATE_FIELD)
 // What one stage left in two records of one tick.
 void check_stage(std::string_view stage, const TickRecord& a, const TickRecord& b, FirstDifference& difference) {
   if (stage == "sense") difference.check("sense", "tick", a.tick, b.tick);
-  if (stage == "regions") difference.check("regions", "region_count", a.region_count, b.region_count);
+  if (stage == "rows") difference.check("rows", "region_count", a.region_count, b.region_count);
 #define PALPATE_FIELD(type, name, of, meaning) \
   if (stage == of) difference.check(of, "output." #name, a.output.name, b.output.name);
   PALPATE_OUTPUT_FIELDS(PALPATE_FIELD)
@@ -77,10 +79,10 @@ void check_stage(std::string_view stage, const TickRecord& a, const TickRecord& 
 
 void check_high_water(const HighWater& a, const HighWater& b, FirstDifference& difference) {
   static_assert(sizeof(HighWater) == 4 * sizeof(std::int32_t), "compare the new field here");
-  difference.check("collide", "high_water.contacts", a.contacts, b.contacts);
-  difference.check("collide", "high_water.regions", a.regions, b.regions);
-  difference.check("collide", "high_water.traversal_stack", a.traversal_stack, b.traversal_stack);
-  difference.check("collide", "high_water.gjk_support_calls", a.gjk_support_calls, b.gjk_support_calls);
+  difference.check("rows", "high_water.contacts", a.contacts, b.contacts);
+  difference.check("rows", "high_water.regions", a.regions, b.regions);
+  difference.check("rows", "high_water.traversal_stack", a.traversal_stack, b.traversal_stack);
+  difference.check("rows", "high_water.gjk_support_calls", a.gjk_support_calls, b.gjk_support_calls);
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <memory>
 
-#include "rt_core/contact/regions/contact_order.h"
+#include "rt_core/contact/regions.h"
 
 namespace palpate {
 namespace {

@@ -5,7 +5,7 @@
 #include <map>
 #include <utility>
 
-#include "rt_core/contact/nodes/nodal.h"
+#include "rt_core/contact/contact.h"
 #include "sim_host/view/imprint.h"
 #include "sim_host/view/surface_shape.h"
 
@@ -77,7 +77,7 @@ std::vector<Vec3> nodal_displacement_m(const Model& model, const State& state) {
 }
 
 void displace(const Model& model, const State& state, DeformedSurface& surface) {
-  if (is_nodal(model)) {
+  if (method_of(model) == Method::kNodes) {
     surface.displacement_m = nodal_displacement_m(model, state);
     return;
   }
@@ -210,8 +210,8 @@ DeformedSurface deformed_surface(const Model& model, const State& state) {
 DeformedSurface refined_surface(const Model& model, const State& state, std::size_t most_triangles) {
   DeformedSurface surface = rest_surface(model);
   std::vector<TriangleNormals> corner = smooth_normals(surface.rest_m, surface.triangle);
-  const bool everywhere =
-      !is_nodal(model) && static_cast<ShapeLaw>(model.params.shape_law) != ShapeLaw::kDisplacementAngle;
+  const bool everywhere = method_of(model) != Method::kNodes &&
+                          static_cast<ShapeLaw>(model.params.shape_law) != ShapeLaw::kDisplacementAngle;
   while (everywhere && 4 * surface.triangle.size() <= most_triangles) refine(surface, corner);
   displace(model, state, surface);
   finish(surface);

@@ -10,8 +10,6 @@ namespace palpate {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 // One closed cross-section of a tube: `count` points, counter-clockwise seen against z.
 using Ring = std::vector<Vec3>;
 

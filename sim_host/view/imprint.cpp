@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "config/hand/hand_model.h"
-#include "rt_core/contact/regions/contact_order.h"
+#include "rt_core/contact/regions.h"
 #include "rt_core/tool/carrier.h"
 
 namespace palpate {

@@ -5,7 +5,6 @@
 namespace palpate {
 namespace {
 
-constexpr Real kPi = 3.14159265358979323846;
 constexpr Real kLeastContactRadius = 0.05;  // of the reach
 constexpr Real kMostContactRadius = 0.9;    // of the reach
 

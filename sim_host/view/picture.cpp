@@ -19,7 +19,6 @@ namespace {
 
 enum Material : std::int32_t { kBody = 0, kAnchorFree, kAnchorFixed, kTool, kArrow };
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr Colour kInk = colour(0x1f2933), kGrey = colour(0x5b6672);
 constexpr Colour kSkinColour = colour(0xd8a488);
 constexpr Colour kToolColour = colour(0x6d8fae), kArrowColour = colour(0x1b74c4);

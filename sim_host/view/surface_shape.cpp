@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "rt_core/contact/regions/contact_order.h"
+#include "rt_core/contact/regions.h"
 #include "rt_core/tool/carrier.h"
 #include "sim_host/view/anchors.h"
 #include "sim_host/view/displacement_angle.h"

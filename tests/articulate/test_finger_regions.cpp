@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "rt_core/contact/regions/clusters.h"
+#include "rt_core/contact/regions.h"
 
 namespace palpate {
 namespace {
@@ -23,17 +23,19 @@ struct TwoParts {
     model.params.cluster_distance_m = kNear_m;
     piece[0].group = group_a;
     piece[1].group = group_b;
-    point[0].piece = 0;
-    point[1].piece = 1;
     model.piece = piece;
     model.tool_point = point;
     scratch->contact_count = 2;
-    for (std::int32_t i = 0; i < 2; ++i) scratch->contact[i].point = i;
+    for (std::int32_t i = 0; i < 2; ++i) place(i, i);
+  }
+  void place(std::int32_t i, std::int32_t on_piece) {
+    scratch->contact[i].row = scratch->contact[i].point = i;
+    scratch->contact[i].piece = point[i].piece = on_piece;
   }
   int clusters_at(double gap_m) {
     scratch->contact[1].position_w = {gap_m, 0, 0};
     Clusters clusters;
-    find_clusters(model, *state, *scratch, clusters);
+    find_clusters(model, *scratch, clusters);
     return clusters.count;
   }
 };
@@ -46,7 +48,7 @@ TEST(FingerRegions, NeighboursOnOneFingerJoinBelowTheDistance) {
 
 TEST(FingerRegions, JoinedOnesPartOnlyBeyondOneAndAHalfTimesIt) {
   TwoParts parts(1, 1);
-  parts.state->point[0].region = parts.state->point[1].region = 3;
+  parts.scratch->contact[0].previous = parts.scratch->contact[1].previous = 3;
   EXPECT_EQ(parts.clusters_at(1.49 * kNear_m), 1);
   EXPECT_EQ(parts.clusters_at(1.51 * kNear_m), 2);
 }
@@ -54,13 +56,13 @@ TEST(FingerRegions, JoinedOnesPartOnlyBeyondOneAndAHalfTimesIt) {
 TEST(FingerRegions, DifferentFingersNeverJoin) {
   TwoParts parts(1, 2);
   EXPECT_EQ(parts.clusters_at(1e-6), 2);
-  parts.state->point[0].region = parts.state->point[1].region = 3;
+  parts.scratch->contact[0].previous = parts.scratch->contact[1].previous = 3;
   EXPECT_EQ(parts.clusters_at(1e-6), 2);
 }
 
 TEST(FingerRegions, OnePartIsOneRegionHoweverFarItsPointsAreApart) {
   TwoParts parts(1, 1);
-  parts.point[1].piece = 0;
+  parts.place(1, 0);
   EXPECT_EQ(parts.clusters_at(10 * kNear_m), 1);
 }
 

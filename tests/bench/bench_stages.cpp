@@ -21,7 +21,9 @@ namespace palpate::test {
 namespace {
 
 constexpr int kRuns = 5;  // of the whole script: 40,000 ticks
-constexpr const char* kStageNames[kStageCount] = {"sense", "collide", "regions", "force", "safety", "publish"};
+#define PALPATE_STAGE(name, function, shown, what) shown,
+constexpr const char* kStageNames[kStageCount] = {PALPATE_STAGES(PALPATE_STAGE)};
+#undef PALPATE_STAGE
 
 double now_ns() {
   timespec t{};

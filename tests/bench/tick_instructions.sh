@@ -17,6 +17,9 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 command -v valgrind >/dev/null || { echo "valgrind is missing: apt-get install valgrind"; exit 1; }
 
+# The functions of the stages, in order, from their one list.
+stages=$(sed -nE 's/^ *X\(k[A-Za-z]+, ([a-z_]+), "[a-z]+", .*/\1/p' "$here/../../rt_core/status.h")
+
 # Scene and the most instructions its worst tick may take.
 budgets='ellipsoid_mallet 30000
 heart_compass 60000
@@ -40,7 +43,7 @@ mesh_ratio_percent=130
 count() {
   valgrind --tool=callgrind --quiet --collect-atstart=no --combine-dumps=yes --compress-strings=no --compress-pos=no \
     --callgrind-out-file="$work/counts" "$program" "$@" >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
-  awk -f "$here/worst_tick.awk" "$work/counts" >"$work/table" || { cat "$work/table"; exit 1; }
+  awk -v functions="$stages" -f "$here/worst_tick.awk" "$work/counts" >"$work/table" || { cat "$work/table"; exit 1; }
   grep -v '^summary ' "$work/table"
   read -r _ worst mean ticks in_contact < <(grep '^summary ' "$work/table")
   [ "$in_contact" -gt $((ticks / least_contact)) ] || { echo "only $in_contact of $ticks ticks touch the body: this proves nothing"; exit 1; }

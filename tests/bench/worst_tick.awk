@@ -1,6 +1,7 @@
 # Reads a combined callgrind file with one part per tick (see tick_instructions.cpp) and prints, per stage, the
 # instructions in the worst tick, the most in any tick, and the mean over ticks in contact; then one line
-# "summary WORST MEAN_IN_CONTACT TICKS TICKS_IN_CONTACT" for the script.
+# "summary WORST MEAN_IN_CONTACT TICKS TICKS_IN_CONTACT" for the script. `functions`, given with -v: those of the stages,
+# in order.
 function finish(    stage) {
   if (!open_part) return
   ticks++
@@ -15,26 +16,29 @@ function finish(    stage) {
     if (contacts > 0) sum[stage] += cost[stage]
   }
 }
-function name_of(text) { sub(/\(.*/, "", text); sub(/^.*::/, "", text); return text }
+function name_of(text) {
+  gsub(/\(anonymous namespace\)::/, "", text); sub(/\(.*/, "", text); sub(/^.*::/, "", text); return text
+}
 /^part: / { finish(); open_part = 0; total = 0; self = 0; in_tick = 0; split("", cost) }
 /^desc: Trigger: Client Request: tick / {
   open_part = 1; label = $0; sub(/^.*Request: /, "", label); contacts = $8
 }
-/^fn=/ { in_tick = ($0 ~ /^fn=palpate::tick\(/); callee = "" }
+# The stage contact is counted in its parts.
+/^fn=/ { in_tick = ($0 ~ /^fn=palpate::(tick|contact)\(/); callee = "" }
 /^cfn=/ { callee = substr($0, 5); next }
 /^calls=/ { want = 1; next }
 /^[0-9+*-]/ {
   if (want) {
     want = 0
     if (callee ~ /^palpate::tick\(/) total += $2
-    if (in_tick) cost[name_of(callee)] += $2
-  } else if (in_tick) cost["tick itself, publish"] += $2
+    if (in_tick && callee !~ /^palpate::contact\(/) cost[name_of(callee)] += $2
+  } else if (in_tick) cost["tick and contact themselves"] += $2
 }
 END {
   finish()
   if (ticks == 0 || worst == 0) { print "no tick was counted"; exit 1 }
   # In the tick's order; a callee that is no stage (a compiler's memset, say) comes last.
-  stages = split("sense collide find_regions compute_force make_safe", order, " ")
+  stages = split(functions, order, " ")
   for (i = 1; i <= stages; i++) delete others[order[i]]
   for (s in others) order[++stages] = s
   printf "%-22s %12s %12s %16s\n", "stage (instructions)", "worst tick", "most, any", "mean, in contact"

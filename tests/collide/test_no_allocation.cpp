@@ -5,7 +5,8 @@
 
 #include <memory>
 
-#include "rt_core/stages.h"
+#include "rt_core/contact/regions.h"
+#include "rt_core/contact/touch.h"
 #include "rt_core/surface/overlap.h"
 #include "sim_host/run/heap_count.h"
 #include "tests/collide/pieces.h"
@@ -45,7 +46,7 @@ TEST(NoAllocation, StagesWithOverflowAndLoss) {
     state->tool_w = {{0, 0, 0.04 - 5e-4 * (t % 100)}, {}};
     scratch->status = 0;
     collide(body.model, *state, *scratch);
-    find_regions(body.model, *state, *scratch);
+    group_points(body.model, *state, *scratch, still_touching);
     seen |= scratch->status;
     state->tick += 1;
   }

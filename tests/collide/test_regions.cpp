@@ -6,7 +6,8 @@
 #include <memory>
 #include <set>
 
-#include "rt_core/stages.h"
+#include "rt_core/contact/regions.h"
+#include "rt_core/contact/touch.h"
 #include "tests/collide/pieces.h"
 
 namespace palpate::test {
@@ -36,7 +37,8 @@ struct Rig {
     for (std::size_t i = 0; i < touches.size(); ++i) {
       Contact& c = scratch->contact[i];
       c = Contact{};
-      c.point = touches[i].point;
+      c.row = c.point = touches[i].point;
+      c.previous = state->point[touches[i].point].region;
       c.position_w = touches[i].at;
       c.depth_m = touches[i].depth_m;
       c.area_m2 = body.model.tool_point[static_cast<std::size_t>(touches[i].point)].area_m2;
@@ -44,7 +46,7 @@ struct Rig {
       p.closest_w = touches[i].at;
       p.triangle = 0;
     }
-    find_regions(body.model, *state, *scratch);
+    group_points(body.model, *state, *scratch, still_touching);
     for (int s = 0; s < kMaxRegions; ++s) {
       Vec3 sum{};
       int n = 0;

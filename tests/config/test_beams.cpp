@@ -17,8 +17,6 @@
 namespace palpate {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 void expect_close(Vec3 a, Vec3 b, double tolerance) { EXPECT_NEAR(norm(a - b), 0, tolerance); }
 
 // --- Meshes

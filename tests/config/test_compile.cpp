@@ -21,8 +21,6 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-constexpr double kPi = 3.14159265358979323846;
-
 struct Free {
   void operator()(void* p) const { std::free(p); }
 };

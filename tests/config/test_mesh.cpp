@@ -19,8 +19,6 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-constexpr double kPi = 3.14159265358979323846;
-
 std::string check(const SurfaceMesh& mesh) {
   try {
     check_mesh(mesh, "body");

@@ -9,8 +9,6 @@
 namespace palpate {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 PieceDesc piece(PieceShape shape, std::int32_t points) {
   PieceDesc p;
   p.shape = shape;

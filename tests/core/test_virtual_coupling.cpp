@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "rt_core/contact/contact.h"
 #include "rt_core/tick.h"
 #include "rt_core/tool/virtual_coupling.h"
 #include "tests/support/tiny_image.h"
@@ -36,7 +37,9 @@ struct Rig {
   template <class Contact>
   void step(const Contact& contact) {
     sense(model, state, scratch, input);
+    clear_contact(state, scratch);
     contact(state, scratch);
+    balance_tool(model, state, scratch);
     make_safe(model, state, scratch, input, output);
     input.commands = 0;
   }

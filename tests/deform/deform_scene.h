@@ -11,8 +11,6 @@
 
 namespace palpate::deform_test {
 
-inline constexpr double kPi = 3.14159265358979323846;
-
 using Row = std::vector<long double>;
 using Dense = std::vector<Row>;
 

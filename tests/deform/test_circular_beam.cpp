@@ -10,7 +10,6 @@
 namespace palpate {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 const BeamMaterial kRubber{3e6, 0.47};
 // The worked example: a = 30 mm, b = 40 mm, t = 10 mm.
 const ArcSection kExample{30e-3, 40e-3, 10e-3};

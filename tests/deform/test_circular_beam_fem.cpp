@@ -16,7 +16,6 @@
 namespace palpate {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 // So thin that it is in plane stress: at 1 mm the way the ends' forces are spread through the thickness still makes the
 // shortest arc 4 % softer, at 0.2 mm a tenth of that.
 constexpr double kThin_m = 0.2e-3;

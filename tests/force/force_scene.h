@@ -1,10 +1,10 @@
-// A synthetic model, state and scratch for the force stage: contacts are placed by hand, no mesh is needed.
+// A synthetic model, state and scratch for the contact stage: contacts are placed by hand, no mesh is needed.
 #pragma once
 
 #include <cstring>
 #include <memory>
 
-#include "rt_core/stages.h"
+#include "rt_core/contact/contact.h"
 
 namespace palpate {
 
@@ -44,7 +44,7 @@ struct ForceScene {
   void set_coupling(CouplingLaw law) { model.params.coupling_law = static_cast<std::int32_t>(law); }
   void set_friction(FrictionLaw law) { model.params.friction_law = static_cast<std::int32_t>(law); }
 
-  // Opens region `slot` as find_regions would.
+  // Opens region `slot` as find_rows would.
   Region& open_region(std::int32_t slot, std::uint32_t id, std::uint32_t born_tick = 0) {
     Region& region = state->region[slot];
     region = Region{};
@@ -55,7 +55,7 @@ struct ForceScene {
   Contact& add_contact(std::int32_t slot, Vec3 position, Vec3 normal, double depth, double weight = 1.0) {
     Contact& contact = scratch->contact[scratch->contact_count];
     contact = Contact{};
-    contact.point = scratch->contact_count++;
+    contact.row = contact.point = scratch->contact_count++;
     contact.region = slot;
     contact.position_w = position;
     contact.normal_w = normal;
@@ -63,7 +63,12 @@ struct ForceScene {
     contact.weight = weight;
     return contact;
   }
-  void run() { compute_force(model, *state, *scratch); }
+  void run() {
+    scratch->driven = 0;
+    clear_contact(*state, *scratch);
+    points_method.solve(model, *state, *scratch);
+    points_method.account(model, *state, *scratch);
+  }
   // Moves the tool; the next run sees the step from the present pose.
   void move_tool(Pose pose) {
     state->tool_previous_w = state->tool_w;

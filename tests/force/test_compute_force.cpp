@@ -12,8 +12,7 @@
 #include "config/bake/rbf_system.h"
 #include "force_scene.h"
 #include "rt_core/contact/cubic_law.h"
-#include "rt_core/contact/far_field.h"
-#include "rt_core/contact/points/coupled_regions.h"
+#include "rt_core/contact/points/point_laws.h"
 #include "rt_core/skeleton/transfer.h"
 
 namespace palpate {
@@ -354,7 +353,7 @@ TEST(ComputeForce, StatusBits) {
   s.model.params.youngs_modulus_Pa = 1e3;
   s.run();
   EXPECT_NE(s.scratch->status & Status::kNotConverged, 0u);
-  EXPECT_GT(s.scratch->residual_m, kCoupledTolerance_m);
+  EXPECT_GT(s.scratch->residual_m, PointLaws::kTolerance_m);
   EXPECT_TRUE(is_finite(s.force()));
 }
 

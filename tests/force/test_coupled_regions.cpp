@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "rt_core/cholesky.h"
-#include "rt_core/contact/far_field.h"
-#include "rt_core/contact/points/coupled_regions.h"
+#include "rt_core/contact/points/point_laws.h"
 
 namespace palpate {
 namespace {
@@ -20,8 +19,7 @@ struct Problem {
   std::vector<std::int32_t> index;
   std::vector<std::int32_t> first{0};
   std::vector<Real> compliance;
-  std::array<Real, kMaxRegions * kMaxRegions> factor{};
-  std::array<std::array<Real, kMaxRegions>, 5> vector{};
+  RegionSystem system{};
 
   void add_region(const std::vector<std::pair<Real, Real>>& depth_and_weight) {
     for (const auto& [depth, weight] : depth_and_weight) {
@@ -34,17 +32,16 @@ struct Problem {
     first.push_back(static_cast<std::int32_t>(contact.size()));
   }
   std::size_t regions() const { return first.size() - 1; }
-  CoupledResult solve() {
-    std::vector<RegionContacts> view;
+  RegionSolution solve() {
+    std::vector<RegionRows> view;
     for (std::size_t r = 0; r < regions(); ++r) {
       view.push_back({contact.data(), index.data() + first[r], first[r + 1] - first[r]});
     }
-    return solve_coupled_regions(kLaw, view,
-                                 {compliance.data(), factor.data(), vector[0].data(), vector[1].data(),
-                                  vector[2].data(), vector[3].data(), vector[4].data()});
+    const auto n = static_cast<std::int32_t>(regions());
+    return solve_regions(PointLaws{kLaw, view.data(), compliance.data(), n}, n, system);
   }
-  Real shift(std::size_t r) const { return vector[0][r]; }
-  Real force(std::size_t r) const { return vector[1][r]; }
+  Real shift(std::size_t r) const { return system.shift_m[r]; }
+  Real force(std::size_t r) const { return system.force_N[r]; }
   // Elastic energy of the points and of the far field.
   Real energy() const {
     Real sum = 0;
@@ -69,7 +66,7 @@ Problem two_points(Real depth_a, Real depth_b) {
 
 TEST(CoupledRegions, WorkedNumbers) {
   Problem p = two_points(3e-3, 3e-3);
-  EXPECT_LE(p.solve().residual_m, kCoupledEnough_m);
+  EXPECT_LE(p.solve().residual_m, PointLaws::kEnough_m);
   EXPECT_NEAR(3e-3 - p.shift(0), 2.746889e-3, 5e-10);
   EXPECT_NEAR(p.force(0), 6.327785, 5e-7);
   EXPECT_NEAR(p.force(1), 6.327785, 5e-7);
@@ -134,18 +131,18 @@ TEST(CoupledRegions, ConvergesOnTwoThousandRandomProblems) {
     Real self_compliance;
     int points;
     Real bound_m;
-  } cases[] = {{3e-5, 1, kCoupledEnough_m}, {3e-5, 4, kCoupledEnough_m}, {1.5e-4, 1, 1e-11}, {1.5e-4, 4, 1e-9}};
+  } cases[] = {{3e-5, 1, PointLaws::kEnough_m}, {3e-5, 4, PointLaws::kEnough_m}, {1.5e-4, 1, 1e-11}, {1.5e-4, 4, 1e-9}};
   for (const auto& c : cases) {
     std::mt19937_64 random(5);
     Real worst = 0;
     for (int trial = 0; trial < 500; ++trial) {
       Problem p = random_problem(random, c.points, c.self_compliance);
-      const CoupledResult result = p.solve();
+      const RegionSolution result = p.solve();
       EXPECT_FALSE(result.singular);
       worst = std::max(worst, result.residual_m);
     }
     // Measured 2026-11-21 over 2000 problems each with all five steps: 9e-19, 9e-19, 2.3e-13, 1.3e-10 m; the solve ends
-    // early below kCoupledEnough_m.
+    // early below PointLaws::kEnough_m.
     EXPECT_LE(worst, c.bound_m) << c.self_compliance << ' ' << c.points;
   }
 }

@@ -6,8 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "rt_core/contact/friction/friction.h"
-#include "rt_core/contact/friction/presliding.h"
+#include "rt_core/contact/friction.h"
 
 namespace palpate {
 namespace {

@@ -5,8 +5,8 @@
 #include <random>
 #include <vector>
 
-#include "rt_core/contact/friction/friction.h"
-#include "rt_core/contact/points/region_load.h"
+#include "rt_core/contact/friction.h"
+#include "rt_core/contact/points/point_laws.h"
 
 namespace palpate {
 namespace {
@@ -27,8 +27,12 @@ struct Points {
     index.push_back(static_cast<std::int32_t>(contact.size()));
     contact.push_back(c);
   }
-  RegionContacts view() { return {contact.data(), index.data(), static_cast<std::int32_t>(index.size())}; }
+  RegionRows view() { return {contact.data(), index.data(), static_cast<std::int32_t>(index.size())}; }
 };
+
+RegionLoad load_of(const RegionRows& rows, Real shift_m, Vec3 pivot) {
+  return region_load(PointLaws{kLaw, &rows, nullptr, 1}, 0, rows, shift_m, pivot);
+}
 
 // Depths 1 to 4 mm at the corners of a 2 mm square.
 Points worked_points() {
@@ -43,7 +47,7 @@ Points worked_points() {
 TEST(RegionLoad, WorkedExample) {
   Points points = worked_points();
   weigh_contacts(ContactWeight::kPaper, points.view());
-  const RegionLoad load = region_load(kLaw, points.view(), 0, {});
+  const RegionLoad load = load_of(points.view(), 0, {});
   const Real force[4] = {0.085, 0.62, 2.055, 4.84};
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(points.contact[i].force_N, force[i], 1e-14);
   EXPECT_NEAR(load.force_N, 7.6, 1e-14);
@@ -74,7 +78,7 @@ TEST(RegionLoad, Weightings) {
     const Real weight[3] = {0.5, 1.0, 2.5};
     for (const Real w : weight) points.add({}, kUp, 2e-3, w);
     weigh_contacts(law, points.view());
-    const Real force = region_load(kLaw, points.view(), 0, {}).force_N;
+    const Real force = load_of(points.view(), 0, {}).force_N;
     EXPECT_NEAR(force, law == ContactWeight::kWinkler ? 4 * 2.48 : 2.48, 1e-13);
     EXPECT_NEAR(points.contact[0].weight,
                 law == ContactWeight::kWinkler ? 0.5 : (law == ContactWeight::kArea ? 0.125 : 1.0 / 3), 1e-16);
@@ -86,7 +90,7 @@ TEST(RegionLoad, Weightings) {
     zero.add({}, kUp, 1e-3, std::nan(""));
     weigh_contacts(law, empty.view());
     weigh_contacts(law, zero.view());
-    EXPECT_TRUE(std::isfinite(region_load(kLaw, zero.view(), 0, {}).force_N));
+    EXPECT_TRUE(std::isfinite(load_of(zero.view(), 0, {}).force_N));
   }
 }
 
@@ -99,7 +103,7 @@ TEST(RegionLoad, WinklerForceIsContinuousWhenPointsEnterAndLeave) {
       if (depth > 0) points.add({x, 0, 0}, kUp, depth, 0.1);
     }
     weigh_contacts(ContactWeight::kWinkler, points.view());
-    return std::pair{region_load(kLaw, points.view(), 0, {}).force_N, points.contact.size()};
+    return std::pair{load_of(points.view(), 0, {}).force_N, points.contact.size()};
   };
   Real previous = 0, largest = 0;
   std::size_t count = 0, entries = 0;
@@ -128,7 +132,7 @@ TEST(RegionLoad, CentreLiesOnACurvedSurface) {
     points.add(radius * n, n, depth(random), 1);
     mean += (1.0 / 12) * (radius * n);
   }
-  region_load(kLaw, points.view(), 0, {});
+  load_of(points.view(), 0, {});
   const RegionCentre centre = region_centre(points.view(), kUp);
   EXPECT_GT(radius - norm(mean), 2e-4);
   EXPECT_LT(std::abs(norm(centre.position_w) - radius), 2e-5);  // third order in the patch's 15 degrees
@@ -144,7 +148,7 @@ TEST(RegionLoad, StiffnessIsTheDerivativeOfTheWrench) {
                2e-3 + 1e-3 * u(random), 0.3);
   }
   const Vec3 pivot{0.02, -0.01, 0.05};
-  const RegionLoad load = region_load(kLaw, points.view(), 1e-4, pivot);
+  const RegionLoad load = load_of(points.view(), 1e-4, pivot);
   Real k[36];
   store(load.stiffness, k);
   for (int i = 0; i < 6; ++i) {
@@ -159,7 +163,7 @@ TEST(RegionLoad, StiffnessIsTheDerivativeOfTheWrench) {
     for (Contact& c : moved.contact) {
       c.depth_m -= dot(c.normal_w, axis < 3 ? e : cross(e, c.position_w - pivot));
     }
-    const RegionLoad after = region_load(kLaw, moved.view(), 1e-4, pivot);
+    const RegionLoad after = load_of(moved.view(), 1e-4, pivot);
     const Vec3 df = (1 / h) * (after.resultant_w - load.resultant_w), dt = (1 / h) * (after.torque_w - load.torque_w);
     const Real column[6] = {df.x, df.y, df.z, dt.x, dt.y, dt.z};
     for (int row = 0; row < 6; ++row) EXPECT_NEAR(column[row], -k[6 * row + axis], 1.0) << row << ' ' << axis;
@@ -171,13 +175,13 @@ TEST(RegionLoad, DegenerateGeometry) {
   Points opposed;  // a pinch inside one region: no resultant direction
   opposed.add({0, 0, 0.01}, {0, 0, 1}, 2e-3, 1);
   opposed.add({0, 0, -0.01}, {0, 0, -1}, 2e-3, 1);
-  RegionLoad load = region_load(kLaw, opposed.view(), 0, {});
+  RegionLoad load = load_of(opposed.view(), 0, {});
   EXPECT_LT(norm(load.resultant_w), 1e-15);
   EXPECT_EQ(region_centre(opposed.view(), {1, 0, 0}).normal_w, (Vec3{1, 0, 0}));
   Points unloaded;
   unloaded.add({1, 0, 0}, kUp, 1e-3, 1);
   unloaded.add({3, 0, 0}, kUp, 1e-3, 1);
-  load = region_load(kLaw, unloaded.view(), 5e-3, {});
+  load = load_of(unloaded.view(), 5e-3, {});
   EXPECT_EQ(load.force_N, 0);
   EXPECT_NEAR(region_centre(unloaded.view(), kUp).position_w.x, 2, 1e-15);
   Points none;

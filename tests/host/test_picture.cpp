@@ -17,8 +17,6 @@
 namespace palpate {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 Camera front_camera() {
   Camera camera;
   camera.eye_m = {0, 0, 1};

@@ -111,11 +111,11 @@ TEST(Replay, AlteredResultsNameStageAndField) {
     return result.stage + ":" + result.field;
   };
   EXPECT_EQ(first_difference_of([](TickRecord& r) { r.output.contact_w.force_N.x += 1e-12; }),
-            "force:output.contact_w");
+            "account:output.contact_w");
   EXPECT_EQ(first_difference_of([](TickRecord& r) { r.output.device_w.torque_Nm.z += 1; }), "safety:output.device_w");
   EXPECT_EQ(first_difference_of([](TickRecord& r) { r.output.mode = Mode::kHold; }), "safety:output.mode");
-  EXPECT_EQ(first_difference_of([](TickRecord& r) { r.output.contacts += 1; }), "collide:output.contacts");
-  EXPECT_EQ(first_difference_of([](TickRecord& r) { r.output.regions += 1; }), "regions:output.regions");
+  EXPECT_EQ(first_difference_of([](TickRecord& r) { r.output.contacts += 1; }), "rows:output.contacts");
+  EXPECT_EQ(first_difference_of([](TickRecord& r) { r.output.regions += 1; }), "rows:output.regions");
   EXPECT_EQ(first_difference_of([](TickRecord& r) { r.state_hash ^= 1; }),
             "state:state_hash (no recorded output differs)");
   // Two differences: the earlier stage is the one to look at.
@@ -123,7 +123,7 @@ TEST(Replay, AlteredResultsNameStageAndField) {
               r.output.ramp = 9;
               r.output.energy_J = 9;
             }),
-            "force:output.energy_J");
+            "account:output.energy_J");
 }
 
 // Every field of a record's outputs, from the tables themselves: 100 N of tampering with palm_w once replayed as

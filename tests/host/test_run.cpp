@@ -68,7 +68,7 @@ TEST_F(Run, InRealTimeAsWell) {
   expect_whole_and_identical(result.summary.ticks);
   const std::string text = summary_text(result.summary, result.lost);
   EXPECT_NE(text.find("wake-up latency"), std::string::npos);
-  EXPECT_NE(text.find("collide"), std::string::npos);
+  EXPECT_NE(text.find("solve"), std::string::npos);
 }
 
 TEST_F(Run, EndsWithZeroForceEvenWhenInterrupted) {

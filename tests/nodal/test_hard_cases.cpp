@@ -11,7 +11,6 @@
 namespace palpate::test {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kTop_m = 0.024;
 constexpr double kRadius_m = 0.010;
 

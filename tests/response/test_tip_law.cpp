@@ -6,6 +6,7 @@
 
 #include "config/response/tip_bake.h"
 #include "config/scene/config_error.h"
+#include "rt_core/contact/region_solve.h"
 #include "rt_core/contact/tips/travel.h"
 
 namespace palpate {
@@ -218,11 +219,6 @@ TEST(Series, UnstableFarFieldIsRefused) {
   EXPECT_THROW(make_tip_law(desc, factor), ConfigError);
 }
 
-struct Solve {
-  Real factor[64], shift[8], force[8], root[8], residual[8], step[8], trial[8];
-  TipWork work() { return {factor, shift, force, root, residual, step, trial}; }
-};
-
 // Two linear springs of 2 N/mm leaning on one another to second order: F = (3.7123698, 0.49494483) N at 2 and 1 mm.
 TEST(Coupling, SecondOrderPair) {
   TipDesc desc = tip_of({TipProfile::kFlat, 1e-3, 0}, 0.01);
@@ -232,12 +228,12 @@ TEST(Coupling, SecondOrderPair) {
   const Tip tip[2] = {baked.tip(2e-3), baked.tip(1e-3)};
   const TipRegion region[2] = {baked.region(tip[0]), baked.region(tip[1])};
   const Real c[4] = {0, 1e-4, 1e-4, 0}, h[4] = {0, 5e-5, 2e-5, 0};
-  Solve solve;
-  const TipCouplingResult result = solve_coupled_travel(region, {c, h}, solve.work());
+  RegionSystem solve;
+  const RegionSolution result = solve_regions(TipLaws{region, {c, h}, 2}, 2, solve);
   EXPECT_FALSE(result.singular);
   EXPECT_LT(result.residual_m, 1e-14);
-  EXPECT_NEAR(solve.force[0], 3.7123698, 1e-7);
-  EXPECT_NEAR(solve.force[1], 0.49494483, 1e-8);
+  EXPECT_NEAR(solve.force_N[0], 3.7123698, 1e-7);
+  EXPECT_NEAR(solve.force_N[1], 0.49494483, 1e-8);
 }
 
 // Any closed path of the two depths returns what it took: the forces are the gradient of the energy.
@@ -255,12 +251,12 @@ TEST(Coupling, EnergyIsThePotentialOfTheForces) {
       tip[i] = baked.tip(depth[i]);
       region[i] = baked.region(tip[i]);
     }
-    Solve solve;
-    EXPECT_LT(solve_coupled_travel(region, {c, h}, solve.work()).residual_m, 1e-13);
-    double energy = coupling_energy_J(3, {c, h}, solve.force);
+    RegionSystem solve;
+    EXPECT_LT(solve_regions(TipLaws{region, {c, h}, 3}, 3, solve).residual_m, 1e-13);
+    double energy = coupling_energy_J(3, {c, h}, solve.force_N);
     for (int i = 0; i < 3; ++i) {
-      force[i] = solve.force[i];
-      energy += tip_energy_J(tip[i], depth[i] - solve.shift[i]) + far_energy_J(region[i].far, force[i]);
+      force[i] = solve.force_N[i];
+      energy += tip_energy_J(tip[i], depth[i] - solve.shift_m[i]) + far_energy_J(region[i].far, force[i]);
     }
     return energy;
   };

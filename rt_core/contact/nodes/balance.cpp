@@ -1,7 +1,5 @@
-#include "rt_core/contact/nodes/balance.h"
-#include "rt_core/contact/nodes/gather.h"
+#include "rt_core/contact/nodes/nodes.h"
 #include "rt_core/tool/carrier.h"
-#include "rt_core/tool/virtual_coupling.h"
 
 namespace palpate {
 
@@ -18,11 +16,6 @@ constexpr Real kFrictionTolerance_m = 30e-6;
 Real friction_coefficient(const Model& model) PALPATE_RT {
   const bool coulomb = model.params.friction_law == static_cast<std::int32_t>(FrictionLaw::kCoulomb);
   return coulomb ? model.params.friction_mu_dynamic : 0.0;
-}
-
-// The carrier of a piece last tick, for the tool's pose `tool_w` then.
-Pose carried_before(const Model& model, const State& state, const Pose& tool_w, std::int32_t piece) PALPATE_RT {
-  return is_articulated(model) ? tool_w * state.articulation.motion_previous_tool[piece] : tool_w;
 }
 
 class Balance {
@@ -70,7 +63,7 @@ class Balance {
     if (node.memory >= 0 && state_.nodal.contact[node.memory].piece == node.piece) {
       anchor_tool = state_.nodal.contact[node.memory].anchor_tool_m;
     } else {
-      anchor_tool = inverse_transform(carried_before(model_, state_, before_, node.piece),
+      anchor_tool = inverse_transform(carrier_previous_at(model_, state_, before_, node.piece),
                                       node.rest_w + node.carry_w + node.bend_w);
     }
     if (node.piece != carried_piece_) {

@@ -1,4 +1,4 @@
-#include "rt_core/contact/nodes/choose_nodes.h"
+#include "rt_core/contact/nodes/nodes.h"
 
 #include <bit>
 

@@ -1,4 +1,4 @@
-#include "rt_core/contact/nodes/gather.h"
+#include "rt_core/contact/nodes/nodes.h"
 
 namespace palpate {
 

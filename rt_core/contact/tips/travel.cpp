@@ -1,12 +1,8 @@
 #include "rt_core/contact/tips/travel.h"
 
-#include "rt_core/cholesky.h"
-
 namespace palpate {
 
 namespace {
-
-using Regions = std::span<const TipRegion>;
 
 // Lowest shift over depth: see solve_travel.
 constexpr Real kMostSwelling = 20.0;
@@ -20,69 +16,6 @@ Real deepest_m(const TipRegion& region) PALPATE_RT {
 // Second-order entry of pair (i, j): 0 without h.
 Real h_of(const TipCoupling& coupling, std::int32_t i, std::int32_t j, std::int32_t n) PALPATE_RT {
   return coupling.h_m_per_N2 == nullptr ? 0.0 : coupling.h_m_per_N2[i * n + j];
-}
-
-// dW/dF_i.
-Real shift_of(Regions regions, const TipCoupling& coupling, const Real* force, std::int32_t i) PALPATE_RT {
-  const auto n = static_cast<std::int32_t>(regions.size());
-  Real shift = far_shift_m(regions[static_cast<std::size_t>(i)].far, force[i]);
-  for (std::int32_t j = 0; j < n; ++j) {  // bound: regions
-    if (j == i) continue;
-    const Real h = h_of(coupling, i, j, n) * force[i] + 0.5 * h_of(coupling, j, i, n) * force[j];
-    shift += (coupling.c_m_per_N[i * n + j] + h) * force[j];
-  }
-  return shift;
-}
-
-// d2W/dF_i dF_j.
-Real curvature_of(Regions regions, const TipCoupling& coupling, const Real* force, std::int32_t i,
-                  std::int32_t j) PALPATE_RT {
-  const auto n = static_cast<std::int32_t>(regions.size());
-  if (i != j) {
-    return coupling.c_m_per_N[i * n + j] + h_of(coupling, i, j, n) * force[i] + h_of(coupling, j, i, n) * force[j];
-  }
-  Real sum = far_slope_m_per_N(regions[static_cast<std::size_t>(i)].far, force[i]);
-  for (std::int32_t k = 0; k < n; ++k) {  // bound: regions
-    if (k != i) sum += h_of(coupling, i, k, n) * force[k];
-  }
-  return sum;
-}
-
-// Forces at the shifts, and the residual far + coupling - shift. Returns the largest.
-Real evaluate(Regions regions, const TipCoupling& coupling, const Real* shift, const TipWork& work) PALPATE_RT {
-  const auto n = static_cast<std::int32_t>(regions.size());
-  for (std::int32_t r = 0; r < n; ++r) {  // bound: regions
-    const LawPoint load = region_at(regions[static_cast<std::size_t>(r)], shift[r]);
-    work.force[r] = load.force_N;
-    work.root_tangent[r] = square_root(load.tangent_N_per_m);
-  }
-  Real largest = 0;
-  for (std::int32_t r = 0; r < n; ++r) {  // bound: regions^2
-    work.residual[r] = shift_of(regions, coupling, work.force, r) - shift[r];
-    largest = max_of(abs_of(work.residual[r]), largest);
-  }
-  return largest;
-}
-
-// Newton step in work.step, from (I + g H g) y = -g r, d = r + H g y; false when that is not positive definite.
-bool newton_step(Regions regions, const TipCoupling& coupling, const TipWork& work) PALPATE_RT {
-  const auto n = static_cast<std::int32_t>(regions.size());
-  const Real* g = work.root_tangent;
-  for (std::int32_t i = 0; i < n; ++i) {  // bound: regions^2
-    for (std::int32_t j = 0; j <= i; ++j) {
-      work.factor[i * n + j] = g[i] * curvature_of(regions, coupling, work.force, i, j) * g[j] + (i == j ? 1.0 : 0.0);
-    }
-    work.trial[i] = -g[i] * work.residual[i];
-  }
-  if (!cholesky_factor(work.factor, n)) return false;
-  cholesky_solve(work.factor, work.trial, n);
-  for (std::int32_t i = 0; i < n; ++i) work.trial[i] *= g[i];  // bound: regions
-  for (std::int32_t i = 0; i < n; ++i) {                       // bound: regions^2
-    Real sum = work.residual[i];
-    for (std::int32_t j = 0; j < n; ++j) sum += curvature_of(regions, coupling, work.force, i, j) * work.trial[j];
-    work.step[i] = sum;
-  }
-  return true;
 }
 
 }  // namespace
@@ -143,28 +76,25 @@ TravelResult solve_travel(const TipRegion& region) PALPATE_RT {
   return result;
 }
 
-TipCouplingResult solve_coupled_travel(std::span<const TipRegion> regions, const TipCoupling& coupling,
-                                       const TipWork& work) PALPATE_RT {
-  const auto n = static_cast<std::int32_t>(regions.size());
-  TipCouplingResult result;
-  for (std::int32_t r = 0; r < n; ++r) work.shift[r] = solve_travel(regions[static_cast<std::size_t>(r)]).shift_m;
-  result.residual_m = evaluate(regions, coupling, work.shift, work);
-  for (std::int32_t k = 0; k < kTipNewtonIterations; ++k) {  // bound: kTipNewtonIterations
-    if (!(result.residual_m > 1e-14)) break;                 // rounding of a centimetre
-    if (!newton_step(regions, coupling, work)) {
-      result.singular = true;
-      break;
-    }
-    Real share = 1.0, before = result.residual_m;
-    for (std::int32_t h = 0; h <= kTipStepHalvings; ++h) {  // bound: kTipStepHalvings
-      for (std::int32_t r = 0; r < n; ++r) work.trial[r] = work.shift[r] + share * work.step[r];
-      result.residual_m = evaluate(regions, coupling, work.trial, work);
-      if (result.residual_m < before) break;
-      share *= 0.5;
-    }
-    for (std::int32_t r = 0; r < n; ++r) work.shift[r] = work.trial[r];
+Real TipLaws::shift_under(const Real* force, std::int32_t i) const PALPATE_RT {
+  Real shift = far_shift_m(region[i].far, force[i]);
+  for (std::int32_t j = 0; j < n; ++j) {  // bound: regions
+    if (j == i) continue;
+    const Real h = h_of(coupling, i, j, n) * force[i] + 0.5 * h_of(coupling, j, i, n) * force[j];
+    shift += (coupling.c_m_per_N[i * n + j] + h) * force[j];
   }
-  return result;
+  return shift;
+}
+
+Real TipLaws::curvature(const Real* force, std::int32_t i, std::int32_t j) const PALPATE_RT {
+  if (i != j) {
+    return coupling.c_m_per_N[i * n + j] + h_of(coupling, i, j, n) * force[i] + h_of(coupling, j, i, n) * force[j];
+  }
+  Real sum = far_slope_m_per_N(region[i].far, force[i]);
+  for (std::int32_t k = 0; k < n; ++k) {  // bound: regions
+    if (k != i) sum += h_of(coupling, i, k, n) * force[k];
+  }
+  return sum;
 }
 
 Real coupling_energy_J(std::int32_t n, const TipCoupling& coupling, const Real* force) PALPATE_RT {

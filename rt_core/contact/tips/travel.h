@@ -1,5 +1,5 @@
 // From the depth of tool tips to their forces: the tips' own laws in series with the body's far field,
-// travel = local(F) + c0 F + c1 F^2, and with one another.
+// travel = local(F) + c0 F + c1 F^2 (a god-object proxy on the moved surface), and with one another.
 #pragma once
 
 #include <span>
@@ -55,31 +55,29 @@ struct TravelResult {
 TravelResult solve_travel(const TipRegion& region) PALPATE_RT;
 
 // How regions i != j lean on one another: W = sum_{i<j} c_ij F_i F_j + sum_{i != j} h_ij F_i^2 F_j / 2 beside the far
-// fields. Row-major n x n; c symmetric; diagonals unused. Memory lent by the caller as in coupled_regions.h.
+// fields. Row-major n x n; c symmetric; diagonals unused.
 struct TipCoupling {
   const Real* c_m_per_N;
   const Real* h_m_per_N2;  // nullptr: none
 };
-struct TipWork {
-  Real* factor;  // n x n
-  Real* shift;   // out, length n
-  Real* force;   // out
-  Real* root_tangent;
-  Real* residual;
-  Real* step;
-  Real* trial;
-};
-struct TipCouplingResult {
-  Real residual_m = 0;
-  bool singular = false;
-};
-// shift_i = dW/dF_i(F), F_i = F_i(depth - shift_i): the forces are the gradient of one potential, so no loop returns
-// energy while c and h are constant. Damped Newton in the symmetric form of coupled_regions.h. Bound:
-// kTipNewtonIterations steps of at most kTipStepHalvings + 1 evaluations.
-TipCouplingResult solve_coupled_travel(std::span<const TipRegion> regions, const TipCoupling& coupling,
-                                       const TipWork& work) PALPATE_RT;
-
 // Energy of the coupling between regions, sum F_i dW/dF_i - W without the regions' own far fields.
 Real coupling_energy_J(std::int32_t n, const TipCoupling& coupling, const Real* force) PALPATE_RT;
+
+// What the region solver (contact/region_solve.h) asks of coupled tips: forces are the gradient of one potential, so no
+// loop returns energy while c and h are constant.
+struct TipLaws {
+  static constexpr std::int32_t kIterations = kTipNewtonIterations;
+  static constexpr Real kEnough_m = 1e-14;  // rounding of a centimetre
+  static constexpr Real kTolerance_m = kTravelTolerance_m;
+
+  const TipRegion* region;
+  TipCoupling coupling;
+  std::int32_t n;
+
+  Real start(std::int32_t r) const PALPATE_RT { return solve_travel(region[r]).shift_m; }
+  LawPoint load(std::int32_t r, Real shift_m) const PALPATE_RT { return region_at(region[r], shift_m); }
+  Real shift_under(const Real* force, std::int32_t r) const PALPATE_RT;
+  Real curvature(const Real* force, std::int32_t i, std::int32_t j) const PALPATE_RT;
+};
 
 }  // namespace palpate

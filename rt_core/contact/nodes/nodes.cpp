@@ -1,9 +1,9 @@
+#include "rt_core/contact/nodes/nodes.h"
+
+#include <utility>
+
 #include "rt_core/cholesky.h"
-#include "rt_core/contact/nodes/balance.h"
-#include "rt_core/contact/nodes/gather.h"
-#include "rt_core/contact/nodes/nodal.h"
-#include "rt_core/contact/nodes/strain.h"
-#include "rt_core/tool/articulate.h"
+#include "rt_core/contact/contact.h"
 #include "rt_core/tool/carrier.h"
 
 namespace palpate {
@@ -11,15 +11,6 @@ namespace palpate {
 namespace {
 
 constexpr std::int32_t kDof = 6;
-
-void clear_outputs(State& state, Scratch& scratch) PALPATE_RT {
-  scratch.contact_wrench_w = {};
-  scratch.energy_J = 0;
-  scratch.residual_m = 0;
-  scratch.contact_count = 0;
-  scratch.strain = 0;
-  for (Real& entry : state.contact_stiffness) entry = 0;  // bound: 36
-}
 
 // Where the tool goes: the handle's pull against the pushes, no faster than the handle itself and the limit.
 void place_tool(const Model& model, const State& state, Scratch& scratch, const Twist& drift) PALPATE_RT {
@@ -62,8 +53,7 @@ void remember(const Model& model, State& state, const Scratch& scratch) PALPATE_
       contact.anchor_tool_m = before[node.memory].anchor_tool_m;
       continue;
     }
-    const Pose carrier = is_articulated(model) ? scratch.tool_corrected_w * state.articulation.motion_tool[node.piece]
-                                               : scratch.tool_corrected_w;
+    const Pose carrier = carrier_at(model, state, scratch.tool_corrected_w, node.piece);
     contact.anchor_tool_m = inverse_transform(carrier, node.rest_w + node.bend_w + motion_of(p, i));
   }
 }
@@ -111,17 +101,16 @@ void set_stiffness(State& state, const Scratch& scratch) PALPATE_RT {
 }
 
 // Contacts for the later stages and telemetry: the nodes that push.
-void list_contacts(State& state, Scratch& scratch) PALPATE_RT {
+void list_contacts(Scratch& scratch) PALPATE_RT {
   const ContactProblem& p = scratch.nodal;
   for (std::int32_t i = 0; i < p.count; ++i) {  // bound: kMaxContacts
     const ContactNode& node = p.node[i];
-    state.point[i].region = node.region;
     if (!(node.push.normal_N > 0)) continue;
     Contact& contact = scratch.contact[scratch.contact_count++];
     contact = Contact{};
-    contact.point = i;
-    contact.region = -1;
+    contact.row = i;
     contact.piece = node.piece;
+    contact.previous = node.region;
     contact.position_w = node.rest_w;
     contact.normal_w = -node.normal_w;
     contact.depth_m = max_of(dot(motion_of(p, i), node.normal_w), 0.0);
@@ -142,16 +131,85 @@ void sum_up(Scratch& scratch) PALPATE_RT {
   scratch.energy_J = 0.5 * work;
 }
 
+constexpr std::int32_t kMostVectors = whole_lanes(6 * kMaxStrainGauges, 8) / 8;
+
+// Strain components of all pushes, sizeof...(k) vectors of eight: what the registers hold. The last vector ends with
+// the last component; what it shares with the one before comes out the same twice. Single precision, as the gauges are.
+template <std::int32_t... k>
+void add_strains(const float* gauges, const std::int32_t* row, const float* force, std::int32_t rows,
+                 std::int32_t components, float* strain, std::integer_sequence<std::int32_t, k...>) PALPATE_RT {
+  const std::int32_t end = components - 8;
+  Float8 sum[] = {(static_cast<void>(k), Float8{})...};
+  for (std::int32_t r = 0; r < rows; ++r) {  // bound: 3 kMaxContacts
+    const Float8 f = splat8(force[r]);
+    const float* from = gauges + row[r];
+    ((sum[k] += load8(from + (k + 1 == sizeof...(k) ? end : 8 * k)) * f), ...);
+  }
+  (store(strain + (k + 1 == sizeof...(k) ? end : 8 * k), sum[k]), ...);
+}
+
+// Picks the number of vectors, from `most` down to 1.
+template <std::int32_t most>
+void add_strains(const float* gauges, const std::int32_t* row, const float* force, std::int32_t rows,
+                 std::int32_t components, float* strain) PALPATE_RT {
+  if constexpr (most > 1) {
+    if (components <= 8 * (most - 1)) return add_strains<most - 1>(gauges, row, force, rows, components, strain);
+  }
+  add_strains(gauges, row, force, rows, components, strain, std::make_integer_sequence<std::int32_t, most>());
+}
+
+// Largest equivalent strain over the image's gauges under the pushes of the problem; 0 without gauges. Equivalent:
+// sqrt(2/3) times the Frobenius norm, which is the axial strain of an incompressible bar. Bound: kMaxContacts times
+// 18 kMaxStrainGauges multiplications.
+Real largest_strain(const Model& model, const ContactProblem& p) PALPATE_RT {
+  const auto components = static_cast<std::int32_t>(model.sizes.n_strain_gauge / (3 * model.sizes.n_vertex));
+  std::int32_t row[3 * kMaxContacts];
+  float force[3 * kMaxContacts];
+  std::int32_t rows = 0;
+  for (std::int32_t i = 0; i < p.count; ++i) {  // bound: kMaxContacts
+    if (!(p.node[i].push.normal_N > 0)) continue;
+    const Vec3 f = p.node[i].force_w;
+    const Real by_axis[3] = {f.x, f.y, f.z};
+    for (std::int32_t a = 0; a < 3; ++a, ++rows) {
+      row[rows] = (3 * p.node[i].vertex + a) * components;
+      force[rows] = static_cast<float>(by_axis[a]);
+    }
+  }
+  alignas(32) float strain[6 * kMaxStrainGauges] = {};
+  if (components >= 8) {
+    add_strains<kMostVectors>(model.strain_gauge.data(), row, force, rows, components, strain);
+  } else {
+    for (std::int32_t r = 0; r < rows; ++r) {  // bound: 3 kMaxContacts, of one gauge
+      for (std::int32_t c = 0; c < components; ++c)
+        strain[c] += model.strain_gauge[static_cast<std::size_t>(row[r] + c)] * force[r];
+    }
+  }
+  Real largest2 = 0;
+  for (std::int32_t c = 0; c < components; c += 6) {  // bound: kMaxStrainGauges
+    Real e[6];
+    for (int k = 0; k < 6; ++k) e[k] = static_cast<Real>(strain[c + k]);
+    const Real sum = e[0] * e[0] + e[1] * e[1] + e[2] * e[2] + 2 * (e[3] * e[3] + e[4] * e[4] + e[5] * e[5]);
+    largest2 = max_of(largest2, sum);
+  }
+  return square_root(2.0 / 3.0 * largest2);
+}
+
 void check_strain(const Model& model, Scratch& scratch) PALPATE_RT {
   if (model.strain_gauge.empty()) return;
   scratch.strain = largest_strain(model, scratch.nodal);
   if (scratch.strain > model.params.strain_limit) scratch.status |= Status::kStrainBeyondLinear;
 }
 
-}  // namespace
+void find_rows(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
+  scratch.contact_count = 0;
+  scratch.nodal.count = 0;
+  if (!is_finite(state.tool_w)) return;
+  find_near_nodes(model, state, scratch);
+  choose_nodes(model, state, scratch);
+  if (scratch.nodal.count > state.high_water.contacts) state.high_water.contacts = scratch.nodal.count;
+}
 
-void compute_nodal_force(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
-  clear_outputs(state, scratch);
+void solve(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   ContactProblem& p = scratch.nodal;
   p.per_N = scratch.driven ? 0.0 : 1.0 / model.params.coupling_N_per_m;
   p.per_Nm = scratch.driven ? 0.0 : 1.0 / model.params.coupling_Nm_per_rad;
@@ -160,13 +218,19 @@ void compute_nodal_force(const Model& model, State& state, Scratch& scratch) PAL
   const Pose before = scratch.driven ? state.tool_previous_w : state.safety.tool_corrected_w;
   if (p.count > 0) solve_contacts(model, state, scratch, drift, before);
   place_tool(model, state, scratch, drift);
-  if (p.count > 0) set_stiffness(state, scratch);
+}
+
+void account(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
+  if (scratch.nodal.count > 0) set_stiffness(state, scratch);
   remember(model, state, scratch);
-  list_contacts(state, scratch);
+  list_contacts(scratch);
   sum_up(scratch);
   check_strain(model, scratch);
   find_nodal_regions(model, state, scratch);
-  if (is_articulated(model)) load_pieces(model, state, scratch);
 }
+
+}  // namespace
+
+const ContactMethod nodes_method{find_rows, solve, account};
 
 }  // namespace palpate

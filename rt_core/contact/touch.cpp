@@ -1,9 +1,7 @@
-// Stage collide: which tool points touch the rest surface, where and how deeply. Reads the tool's poses; writes
-// state.point (but region), scratch.contact. Bound: n_tool_point queries. Status: kContactsDropped,
-// kTraversalTruncated.
-#include "rt_core/contact/nodes/nodal.h"
-#include "rt_core/stages.h"
+#include "rt_core/contact/touch.h"
+
 #include "rt_core/surface/closest_point.h"
+#include "rt_core/surface/overlap.h"
 #include "rt_core/surface/smooth_foot.h"
 #include "rt_core/tool/carrier.h"
 
@@ -21,19 +19,6 @@ constexpr std::uint64_t kTurns = 8;
 // Cosine of the largest turn of the normal in one tick that still counts as the same face: a tip at 0.5 m/s turns by
 // less than a degree per tick even on a body of 20 mm.
 constexpr double kSameFace = 0.5;
-
-// A pose as a matrix: half the work of a quaternion per point.
-struct RigidMap {
-  Vec3 column[3];
-  Vec3 translation;
-  explicit RigidMap(const Pose& pose) PALPATE_RT
-      : column{rotate(pose.orientation, {1, 0, 0}), rotate(pose.orientation, {0, 1, 0}),
-               rotate(pose.orientation, {0, 0, 1})},
-        translation(pose.position_m) {}
-  Vec3 operator()(Vec3 p) const PALPATE_RT {
-    return translation + (p.x * column[0] + p.y * column[1] + p.z * column[2]);
-  }
-};
 
 struct Box {
   Vec3 lower, upper;
@@ -93,10 +78,10 @@ class Collider {
   void visit(std::size_t index) PALPATE_RT {
     const ToolPiece& piece = model_.piece[index];
     if (is_articulated(model_)) {
-      now_ = RigidMap(carrier_w(model_, state_, static_cast<std::int32_t>(index)));
-      before_ = RigidMap(carrier_previous_w(model_, state_, static_cast<std::int32_t>(index)));
+      now_ = RigidFrame(carrier_w(model_, state_, static_cast<std::int32_t>(index)));
+      before_ = RigidFrame(carrier_previous_w(model_, state_, static_cast<std::int32_t>(index)));
     }
-    const Real gap = distance_to(root_, now_(piece.pose_tool.position_m)) - piece.bounding_radius_m;
+    const Real gap = distance_to(root_, out_of(now_, piece.pose_tool.position_m)) - piece.bounding_radius_m;
     const std::int32_t end = piece.first_point + piece.point_count;
     for (std::int32_t i = piece.first_point; i < end; ++i) {  // bound: kMaxToolPoints over all pieces
       if (gap > kSearchMargin_m + kRefreshMargin_m) {
@@ -110,7 +95,7 @@ class Collider {
  private:
   void visit_point(std::int32_t index) PALPATE_RT {
     PointState& point = state_.point[index];
-    const Vec3 p = now_(model_.tool_point[static_cast<std::size_t>(index)].position_tool_m);
+    const Vec3 p = out_of(now_, model_.tool_point[static_cast<std::size_t>(index)].position_tool_m);
     // Written so that a NaN in any term measures the point.
     if (point.gap_bound_m > kSearchMargin_m) {
       const Real bound = point.gap_bound_m - moved(index, p);
@@ -127,7 +112,7 @@ class Collider {
   }
 
   Real moved(std::int32_t index, Vec3 p) const PALPATE_RT {
-    return norm(p - before_(model_.tool_point[static_cast<std::size_t>(index)].position_tool_m));
+    return norm(p - out_of(before_, model_.tool_point[static_cast<std::size_t>(index)].position_tool_m));
   }
 
   void measure(std::int32_t index, Vec3 p) PALPATE_RT {
@@ -220,8 +205,9 @@ class Collider {
     }
     Contact& contact = scratch_.contact[scratch_.contact_count++];
     contact = Contact{};
-    contact.point = index;
-    contact.region = -1;
+    contact.row = contact.point = index;
+    contact.piece = tool_point.piece;
+    contact.previous = point.region;
     contact.position_w = point.closest_w;
     contact.normal_w = point.normal_w;
     contact.depth_m = -point.gap_m;
@@ -232,15 +218,30 @@ class Collider {
   const Model& model_;
   State& state_;
   Scratch& scratch_;
-  RigidMap now_, before_;  // of the piece being visited
+  RigidFrame now_, before_;  // of the piece being visited
   const Box root_;
   bool smooth_ = false;
 };
 
+// Tool point whose last surface point is nearest to where the region was, within the memory distance; or -1.
+std::int32_t point_at(const Model& model, const State& state, const Region& region) PALPATE_RT {
+  std::int32_t nearest = -1;
+  double distance2 = kRegionMemoryDistance_m * kRegionMemoryDistance_m;
+  const auto points = static_cast<std::int32_t>(model.tool_point.size());
+  for (std::int32_t i = 0; i < points; ++i) {  // bound: kMaxToolPoints
+    if (state.point[i].triangle < 0) continue;
+    const double d2 = squared_norm(state.point[i].closest_w - region.centre_w);
+    if (d2 < distance2 || (nearest < 0 && d2 == distance2)) {
+      nearest = i;
+      distance2 = d2;
+    }
+  }
+  return nearest;
+}
+
 }  // namespace
 
 void collide(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
-  if (is_nodal(model)) return collide_nodal(model, state, scratch);
   scratch.contact_count = 0;
   if (!is_finite(state.tool_w)) {
     for (PointState& point : state.point) forget(point);  // bound: kMaxToolPoints
@@ -250,6 +251,22 @@ void collide(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   for (std::size_t i = 0; i < model.piece.size(); ++i) collider.visit(i);  // bound: kMaxPieces
   HighWater& high_water = state.high_water;
   if (scratch.contact_count > high_water.contacts) high_water.contacts = scratch.contact_count;
+}
+
+bool still_touching(const Model& model, State& state, Scratch& scratch, const Region& region) PALPATE_RT {
+  const std::int32_t point = point_at(model, state, region);
+  if (point < 0) return false;
+  const Triangle& triangle = model.triangle[static_cast<std::size_t>(state.point[point].triangle)];
+  Vec3 corner[3];
+  for (int k = 0; k < 3; ++k) corner[k] = model.vertex_m[static_cast<std::size_t>(triangle.vertex[k])];  // bound: 3
+  const std::int32_t piece = model.tool_point[static_cast<std::size_t>(point)].piece;
+  const OverlapResult result = overlap_piece_triangle(model, model.piece[static_cast<std::size_t>(piece)],
+                                                      carrier_w(model, state, piece), corner);
+  if (result.support_calls > state.high_water.gjk_support_calls) {
+    state.high_water.gjk_support_calls = result.support_calls;
+  }
+  if (result.overlap == Overlap::kInconclusive) scratch.status |= Status::kOverlapInconclusive;
+  return result.overlap != Overlap::kMiss;
 }
 
 }  // namespace palpate

@@ -1,5 +1,4 @@
-#include "rt_core/contact/nodes/choose_nodes.h"
-#include "rt_core/contact/nodes/nodal.h"
+#include "rt_core/contact/nodes/nodes.h"
 #include "rt_core/tool/carrier.h"
 #include "rt_core/tool/piece_gap.h"
 
@@ -38,12 +37,12 @@ class NodeSearch {
   void visit(std::int32_t piece) PALPATE_RT {
     piece_ = piece;
     const ToolPiece& shape = model_.piece[static_cast<std::size_t>(piece)];
-    const PieceFrame frame(carrier_w(model_, state_, piece) * shape.pose_tool);
+    const RigidFrame frame(carrier_w(model_, state_, piece) * shape.pose_tool);
     if (!body_within_reach(shape, frame)) return;
     const auto vertices = static_cast<std::int32_t>(model_.sizes.n_vertex);
     for (std::int32_t first = 0; first < vertices; first += 4) {  // bound: kMaxNodalVertices / 4
       const Vec3x4 rest = four_of(model_.vertex_m.data(), first, vertices);
-      const PieceGapOf<Vec3x4> gap = piece_gap(shape, frame.into(rest));
+      const PieceGapOf<Vec3x4> gap = piece_gap(shape, into(frame, rest));
       const Double4 bulge = bulge_of(first, vertices);
       if (bits_of(gap.gap_m - bulge > reach_m_) != 15) visit_four(shape, frame, first, rest, bulge);
     }
@@ -66,7 +65,7 @@ class NodeSearch {
   }
 
   // Whether the tool is near any of the root's boxes, by balls around them.
-  bool body_within_reach(const ToolPiece& shape, const PieceFrame& frame) const PALPATE_RT {
+  bool body_within_reach(const ToolPiece& shape, const RigidFrame& frame) const PALPATE_RT {
     const BvhNode& root = model_.bvh[0];
     for (int k = 0; k < 4; ++k) {  // bound: 4
       if (root.count[k] == 0 && root.child[k] < 0) continue;
@@ -78,7 +77,7 @@ class NodeSearch {
       };
       const Real radius = norm({half(0), half(1), half(2)});
       const Vec3 centre{middle(0), middle(1), middle(2)};
-      if (!(piece_gap(shape, frame.into(centre)).gap_m - radius > reach_m_)) return true;
+      if (!(piece_gap(shape, into(frame, centre)).gap_m - radius > reach_m_)) return true;
     }
     return false;
   }
@@ -104,7 +103,7 @@ class NodeSearch {
   }
 
   // Each node is carried by the nearest region that reaches it, or by none.
-  void visit_four(const ToolPiece& shape, const PieceFrame& frame, std::int32_t first, const Vec3x4& rest,
+  void visit_four(const ToolPiece& shape, const RigidFrame& frame, std::int32_t first, const Vec3x4& rest,
                   const Double4& bulge) PALPATE_RT {
     Double4 nearest = splat4(kHuge);
     Vec3x4 carry = splat4(Vec3{}), bend = carry, rotation = carry;
@@ -121,14 +120,14 @@ class NodeSearch {
       rotation = where(taken, splat4(motion.rotation_rad), rotation);
     }
     const Vec3x4 carried = rest + carry + bend;
-    const PieceGapOf<Vec3x4> gap = piece_gap(shape, frame.into(carried));
+    const PieceGapOf<Vec3x4> gap = piece_gap(shape, into(frame, carried));
     const Double4 margin = margin_m_ + kCarryShare * square_root(dot(carry, carry));
     if (bits_of(gap.gap_m - bulge < margin) == 0) return;
     NearFour& near = problem_.near[problem_.near_count];
     near.carry_w = carry;
     near.bend_w = bend;
     near.position_w = carried;
-    near.normal_w = frame.direction_out(gap.normal);
+    near.normal_w = direction_out(frame, gap.normal);
     near.gap_m = gap.gap_m;
     near.first = first;
     for (std::int32_t& piece : near.piece) piece = piece_;  // bound: 4
@@ -143,7 +142,7 @@ class NodeSearch {
   // Between the nodes of a sharp bend the surface bulges out; a convex tool would roll over the chords as over a
   // polygon (a clip's force jumps by 12 % from node to node, 2026-11-21). Within the node's own share of the bend the
   // tool meets the ball that fits it; beyond it, fading, the node itself.
-  void round_off(const ToolPiece& shape, const PieceFrame& frame, const Vec3x4& rotation, std::int32_t vertices,
+  void round_off(const ToolPiece& shape, const RigidFrame& frame, const Vec3x4& rotation, std::int32_t vertices,
                  NearFour& near) const PALPATE_RT {
     for (std::uint32_t k = 0; k < 4; ++k) {  // bound: 4
       const std::int32_t vertex = near.first + static_cast<std::int32_t>(k);
@@ -152,8 +151,8 @@ class NodeSearch {
       if (!(node.round_m > 0)) continue;
       const Vec3 outward = unit_or(node.round_normal + cross(rotation[k], node.round_normal), node.round_normal);
       const Vec3 position = near.position_w[k], centre = position - node.round_m * outward;
-      const PieceGap ball = piece_gap(shape, frame.into(centre));
-      const Vec3 normal = frame.direction_out(ball.normal);
+      const PieceGap ball = piece_gap(shape, into(frame, centre));
+      const Vec3 normal = direction_out(frame, ball.normal);
       const Real turn = 1 + dot(outward, normal), share = 1 - node.round_cosine;  // 1 - cosines
       const Real weight = clamp_to((kFades * share - turn) / ((kFades - 1) * share), 0, 1);
       if (weight == 0) continue;
@@ -195,17 +194,12 @@ class NodeSearch {
 
 }  // namespace
 
-void collide_nodal(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
-  scratch.contact_count = 0;
-  scratch.nodal.count = 0;
-  if (!is_finite(state.tool_w)) return;
+void find_near_nodes(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   NodeSearch search(model, state, scratch);
   const auto pieces = static_cast<std::int32_t>(model.piece.size());
   for (std::int32_t i = 0; i < pieces; ++i) {  // bound: kMaxPieces
     if (model.piece[static_cast<std::size_t>(i)].point_count > 0) search.visit(i);
   }
-  choose_nodes(model, state, scratch);
-  if (scratch.nodal.count > state.high_water.contacts) state.high_water.contacts = scratch.nodal.count;
 }
 
 }  // namespace palpate

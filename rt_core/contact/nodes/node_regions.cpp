@@ -1,16 +1,40 @@
-#include "rt_core/contact/nodes/nodal.h"
-#include "rt_core/contact/regions/identity.h"
+#include "rt_core/cholesky.h"
+#include "rt_core/contact/nodes/nodes.h"
+#include "rt_core/contact/regions.h"
 
 namespace palpate {
 
+// Minimises sum |u - t - r x (x - c)|^2: with d = x - c, (sum d.d 1 - d d^T) r = sum d x u.
+RegionMotion MotionFit::result(double blur_m, double share) const PALPATE_RT {
+  RegionMotion motion;
+  if (!(count_ > 0)) return motion;
+  const Vec3 mean = (1 / count_) * position_;
+  motion.centre_w = origin_ + mean;
+  motion.translation_m = (share / count_) * displacement_;
+  const Vec3 moment = moment_ - cross(mean, displacement_);
+  const double xx = square_[0] - count_ * mean.x * mean.x, xy = square_[1] - count_ * mean.x * mean.y,
+               xz = square_[2] - count_ * mean.x * mean.z, yy = square_[3] - count_ * mean.y * mean.y,
+               yz = square_[4] - count_ * mean.y * mean.z, zz = square_[5] - count_ * mean.z * mean.z;
+  const double blur = count_ * blur_m * blur_m;
+  Real matrix[9] = {yy + zz + blur, -xy, -xz, -xy, xx + zz + blur, -yz, -xz, -yz, xx + yy + blur};
+  Real x[3] = {moment.x, moment.y, moment.z};
+  if (!cholesky_factor(matrix, 3)) return motion;
+  cholesky_solve(matrix, x, 3);
+  const Vec3 rotation{share * x[0], share * x[1], share * x[2]};
+  constexpr Real kMost_rad = 0.5;  // beyond it no linear body is meant
+  const Real size = norm(rotation);
+  motion.rotation_rad = size > kMost_rad ? (kMost_rad / size) * rotation : rotation;
+  return motion;
+}
+
 namespace {
 
-constexpr Real kPi = 3.14159265358979323846;
 // Mean displacement of a half space under a uniform pressure, times E* and the radius, over the force: 16 / (3 pi^2)
 // (Johnson 1985, section 3.4). What a body has beyond it is far field.
 constexpr Real kPatchMean = 0.5403796460924681;
 
-void clear_force(Region& region) PALPATE_RT {
+// Out of contact: its place and identity stay, for the ticks it may come back in.
+void keep_identity(Region& region) PALPATE_RT {
   const Region kept = region;
   region = Region{};
   region.id = kept.id;
@@ -30,16 +54,16 @@ struct Sums {
 };
 
 void add(const Model& model, const Scratch& scratch, const Contact& contact, Sums& s) PALPATE_RT {
-  const ContactNode& node = scratch.nodal.node[contact.point];
+  const ContactNode& node = scratch.nodal.node[contact.row];
   const Vec3 on_tool = -node.force_w;
   s.centre += contact.force_N * contact.position_w;
   s.normal += contact.force_N * contact.normal_w;
   s.friction += on_tool - contact.force_N * contact.normal_w;
   s.force += on_tool;
   s.torque += cross(node.arm_w, on_tool);
-  s.carry += contact.force_N * motion_of(scratch.nodal, contact.point);
+  s.carry += contact.force_N * motion_of(scratch.nodal, contact.row);
   s.load += contact.force_N;
-  s.energy += 0.5 * dot(node.force_w, motion_of(scratch.nodal, contact.point));
+  s.energy += 0.5 * dot(node.force_w, motion_of(scratch.nodal, contact.row));
   s.area += model.nodal_vertex[static_cast<std::size_t>(node.vertex)].area_m2;
   s.slipping += node.push.slips ? 1 : 0;
   s.count += 1;
@@ -86,14 +110,14 @@ Real far_share(const Model& model, Real local_J, Real energy_J) PALPATE_RT {
   return energy_J > 0 ? 1 - min_of(local_J / energy_J, 1.0) : 0;
 }
 
-void label(State& state, Scratch& scratch, const Clusters& clusters) PALPATE_RT {
+void label_nodes(State& state, Scratch& scratch, const Clusters& clusters) PALPATE_RT {
   for (std::int32_t i = 0; i < clusters.contacts; ++i) {  // bound: kMaxContacts
     scratch.contact[clusters.order[i]].region = clusters.cluster[clusters.of_rank[i]].slot;
   }
   for (std::int32_t i = 0; i < scratch.contact_count; ++i) {  // bound: kMaxContacts
     const Contact& contact = scratch.contact[i];
     state.nodal.contact[i].region = contact.region;  // both list the pushing nodes in order
-    scratch.nodal.node[contact.point].region = contact.region;
+    scratch.nodal.node[contact.row].region = contact.region;
   }
 }
 
@@ -131,7 +155,7 @@ void fit_motions(const Model& model, State& state, const Scratch& scratch) PALPA
 }
 
 void age(Region& region) PALPATE_RT {
-  clear_force(region);
+  keep_identity(region);
   region.lost_ticks += 1;
   if (region.lost_ticks > kRegionMemoryTicks) region = Region{};
 }
@@ -140,9 +164,9 @@ void age(Region& region) PALPATE_RT {
 
 void find_nodal_regions(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   Clusters clusters;
-  find_clusters(model, state, scratch, clusters);
+  find_clusters(model, scratch, clusters);
   if (!assign_slots(scratch, clusters, state)) scratch.status |= Status::kRegionsDropped;
-  label(state, scratch, clusters);
+  label_nodes(state, scratch, clusters);
 
   Sums sums[kMaxRegions];
   for (std::int32_t i = 0; i < scratch.contact_count; ++i) {  // bound: kMaxContacts

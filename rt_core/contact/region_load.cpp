@@ -1,0 +1,209 @@
+#include "rt_core/contact/region_load.h"
+
+#include "rt_core/contact/regions.h"
+#include "rt_core/tool/virtual_coupling.h"
+
+namespace palpate {
+
+namespace {
+
+Real size_of(Vec3 v) PALPATE_RT { return abs_of(v.x) + abs_of(v.y) + abs_of(v.z); }
+
+// One sum that is NaN or beyond kHuge if any of its terms is.
+bool usable(const State& state, const Contact& contact) PALPATE_RT {
+  const std::int32_t slot = contact.region;
+  if (slot < 0 || slot >= kMaxRegions || !is_in_contact(state.region[slot])) return false;
+  const Real size = size_of(contact.position_w) + size_of(contact.normal_w) + abs_of(contact.weight);
+  return contact.depth_m > 0 && contact.depth_m + size <= kHuge;
+}
+
+// A region out of contact exerts nothing but remembers its stretch until its slot is freed (a bounce keeps its friction
+// history); an empty slot remembers nothing.
+void clear_force(Region& region) PALPATE_RT {
+  region.normal_force_N = 0;
+  region.friction_force_w = {};
+  region.wrench_w = {};
+  region.depth_equivalent_m = 0;
+  region.energy_J = 0;
+  region.tangent_N_per_m = 0;
+  if (region.id != 0) return;
+  region.stretch_w = {};
+  region.tangential_k_N_per_m = 0;
+  region.friction = FrictionMode::kFree;
+  region.lean_normal_tool = {};
+}
+
+// Regions without a usable contact exert nothing.
+void clear_idle_regions(State& state, const RowsByRegion& rows) PALPATE_RT {
+  bool busy[kMaxRegions] = {};
+  for (std::int32_t r = 0; r < rows.regions; ++r) busy[rows.slot[r]] = true;  // bound: kMaxRegions
+  for (std::int32_t s = 0; s < kMaxRegions; ++s) {                            // bound: kMaxRegions
+    if (!busy[s]) clear_force(state.region[s]);
+  }
+}
+
+// Distance along `normal` from `centre` to the rest surface, seen from one of its points: on a sphere or a plane the
+// chord from point to centre is normal to the mean of the two end normals; other smooth surfaces follow to third order.
+Real height_above(const Contact& contact, Vec3 centre, Vec3 normal) PALPATE_RT {
+  const Vec3 mean = contact.normal_w + normal;
+  const Real slope = dot(mean, normal);
+  // Where the normals differ by more than 120 degrees there is no common smooth patch.
+  return slope > 0.5 ? dot(contact.position_w - centre, mean) / slope : 0.0;
+}
+
+// Stretch carried to the new tangent plane by the smallest rotation of the normal, its length kept.
+Vec3 carried(Vec3 stretch, Vec3 from_normal, Vec3 to_normal) PALPATE_RT {
+  const Vec3 turned = tangential_part(rotate(rotation_between(from_normal, to_normal), stretch), to_normal);
+  const Real length = norm(turned);
+  return length > 1e-15 ? (norm(stretch) / length) * turned : Vec3{};
+}
+
+// Motion since the last tick of the material at `point` that moves rigidly from `before` to `now`.
+Vec3 carried_motion(const Pose& before, const Pose& now, Vec3 point) PALPATE_RT {
+  return point - transform(before, inverse_transform(now, point));
+}
+
+// Motion since the last tick of the tool material that is at `point` now, rotation included: exact where one piece
+// touches; the mean by force where pieces that move against one another share the region.
+Vec3 material_motion(const Model& model, const State& state, const RegionRows& rows, Vec3 point) PALPATE_RT {
+  if (!is_articulated(model)) return carried_motion(state.tool_previous_w, state.tool_w, point);
+  Vec3 sum;
+  Real total = 0;
+  std::int32_t last = -1;
+  Vec3 motion;
+  for (std::int32_t k = 0; k < rows.count; ++k) {  // bound: rows
+    const std::int32_t piece = rows[k].piece;
+    if (piece != last) {
+      motion = carried_motion(carrier_previous_w(model, state, piece), carrier_w(model, state, piece), point);
+      last = piece;
+    }
+    sum += rows[k].force_N * motion;
+    total += rows[k].force_N;
+  }
+  return total > 0 ? (1.0 / total) * sum : motion;
+}
+
+void add_tangential_stiffness(ContactStiffness& stiffness, const FrictionForce& friction, Vec3 normal,
+                              Vec3 arm) PALPATE_RT {
+  const Vec3 axis = abs_of(normal.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+  const Vec3 any = unit_or(tangential_part(axis, normal), {});
+  const Vec3 along = unit_or(friction.direction_w, any), across = cross(normal, along);
+  add_spring(stiffness, friction.along_N_per_m, along, cross(arm, along));
+  add_spring(stiffness, friction.across_N_per_m, across, cross(arm, across));
+}
+
+}  // namespace
+
+void sort_rows(State& state, Scratch& scratch) PALPATE_RT {
+  RowsByRegion& rows = scratch.rows;
+  rows.regions = 0;
+  std::int32_t contacts = scratch.contact_count < kMaxContacts ? scratch.contact_count : kMaxContacts;
+  if (!is_finite(state.tool_w)) contacts = 0;
+  std::int32_t region_of[kMaxContacts];
+  std::int32_t count_in[kMaxRegions] = {};
+  for (std::int32_t i = 0; i < contacts; ++i) {  // bound: kMaxContacts
+    const bool use = usable(state, scratch.contact[i]);
+    region_of[i] = use ? scratch.contact[i].region : -1;
+    if (use) count_in[region_of[i]] += 1;
+  }
+  std::int32_t order[kMaxRegions];
+  const std::int32_t in_contact = contact_order(state, order);
+  std::int32_t next_in[kMaxRegions] = {};
+  rows.first[0] = 0;
+  for (std::int32_t i = 0; i < in_contact; ++i) {  // bound: kMaxRegions
+    const std::int32_t slot = order[i];
+    if (count_in[slot] == 0) continue;
+    next_in[slot] = rows.first[rows.regions];
+    rows.slot[rows.regions++] = slot;
+    rows.first[rows.regions] = next_in[slot] + count_in[slot];
+  }
+  for (std::int32_t i = 0; i < contacts; ++i) {  // bound: kMaxContacts
+    if (region_of[i] >= 0) rows.index[next_in[region_of[i]]++] = i;
+  }
+  clear_idle_regions(state, rows);
+}
+
+RegionCentre region_centre(const RegionRows& rows, Vec3 fallback_normal) PALPATE_RT {
+  Real total = 0;
+  for (std::int32_t k = 0; k < rows.count; ++k) total += rows[k].force_N;  // bound: rows
+  const bool loaded = total > 0;
+  const auto share = [loaded](const Contact& c) PALPATE_RT { return loaded ? c.force_N : c.weight; };
+  Vec3 moment, sum;
+  total = 0;
+  for (std::int32_t k = 0; k < rows.count; ++k) {  // bound: rows
+    const Contact& contact = rows[k];
+    moment += share(contact) * contact.position_w;
+    sum += share(contact) * contact.normal_w;
+    total += share(contact);
+  }
+  if (!(total > 0)) return {rows.count > 0 ? rows[0].position_w : Vec3{}, fallback_normal};
+  const Vec3 centre = (1.0 / total) * moment;
+  // Opposed normals may cancel to rounding: then there is no direction worth following.
+  const Vec3 normal = norm(sum) > 1e-6 * total ? unit_or(sum, fallback_normal) : fallback_normal;
+  Real height = 0;
+  for (std::int32_t k = 0; k < rows.count; ++k) {  // bound: rows
+    height += share(rows[k]) * height_above(rows[k], centre, normal);
+  }
+  return {centre + (height / total) * normal, normal};
+}
+
+RegionCentre centre_of(const Region& region, const RegionRows& rows) PALPATE_RT {
+  return region_centre(rows, squared_norm(region.normal_w) > 0.5 ? region.normal_w : rows[0].normal_w);
+}
+
+void set_lean(const Model& model, const State& state, Region& region, const RegionRows& rows) PALPATE_RT {
+  const RegionCentre centre = centre_of(region, rows);
+  const Pose frame_w = lean_frame_w(model, state);
+  region.lean_tool_m = inverse_transform(frame_w, centre.position_w);
+  region.lean_normal_tool = rotate(conjugate(frame_w.orientation), centre.normal_w);
+}
+
+void press(Scratch& scratch, Region& region, const RegionRows& rows, const RegionLoad& load,
+           Real coupling_J) PALPATE_RT {
+  const RegionCentre centre = centre_of(region, rows);
+  region.stretch_w = carried(region.stretch_w, region.normal_w, centre.normal_w);
+  region.centre_w = centre.position_w;
+  region.normal_w = centre.normal_w;
+  region.normal_force_N = max_of(dot(load.resultant_w, centre.normal_w), 0.0);
+  region.wrench_w = {load.resultant_w + load.aside_w, load.torque_w};
+  region.energy_J = load.energy_J + coupling_J;
+  region.tangent_N_per_m = stiffness_along_N_per_m(load.stiffness, centre.normal_w);
+  add_to(scratch.stiffness, load.stiffness);
+  if (load.is_beyond) scratch.status |= Status::kDepthBeyondRange;
+}
+
+void slide(const Model& model, const State& state, Scratch& scratch, const FrictionParameters& parameters,
+           const RegionRows& rows, FrictionLoad& load, Region& region) PALPATE_RT {
+  load.step_w = material_motion(model, state, rows, region.centre_w);
+  load.normal_w = region.normal_w;
+  load.force_N = region.normal_force_N;
+  load.depth_m = region.depth_equivalent_m;
+  FrictionMemory memory{region.stretch_w, region.tangential_k_N_per_m, region.friction};
+  const FrictionForce friction = friction_step(parameters, load, memory);
+  region.stretch_w = memory.stretch_w;
+  region.tangential_k_N_per_m = memory.stiffness_N_per_m;
+  region.friction = memory.mode;
+  region.reversal_N_per_m = friction.reversal_N_per_m;
+  const Vec3 arm = region.centre_w - state.tool_w.position_m;
+  const Vec3 force = friction.force_w + friction.normal_gain_N * region.normal_w;
+  region.normal_force_N += friction.normal_gain_N;
+  region.friction_force_w = friction.force_w;
+  region.wrench_w.force_N += force;
+  region.wrench_w.torque_Nm += cross(arm, force);
+  region.energy_J += friction.energy_J;
+  region.origin_w = region.centre_w - region.stretch_w;
+  add_tangential_stiffness(scratch.stiffness, friction, region.normal_w, arm);
+}
+
+void sum_up(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
+  for (std::int32_t r = 0; r < scratch.rows.regions; ++r) {  // bound: kMaxRegions
+    const Region& region = state.region[scratch.rows.slot[r]];
+    scratch.contact_wrench_w.force_N += region.wrench_w.force_N;
+    scratch.contact_wrench_w.torque_Nm += region.wrench_w.torque_Nm;
+    scratch.energy_J += region.energy_J;
+  }
+  if (scratch.rows.regions > 0) store(scratch.stiffness, state.contact_stiffness);
+  balance_tool(model, state, scratch);
+}
+
+}  // namespace palpate

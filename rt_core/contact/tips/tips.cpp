@@ -1,0 +1,172 @@
+// The method `tips`: one law for each whole tip of the tool, or curves tabulated over the surface, in series with the
+// body's far field (contact/tips/travel.h).
+#include "rt_core/contact/contact.h"
+#include "rt_core/contact/region_load.h"
+#include "rt_core/contact/regions.h"
+#include "rt_core/contact/tips/travel.h"
+#include "rt_core/contact/touch.h"
+
+namespace palpate {
+
+namespace {
+
+// A whole tip touches where its one point does: nothing of it can touch between points.
+void find_rows(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
+  collide(model, state, scratch);
+  group_points(model, state, scratch, nullptr);
+}
+
+bool beyond_range(const Tip& tip, Real e) PALPATE_RT {
+  if (!tip.tabulated) return e > tip.local.tip->depth_max_m;
+  const Real last = tip.table.knot[tip.table.knots - 1];
+  return e > (tip.table.root ? last * last : last);
+}
+
+// Where curves differ from vertex to vertex the stored energy also falls along the surface: -sum E_i grad n_i. Left
+// out, pressing where it is soft and lifting where it is stiff would return the difference of the energies.
+Vec3 sideways_force(const Tip& tip, const SurfaceFoot& foot, Real e) PALPATE_RT {
+  const TableLaw& t = tip.table;
+  if (t.curve[0] == t.curve[1] && t.curve[1] == t.curve[2]) return {};
+  const CornerEnergies corner = table_energies(t, e);
+  return -(corner.energy_J[0] * foot.gradient_per_m[0] + corner.energy_J[1] * foot.gradient_per_m[1] +
+           corner.energy_J[2] * foot.gradient_per_m[2]);
+}
+
+// The tips in contact, by region, and what accounting asks of them. Forces act at the tips' centres, which are fixed to
+// the tool: as the field depends on the centres alone, it is then conservative in rotation too. (The line of action of
+// the normal force passes through the foot.) The loader refuses more tool points than pieces for these laws.
+struct TipLoad : TipLaws {
+  static constexpr bool kPullsAside = true;
+  Tip tip[kMaxPieces];
+  const SurfaceFoot* foot[kMaxPieces];
+  TipRegion tips_of[kMaxRegions];
+
+  Real softening(std::int32_t r, Real shift_m) const PALPATE_RT {
+    const LawPoint sum = load(r, shift_m);
+    return 1.0 / (1.0 + far_slope_m_per_N(region[r].far, sum.force_N) * sum.tangent_N_per_m);
+  }
+  RowLoad row(std::int32_t r, std::int32_t k, Real shift_m) const PALPATE_RT {
+    const Tip& one = region[r].tip[k];
+    const SurfaceFoot& stands = *foot[region[r].tip + k - tip];
+    const Real e = one.depth_m - shift_m;
+    return {tip_at(one, e), tip_energy_J(one, e), stands.centre_w,
+            one.tabulated ? sideways_force(one, stands, e) : Vec3{}, beyond_range(one, e)};
+  }
+  Real coupling_J(std::int32_t r, Real force_N, Real) const PALPATE_RT { return far_energy_J(region[r].far, force_N); }
+};
+
+// The far field under a region is that of its deepest tip.
+FarField far_field_of(const Model& model, const RegionRows& rows) PALPATE_RT {
+  if (static_cast<ResponseLaw>(model.params.response_law) != ResponseLaw::kTip) return {};
+  std::int32_t deepest = 0;
+  for (std::int32_t k = 1; k < rows.count; ++k) {  // bound: tips
+    if (rows[k].depth_m > rows[deepest].depth_m) deepest = k;
+  }
+  const TipLaw& law = model.tip_law[static_cast<std::size_t>(rows[deepest].piece)];
+  return {law.c0_m_per_N, law.c1_m_per_N2, law.force_max_N};
+}
+
+Tip make_tip(const Model& model, const SurfaceFoot& foot, const Contact& contact) PALPATE_RT {
+  Tip tip;
+  tip.depth_m = contact.depth_m;
+  tip.tabulated = static_cast<ResponseLaw>(model.params.response_law) != ResponseLaw::kTip;
+  if (tip.tabulated) {
+    tip.table = table_law(model, foot.triangle, foot.weight);
+  } else {
+    tip.local = local_law(model, contact.piece);
+  }
+  return tip;
+}
+
+void gather(const Model& model, Scratch& scratch, TipLoad& load) PALPATE_RT {
+  std::int32_t next = 0;
+  load.n = scratch.rows.regions;
+  load.region = load.tips_of;
+  load.coupling = {scratch.system.compliance_m_per_N, scratch.system.second_order_m_per_N2};
+  for (std::int32_t r = 0; r < load.n; ++r) {  // bound: kMaxPieces tips
+    const RegionRows rows = rows_of(scratch, r);
+    load.tips_of[r] = {&load.tip[next], 0, far_field_of(model, rows)};
+    for (std::int32_t k = 0; k < rows.count && next < kMaxPieces; ++k) {
+      load.foot[next] = &scratch.foot[rows[k].piece];
+      load.tip[next] = make_tip(model, *load.foot[next], rows[k]);
+      next += 1;
+      load.tips_of[r].count += 1;
+    }
+  }
+}
+
+// Coupling of two regions: as stated for the pair of pieces, otherwise Boussinesq's far field.
+void fill_pair(const Model& model, const State& state, Scratch& scratch, std::int32_t i, std::int32_t j) PALPATE_RT {
+  const std::int32_t n = scratch.rows.regions;
+  const std::int32_t a = rows_of(scratch, i)[0].piece, b = rows_of(scratch, j)[0].piece;
+  Real *c = scratch.system.compliance_m_per_N, *h = scratch.system.second_order_m_per_N2;
+  h[i * n + j] = h[j * n + i] = 0;
+  for (const TipPair& pair : model.tip_pair) {  // bound: kMaxTipPairs
+    const bool same = pair.piece_a == a && pair.piece_b == b, swapped = pair.piece_a == b && pair.piece_b == a;
+    if (!same && !swapped) continue;
+    c[i * n + j] = c[j * n + i] = pair.c_m_per_N;
+    h[i * n + j] = same ? pair.h_ab_m_per_N2 : pair.h_ba_m_per_N2;
+    h[j * n + i] = same ? pair.h_ba_m_per_N2 : pair.h_ab_m_per_N2;
+    return;
+  }
+  const Region &u = state.region[scratch.rows.slot[i]], &v = state.region[scratch.rows.slot[j]];
+  const Real scale = far_field_scale_m2_per_N(model.params.youngs_modulus_Pa, model.params.poisson_ratio);
+  c[i * n + j] = c[j * n + i] = far_field_compliance_m_per_N(scale, model.params.far_field_radius_m, u.lean_tool_m,
+                                                             u.lean_normal_tool, v.lean_tool_m, v.lean_normal_tool);
+}
+
+void lean_region(const Model& model, State& state, Scratch& scratch, const TipLoad& load, std::int32_t r) PALPATE_RT {
+  Region& region = state.region[scratch.rows.slot[r]];
+  if (has_lean(region)) return;
+  const RegionRows rows = rows_of(scratch, r);
+  for (std::int32_t k = 0; k < rows.count; ++k) rows[k].force_N = load.row(r, k, 0).at.force_N;  // bound: tips
+  set_lean(model, state, region, rows);
+}
+
+// Shift of the surface under every region; the energy held between them.
+void couple(const Model& model, State& state, Scratch& scratch, const TipLoad& load) PALPATE_RT {
+  for (std::int32_t r = 0; r < load.n; ++r) {  // bound: kMaxRegions^2 / 2
+    lean_region(model, state, scratch, load, r);
+    for (std::int32_t j = 0; j < r; ++j) fill_pair(model, state, scratch, r, j);
+  }
+  const RegionSolution result = solve_regions(load, load.n, scratch.system);
+  scratch.residual_m = result.residual_m;
+  if (result.singular) scratch.status |= Status::kCouplingSingular;
+  scratch.energy_J += coupling_energy_J(load.n, load.coupling, scratch.system.force_N);
+}
+
+void solve(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
+  sort_rows(state, scratch);
+  if (scratch.rows.regions == 0) return;
+  TipLoad load;
+  gather(model, scratch, load);
+  const bool coupled = static_cast<CouplingLaw>(model.params.coupling_law) == CouplingLaw::kCoupled;
+  if (coupled && load.n > 1) {
+    couple(model, state, scratch, load);
+  } else {
+    for (std::int32_t r = 0; r < load.n; ++r) {  // bound: kMaxRegions
+      const TravelResult result = solve_travel(load.region[r]);
+      scratch.system.shift_m[r] = result.shift_m;
+      scratch.residual_m = max_of(scratch.residual_m, result.residual_m);
+    }
+  }
+  if (!(scratch.residual_m <= kTravelTolerance_m)) scratch.status |= Status::kNotConverged;
+  press_regions(load, state, scratch);
+}
+
+void account(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
+  for (std::int32_t r = 0; r < scratch.rows.regions; ++r) {  // bound: kMaxRegions
+    Region& region = state.region[scratch.rows.slot[r]];
+    region.depth_equivalent_m = region.depth_max_m;
+    FrictionLoad rub;
+    rub.tangent_N_per_m = region.tangent_N_per_m;
+    slide(model, state, scratch, friction_parameters(model.params), rows_of(scratch, r), rub, region);
+  }
+  sum_up(model, state, scratch);
+}
+
+}  // namespace
+
+const ContactMethod tips_method{find_rows, solve, account};
+
+}  // namespace palpate
