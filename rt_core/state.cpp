@@ -19,7 +19,7 @@ void visit_region(const Region& r, Visitor&& visit) PALPATE_RT {
   visit("region.normal_force_N", r.normal_force_N);
   visit("region.friction_force_w", r.friction_force_w);
   visit("region.wrench_w", r.wrench_w);
-  visit("region.depth_equivalent_m", r.depth_equivalent_m, r.far_field_m);
+  visit("region.depth_equivalent_m", r.depth_equivalent_m);
   visit("region.energy_J", r.energy_J, r.tangent_N_per_m);
   visit("region.lean_tool_m", r.lean_tool_m, r.lean_normal_tool);
   visit("region.stretch_w", r.stretch_w);

@@ -44,7 +44,6 @@ struct Region {
   Vec3 friction_force_w;          // on the tool
   Wrench wrench_w;                // of this region on the tool, about the tool's origin
   double depth_equivalent_m = 0;  // inverse law of |normal force|
-  double far_field_m = 0;         // how far the other regions (and its own far field) move the surface inward here
   double energy_J = 0;
   double tangent_N_per_m = 0;  // normal stiffness
   Vec3 lean_tool_m;  // centre of the region's far field and its direction, set at first touch and fixed to the tool

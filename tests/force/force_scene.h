@@ -32,6 +32,8 @@ struct ForceScene {
     p.poisson_ratio = 0.47;
     p.far_field_radius_m = 0.01;
     p.surface_size_m = 0.1;
+    p.coupling_N_per_m = 1000;
+    p.coupling_Nm_per_rad = 1;
     reset_state();
     clear_contacts();
   }
