@@ -9,7 +9,7 @@
 
 #include "config/response/table_bake.h"
 #include "config/scene/config_error.h"
-#include "rt_core/contact/tips/vertex_table.h"
+#include "rt_core/contact/tips/tip_law.h"
 
 namespace palpate {
 namespace {

@@ -99,4 +99,106 @@ Real interval_energy_J(const LocalLaw& law, std::int32_t interval) PALPATE_RT {
   return energy_from_knot(law, interval, (interval + 1) / kIntervals);
 }
 
+namespace {
+
+// Where a depth lies in the table: interval, local coordinate, and how far beyond the last knot.
+struct Place {
+  std::int32_t interval = 0;
+  Real u = 0, h = 0;
+  Real x = 0;         // variable of the table
+  Real beyond_m = 0;  // depth beyond the last knot
+};
+
+Place place_of(const TableLaw& law, Real e) PALPATE_RT {
+  const Real last = law.knot[law.knots - 1], depth_last = law.root ? last * last : last;
+  Place place;
+  place.beyond_m = e > depth_last ? min_of(e, kHuge) - depth_last : 0.0;
+  place.x = place.beyond_m > 0 ? last : law.root ? square_root(e) : e;
+  std::int32_t low = 0, high = law.knots - 1;
+  for (int k = 0; k < 6 && high - low > 1; ++k) {  // bound: log2(kMaxResponseKnots)
+    const std::int32_t middle = (low + high) / 2;
+    (place.x < law.knot[middle] ? high : low) = middle;
+  }
+  place.interval = low;
+  place.h = law.knot[low + 1] - law.knot[low];
+  place.u = (place.x - law.knot[low]) / place.h;
+  return place;
+}
+
+// Cubic Hermite f = c0 + c1 u + c2 u^2 + c3 u^3 of one interval.
+struct Cubic {
+  Real c0, c1, c2, c3;
+};
+Cubic cubic_of(const ResponseKnot& a, const ResponseKnot& b, Real h) PALPATE_RT {
+  const Real rise = b.force_N - a.force_N, p = h * a.slope, q = h * b.slope;
+  return {a.force_N, p, 3.0 * rise - 2.0 * p - q, p + q - 2.0 * rise};
+}
+
+LawPoint curve_at(const TableLaw& law, const ResponseKnot* curve, const Place& place) PALPATE_RT {
+  const Cubic c = cubic_of(curve[place.interval], curve[place.interval + 1], place.h);
+  const Real u = place.u;
+  LawPoint point{c.c0 + u * (c.c1 + u * (c.c2 + u * c.c3)), (c.c1 + u * (2.0 * c.c2 + 3.0 * u * c.c3)) / place.h};
+  if (u >= 1.0) point.force_N = curve[place.interval + 1].force_N;  // the last sample to the bit, as all others
+  // dF/de = (dF/dx) / (2 x); at x = 0 the bakers give curves of zero slope, whose limit is c2 / h^2.
+  if (law.root) {
+    point.tangent_N_per_m = place.x > 1e-9 ? 0.5 * point.tangent_N_per_m / place.x : c.c2 / (place.h * place.h);
+  }
+  point.force_N += point.tangent_N_per_m * place.beyond_m;
+  return point;
+}
+
+// Integral of the curve over depth within its interval: of f dx, or of f 2 x dx.
+Real curve_energy_J(const TableLaw& law, const ResponseKnot* curve, const Place& place) PALPATE_RT {
+  const Cubic c = cubic_of(curve[place.interval], curve[place.interval + 1], place.h);
+  const Real u = place.u;
+  const Real plain = u * (c.c0 + u * (c.c1 / 2.0 + u * (c.c2 / 3.0 + u * c.c3 / 4.0)));
+  Real energy = place.h * plain;
+  if (law.root) {
+    const Real moment = u * u * (c.c0 / 2.0 + u * (c.c1 / 3.0 + u * (c.c2 / 4.0 + u * c.c3 / 5.0)));
+    energy = 2.0 * place.h * (law.knot[place.interval] * plain + place.h * moment);
+  }
+  energy += curve[place.interval].energy_J;
+  if (!(place.beyond_m > 0)) return energy;
+  Place edge = place;
+  edge.beyond_m = 0;
+  const LawPoint point = curve_at(law, curve, edge);
+  return energy + (point.force_N + 0.5 * point.tangent_N_per_m * place.beyond_m) * place.beyond_m;
+}
+
+}  // namespace
+
+TableLaw table_law(const Model& model, std::int32_t triangle, const Real (&weight)[3]) PALPATE_RT {
+  TableLaw law;
+  law.knot = model.knot.data();
+  law.knots = static_cast<std::int32_t>(model.knot.size());
+  law.root = model.params.response_root == 1;
+  for (int k = 0; k < 3; ++k) {  // bound: 3
+    const std::int32_t vertex = model.triangle[static_cast<std::size_t>(triangle)].vertex[k];
+    const std::int32_t row = model.vertex_response[static_cast<std::size_t>(vertex)];
+    law.curve[k] = &model.response[static_cast<std::size_t>(row) * model.knot.size()];
+    law.weight[k] = weight[k];
+  }
+  return law;
+}
+
+LawPoint table_at(const TableLaw& law, Real e_m) PALPATE_RT {
+  if (!(e_m > 0)) return {};
+  const Place place = place_of(law, e_m);
+  LawPoint sum;
+  for (int k = 0; k < 3; ++k) {  // bound: 3
+    const LawPoint point = curve_at(law, law.curve[k], place);
+    sum.force_N += law.weight[k] * point.force_N;
+    sum.tangent_N_per_m += law.weight[k] * point.tangent_N_per_m;
+  }
+  return sum;
+}
+
+CornerEnergies table_energies(const TableLaw& law, Real e_m) PALPATE_RT {
+  CornerEnergies result;
+  if (!(e_m > 0)) return result;
+  const Place place = place_of(law, e_m);
+  for (int k = 0; k < 3; ++k) result.energy_J[k] = curve_energy_J(law, law.curve[k], place);  // bound: 3
+  return result;
+}
+
 }  // namespace palpate

@@ -5,7 +5,6 @@
 #include <span>
 
 #include "rt_core/contact/tips/tip_law.h"
-#include "rt_core/contact/tips/vertex_table.h"
 #include "rt_core/limits.h"
 
 namespace palpate {
