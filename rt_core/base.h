@@ -10,9 +10,12 @@
 // allocate, lock, throw or make a system call (-Wfunction-effects). gcc sees plain noexcept.
 #if defined(__clang__) && __clang_major__ >= 20
 #define PALPATE_RT noexcept [[clang::nonblocking]]
+#define PALPATE_RT_IF(condition) noexcept(condition) [[clang::nonblocking(condition)]]
 #else
 #define PALPATE_RT noexcept
+#define PALPATE_RT_IF(condition) noexcept(condition)
 #endif
+// _IF: of a template that serves both a tick and the host.
 
 namespace palpate {
 

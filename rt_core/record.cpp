@@ -2,10 +2,9 @@
 
 namespace palpate {
 
-void fill_record(const Model& model, const State& state, const Input& input, const Output& output,
-                 TickRecord& record) PALPATE_RT {
+void fill_record(const State& state, const Input& input, const Output& output, TickRecord& record) PALPATE_RT {
   record.tick = state.tick - 1;
-  record.state_hash = hash_state(model, state);
+  record.state_hash = hash_state(state);
   record.input = input;
   record.output = output;
   record.high_water = state.high_water;

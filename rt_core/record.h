@@ -51,7 +51,6 @@ static_assert(std::is_trivially_copyable_v<TickRecord>);
 static_assert(sizeof(TickRecord) % 8 == 0, "rings move records as 64-bit words");
 
 // Fills tick, hash, output and regions of a record after tick(); timing and sequence stay the caller's.
-void fill_record(const Model& model, const State& state, const Input& input, const Output& output,
-                 TickRecord& record) PALPATE_RT;
+void fill_record(const State& state, const Input& input, const Output& output, TickRecord& record) PALPATE_RT;
 
 }  // namespace palpate

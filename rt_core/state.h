@@ -1,132 +1,249 @@
-// State: all that survives a tick. Scratch: thrown away after it. Both have fixed capacity and are trivially copyable,
-// so snapshot, restore, replay and rollback are a copy. Arrays are grouped by the stage that writes them.
+// State: all that survives a tick. Scratch: thrown away after it. Each is one block of memory laid out at load from the
+// image's sizes (pool.h): a scene holds what its method needs, and snapshot, restore, replay and rollback are a copy of
+// the block. The tables below are all there is in a State: its fields, reset, hash, comparison and dump are made from
+// them, so none can forget a field.
 #pragma once
 
 #include <cstdint>
 #include <type_traits>
 
 #include "rt_core/contact/contact_stiffness.h"
-#include "rt_core/contact/nodes/node_problem.h"
-#include "rt_core/contact/nodes/region_motion.h"
 #include "rt_core/contact/problem.h"
 #include "rt_core/io.h"
 #include "rt_core/limits.h"
 #include "rt_core/model.h"
+#include "rt_core/pool.h"
+#include "rt_core/state_visit.h"
 
 namespace palpate {
 
+// One row of a table: X(type, name, value after a reset, meaning).
+#define PALPATE_STATE_FIELD(type, name, initial, meaning) type name = initial;
+#define PALPATE_STATE_VISIT(type, name, initial, meaning) visit_value(visitor, #name, name);
+#define PALPATE_STATE_LAYOUT(type, name, initial, meaning) hash = layout_with<type>(hash, #name);
+// One row of a table of pools: X(element type, name, capacity for a model, elements in use, meaning).
+#define PALPATE_STATE_POOL(type, name, capacity, used, meaning) Pool<type> name;
+#define PALPATE_STATE_VISIT_POOL(type, name, capacity, used, meaning) visit_pool(visitor, #name, name, used);
+#define PALPATE_STATE_LAYOUT_POOL(type, name, capacity, used, meaning) hash = layout_with<type>(hash, #name);
+#define PALPATE_STATE_PLACE(type, name, capacity, used, meaning) arena.place(name, capacity);
+#define PALPATE_STATE_CLEAR(type, name, capacity, used, meaning) name.fill({});
+#define PALPATE_STATE_LIKE(type, name, capacity, used, meaning) &&name.is_like(other.name)
+
+// The members of a table's fields, and visit(): the visitor gets every value in the table's order, with its name.
+#define PALPATE_STATE_FIELDS_OF(FIELDS)                                  \
+  FIELDS(PALPATE_STATE_FIELD)                                            \
+  template <class Visitor>                                               \
+  void visit(Visitor& visitor) const PALPATE_RT_IF(Visitor::kRealTime) { \
+    FIELDS(PALPATE_STATE_VISIT)                                          \
+  }                                                                      \
+  static constexpr std::uint64_t layout(std::uint64_t hash) noexcept {   \
+    FIELDS(PALPATE_STATE_LAYOUT)                                         \
+    return hash;                                                         \
+  }
+// The same with pools, over a struct of fields; and what lays the pools out, resets all and compares two layouts.
+#define PALPATE_STATE_GROUP_OF(Fields, POOLS)                                                                 \
+  POOLS(PALPATE_STATE_POOL)                                                                                   \
+  template <class Visitor>                                                                                    \
+  void visit(Visitor& visitor) const PALPATE_RT_IF(Visitor::kRealTime) {                                      \
+    Fields::visit(visitor);                                                                                   \
+    POOLS(PALPATE_STATE_VISIT_POOL)                                                                           \
+  }                                                                                                           \
+  static constexpr std::uint64_t layout(std::uint64_t hash) noexcept {                                        \
+    hash = Fields::layout(hash);                                                                              \
+    POOLS(PALPATE_STATE_LAYOUT_POOL)                                                                          \
+    return hash;                                                                                              \
+  }                                                                                                           \
+  void place_pools([[maybe_unused]] const Model& model, Arena& arena) noexcept { POOLS(PALPATE_STATE_PLACE) } \
+  void reset() PALPATE_RT {                                                                                   \
+    static_cast<Fields&>(*this) = Fields{};                                                                   \
+    POOLS(PALPATE_STATE_CLEAR)                                                                                \
+  }                                                                                                           \
+  template <class Group>                                                                                      \
+  bool is_laid_out_like(const Group& other) const PALPATE_RT {                                                \
+    return true POOLS(PALPATE_STATE_LIKE);                                                                    \
+  }
+
 enum class FrictionMode : std::int32_t { kFree = 0, kStick = 1, kSlip = 2 };
 
-// Per-tool-point contact memory. Written by find_rows.
+#define PALPATE_POINT_STATE(X)                                                                                     \
+  X(Vec3, closest_w, {}, "on the rest surface")                                                                    \
+  X(Vec3, normal_w, {}, "outward unit normal there (pseudo-normal on edges and vertices)")                         \
+  X(double, gap_m, 0, "signed: distance of the core point from the surface minus its margin; < 0 is penetration")  \
+  X(double, gap_bound_m, 0, "lower bound of gap_m when the query was skipped: the point cannot have come so near") \
+  X(std::int32_t, triangle, -1, "last closest triangle: warm start")                                               \
+  X(std::int32_t, region, -1, "slot in State::region, or -1")
+
+// Contact memory of one tool point. Written by find_rows.
 struct PointState {
-  Vec3 closest_w;    // on the rest surface
-  Vec3 normal_w;     // outward unit normal there (pseudo-normal on edges and vertices)
-  double gap_m = 0;  // signed: distance of the core point from the surface minus its margin; < 0 is penetration
-  double gap_bound_m =
-      0;  // lower bound of gap_m when the query was skipped (the point cannot have reached the surface)
-  std::int32_t triangle = -1;  // last closest triangle: warm start
-  std::int32_t region = -1;    // slot in State::region, or -1
+  PALPATE_STATE_FIELDS_OF(PALPATE_POINT_STATE)
 };
 
-// A contact region: a cluster of tool points with an identity that lasts.
+#define PALPATE_REGION(X)                                                                                           \
+  X(std::uint32_t, id, 0, "unique since reset; 0: slot empty")                                                      \
+  X(std::uint32_t, born_tick, 0, "temporal order (ties by id)")                                                     \
+  X(std::int32_t, lost_ticks, 0, "0 while in contact; otherwise ticks since the last contact")                      \
+  X(std::int32_t, point_count, 0, "contacts in it")                                                                 \
+  X(double, area_m2, 0, "of the contacting tool points")                                                            \
+  X(double, depth_max_m, 0, "deepest of them")                                                                      \
+  X(Vec3, centre_w, {}, "centre of pressure, projected to the rest surface: the equivalent contact point")          \
+  X(Vec3, normal_w, {}, "unit, of the resultant normal force")                                                      \
+  X(double, normal_force_N, 0, ">= 0, along normal_w, on the tool")                                                 \
+  X(Vec3, friction_force_w, {}, "on the tool")                                                                      \
+  X(Wrench, wrench_w, {}, "of this region on the tool, about the tool's origin")                                    \
+  X(double, depth_equivalent_m, 0, "inverse law of |normal force|")                                                 \
+  X(double, energy_J, 0, "stored")                                                                                  \
+  X(double, tangent_N_per_m, 0, "normal stiffness")                                                                 \
+  X(Vec3, lean_tool_m, {}, "centre of the region's far field, set at first touch and fixed to the tool from then")  \
+  X(Vec3, lean_normal_tool, {}, "and its direction; zero: not set")                                                 \
+  X(Vec3, stretch_w, {}, "friction memory: tangential elastic stretch, material point minus origin of deformation") \
+  X(double, tangential_k_N_per_m, 0, "Mindlin variant: stiffness of the last tick")                                 \
+  X(double, reversal_N_per_m, 0, "while it slips: its stiffness against motion back, along -stretch_w; else 0")     \
+  X(FrictionMode, friction, FrictionMode::kFree, "stick, slip or free")                                             \
+  X(std::int32_t, reserved, 0, "-")                                                                                 \
+  X(Vec3, origin_w, {}, "origin of the deformation p_o on the rest surface")
+
+// A contact region: a cluster of contacts with an identity that lasts.
 struct Region {
-  // regions
-  std::uint32_t id = 0;         // unique since reset; 0: slot empty
-  std::uint32_t born_tick = 0;  // temporal order (ties by id)
-  std::int32_t lost_ticks = 0;  // 0 while in contact; otherwise ticks since the last contact
-  std::int32_t point_count = 0;
-  double area_m2 = 0;  // of the contacting tool points
-  double depth_max_m = 0;
-  // force
-  Vec3 centre_w;                  // centre of pressure, projected to the rest surface: the equivalent contact point
-  Vec3 normal_w;                  // unit, of the resultant normal force
-  double normal_force_N = 0;      // >= 0, along normal_w, on the tool
-  Vec3 friction_force_w;          // on the tool
-  Wrench wrench_w;                // of this region on the tool, about the tool's origin
-  double depth_equivalent_m = 0;  // inverse law of |normal force|
-  double energy_J = 0;
-  double tangent_N_per_m = 0;  // normal stiffness
-  Vec3 lean_tool_m;  // centre of the region's far field and its direction, set at first touch and fixed to the tool
-  Vec3 lean_normal_tool;  // from then on; zero: not set
-  // friction memory
-  Vec3 stretch_w;                   // tangential elastic stretch: material point minus origin of deformation
-  double tangential_k_N_per_m = 0;  // Mindlin variant: stiffness of the last tick
-  double reversal_N_per_m = 0;      // while it slips: its stiffness against motion back, along -stretch_w; else 0
-  FrictionMode friction = FrictionMode::kFree;
-  std::int32_t reserved = 0;
-  Vec3 origin_w;  // origin of the deformation p_o on the rest surface
+  PALPATE_STATE_FIELDS_OF(PALPATE_REGION)
+  bool is_live() const PALPATE_RT { return id != 0; }  // what is not live is never read
 };
 
-// What a surface node that pushes remembers (nodes). Written by account.
+#define PALPATE_NODAL_CONTACT(X)                                     \
+  X(std::int32_t, vertex, -1, "of the body's surface")               \
+  X(std::int32_t, piece, -1, "of the tool")                          \
+  X(std::int32_t, region, -1, "slot in State::region, or -1")        \
+  X(FrictionMode, friction, FrictionMode::kStick, "sticks or slips") \
+  X(Vec3, force_w, {}, "on the body")                                \
+  X(Vec3, anchor_tool_m, {}, "where on the tool (joints at zero) it sticks, or was")
+
+// What a surface node that pushes remembers. Written by the nodes' method.
 struct NodalContact {
-  std::int32_t vertex = -1;
-  std::int32_t piece = -1;
-  std::int32_t region = -1;  // slot in State::region, or -1
-  FrictionMode friction = FrictionMode::kStick;
-  Vec3 force_w;        // on the body
-  Vec3 anchor_tool_m;  // where on the tool (joints at zero) it sticks, or was
+  PALPATE_STATE_FIELDS_OF(PALPATE_NODAL_CONTACT)
 };
 
-// Memory of the nodal back-end: the nodes that pushed last tick.
-struct NodalState {
-  std::int32_t count = 0;
-  std::int32_t reserved = 0;
-  double far_share = 0;  // part of the nodes' motion that is far field
-  NodalContact contact[kMaxContacts];
-  RegionMotion motion[kMaxRegions];  // far field of each region
+#define PALPATE_REGION_MOTION(X)                                               \
+  X(Vec3, centre_w, {}, "mean rest position of the nodes it was fitted to")    \
+  X(Vec3, translation_m, {}, "of the centre")                                  \
+  X(Vec3, rotation_rad, {}, "about it")                                        \
+  X(double, reach_m, 0, "rest points farther from the centre are not carried") \
+  X(double, growth, 0, "of the motion by finite rotation: bend_of()")          \
+  X(double, finite, 0, "1: finite rotation counts, 0: it does not")
+
+// The far field at a contact region of a finite-element body: the rigid motion of the surface around it, which carries
+// the nodes where gaps and normals are taken (contact/nodes/region_motion.h).
+struct RegionMotion {
+  PALPATE_STATE_FIELDS_OF(PALPATE_REGION_MOTION)
 };
+
+#define PALPATE_NODAL_STATE(X)                    \
+  X(std::int32_t, count, 0, "entries of contact") \
+  X(std::int32_t, reserved, 0, "-")               \
+  X(double, far_share, 0, "part of the nodes' motion that is far field")
+#define PALPATE_NODAL_POOLS(X)                                                                   \
+  X(NodalContact, contact, model.sizes.n_nodal > 0 ? kMaxContacts : 0, count, "nodes that push") \
+  X(RegionMotion, motion, model.sizes.n_nodal > 0 ? kMaxRegions : 0, motion.size(), "of each region")
+
+// Memory of the nodes' method: the nodes that pushed last tick.
+struct NodalFields {
+  PALPATE_STATE_FIELDS_OF(PALPATE_NODAL_STATE)
+};
+struct NodalState : NodalFields {
+  PALPATE_STATE_GROUP_OF(NodalFields, PALPATE_NODAL_POOLS)
+};
+
+using ByFinger = double[kMaxFingers];
+
+#define PALPATE_ARTICULATION_STATE(X)                                                 \
+  X(ByFinger, closing, {}, "closing fraction of each finger")                         \
+  X(std::int32_t, started, 0, "0: joints take their open positions at the next tick") \
+  X(std::int32_t, moved, 0, "1: some joint moved this tick")
+#define PALPATE_ARTICULATION_POOLS(X)                                                                 \
+  X(double, joint, model.sizes.n_joint, joint.size(), "rad or m")                                     \
+  X(Vec3, axis_tool, model.sizes.n_joint, axis_tool.size(), "of each joint where it is now")          \
+  X(Vec3, origin_tool_m, model.sizes.n_joint, origin_tool_m.size(), "a point on it")                  \
+  X(Pose, motion_tool, moving_pieces(model), motion_tool.size(),                                      \
+    "of each piece from its place with all joints at zero, tool frame: at this tick")                 \
+  X(Pose, motion_previous_tool, moving_pieces(model), motion_previous_tool.size(), "and at the last") \
+  X(Vec3, piece_force_tool_N, moving_pieces(model), piece_force_tool_N.size(),                        \
+    "normal contact load of each piece, of the last tick: what stops joints")                         \
+  X(Vec3, piece_torque_tool_Nm, moving_pieces(model), piece_torque_tool_Nm.size(), "about the tool's origin")
+
+inline std::int64_t moving_pieces(const Model& model) noexcept {
+  return model.sizes.n_joint > 0 ? model.sizes.n_piece : 0;
+}
+
+// Joints of an articulated tool. Written by articulate, the loads by contact; a rigid tool has none.
+struct ArticulationFields {
+  PALPATE_STATE_FIELDS_OF(PALPATE_ARTICULATION_STATE)
+};
+struct ArticulationState : ArticulationFields {
+  PALPATE_STATE_GROUP_OF(ArticulationFields, PALPATE_ARTICULATION_POOLS)
+};
+
+#define PALPATE_SAFETY_STATE(X)                                                                          \
+  X(Mode, mode, Mode::kIdle, "of the mode machine")                                                      \
+  X(std::uint32_t, fault, 0, "latched Fault bits")                                                       \
+  X(std::uint32_t, last_commands, 0, "Command bits of the last tick: edges")                             \
+  X(std::int32_t, stopping, 0, "the operator asked to stop: ramp to zero, then kIdle")                   \
+  X(double, ramp, 0, "0..1 gain of the output")                                                          \
+  X(Pose, tool_corrected_w, {}, "tool after the coupling's corrector: where the next prediction starts") \
+  X(Wrench, last_good_w, {}, "last finite, clamped wrench before the gain")                              \
+  X(Wrench, last_device_w, {}, "last output")
 
 struct SafetyState {
-  Mode mode = Mode::kIdle;
-  std::uint32_t fault = 0;
-  std::uint32_t last_commands = 0;
-  double ramp = 0;            // 0..1 gain of the output
-  std::int32_t stopping = 0;  // the operator asked to stop: ramp to zero, then kIdle
-  Pose tool_corrected_w;      // the virtual tool after the coupling's corrector: where the next prediction starts
-  Wrench last_good_w;         // last finite, clamped wrench before the gain
-  Wrench last_device_w;       // last output
+  PALPATE_STATE_FIELDS_OF(PALPATE_SAFETY_STATE)
 };
 
-// Joints of an articulated tool. Written by articulate; rigid tools leave it untouched.
-struct ArticulationState {
-  double closing[kMaxFingers] = {};
-  double joint[kMaxJoints] = {};  // rad or m
-  std::int32_t started = 0;       // 0: joints take their open positions at the next tick
-  std::int32_t moved = 0;         // 1: some joint moved this tick
-  // Motion of each piece from its place with all joints at zero, tool frame: at this and at the last tick.
-  Pose motion_tool[kMaxPieces];
-  Pose motion_previous_tool[kMaxPieces];
-  Vec3 axis_tool[kMaxJoints];      // of each joint where it is now
-  Vec3 origin_tool_m[kMaxJoints];  // a point on it
-  // Normal contact load of each piece, of the last tick. Written by contact.
-  Vec3 piece_force_tool_N[kMaxPieces];
-  Vec3 piece_torque_tool_Nm[kMaxPieces];  // about the tool's origin
-};
-
-// Largest number of each pool's entries used since reset.
+// Largest number of each pool's entries used since reset: told in every record, read by no tick.
 struct HighWater {
   std::int32_t contacts = 0, regions = 0, traversal_stack = 0, gjk_support_calls = 0;
 };
 
-struct State {
-  std::uint64_t tick = 0;
-  // sense
-  Pose device_w, device_previous_w;
-  Pose tool_w, tool_previous_w;       // pose at which this and the last tick's contact was evaluated
-  double contact_stiffness[36] = {};  // 6x6 tangent (force, torque about the tool origin) of the last tick, row-major
-  std::int32_t started = 0;
-  std::int32_t rejected_ticks = 0;  // consecutive samples found implausible
-  std::uint32_t next_region_id = 1;
-  PointState point[kMaxToolPoints];
-  Region region[kMaxRegions];
-  NodalState nodal;
-  SafetyState safety;
+using Matrix6 = double[36];
+
+#define PALPATE_STATE_FIELDS(X)                                                                   \
+  X(std::uint64_t, tick, 0, "ticks since reset")                                                  \
+  X(Pose, device_w, {}, "of the last accepted sample")                                            \
+  X(Pose, device_previous_w, {}, "of the one before")                                             \
+  X(Pose, tool_w, {}, "at which this tick's contact was evaluated")                               \
+  X(Pose, tool_previous_w, {}, "and the last tick's")                                             \
+  X(Matrix6, contact_stiffness, {}, "tangent (force, torque about the tool's origin), row-major") \
+  X(std::int32_t, started, 0, "0: the next sample is the first")                                  \
+  X(std::int32_t, rejected_ticks, 0, "consecutive samples found implausible")                     \
+  X(std::uint32_t, next_region_id, 1, "of the next region to be born")                            \
+  X(SafetyState, safety, {}, "memory of the last gate")
+#define PALPATE_STATE_POOLS(X)                                                            \
+  X(PointState, point, model.sizes.n_tool_point, point.size(), "one for each tool point") \
+  X(Region, region, kMaxRegions, region.size(), "by slot")
+
+// X(type, name, meaning)
+#define PALPATE_STATE_GROUPS(X)                       \
+  X(NodalState, nodal, "memory of the nodes' method") \
+  X(ArticulationState, articulation, "joints of the tool")
+
+struct StateFields {
+  PALPATE_STATE_FIELDS_OF(PALPATE_STATE_FIELDS)
+};
+struct State : StateFields {
+  PALPATE_STATE_GROUP_OF(StateFields, PALPATE_STATE_POOLS)
+#define PALPATE_STATE_MEMBER(type, name, meaning) type name;
+  PALPATE_STATE_GROUPS(PALPATE_STATE_MEMBER)
+#undef PALPATE_STATE_MEMBER
   HighWater high_water;
-  ArticulationState articulation;
+  std::uint64_t bytes = 0;  // of the block that this begins
+
+  // The visitor gets everything that can influence a later tick.
+  template <class Visitor>
+  void visit_all(Visitor& visitor) const PALPATE_RT_IF(Visitor::kRealTime) {
+    visit(visitor);
+#define PALPATE_STATE_MEMBER(type, name, meaning) visit_value(visitor, #name, name);
+    PALPATE_STATE_GROUPS(PALPATE_STATE_MEMBER)
+#undef PALPATE_STATE_MEMBER
+  }
 };
 
-// Where a tool point's centre stands over the smooth surface (rt_core/surface/smooth_foot.h). Written by find_rows when
-// the model has corner normals; indexed by piece: such tools have one point per piece at most.
+// Where a tool point's centre stands over the smooth surface (surface/smooth_foot.h). Written by find_rows when the
+// model has corner normals; indexed by piece: such tools have one point per piece at most.
 struct SurfaceFoot {
   Vec3 centre_w;  // of the tool point
   std::int32_t triangle = -1;
@@ -134,12 +251,22 @@ struct SurfaceFoot {
   Vec3 gradient_per_m[3];  // of the area coordinates when the centre moves; zero where the foot is held
 };
 
+// The nodes' method keeps its problem in the same block: contact/nodes/node_problem.h. Other scenes have none.
+struct ContactProblem;
+struct NearFour;
+struct NodalScratch {
+  Pool<ContactProblem> problem;  // one
+  Pool<NearFour> near;
+  Pool<std::int8_t> memory_of;
+  Pool<std::int16_t> near_of;
+};
+
 struct Scratch {
   std::uint32_t status = 0;
   std::int32_t contact_count = 0;
-  Contact contact[kMaxContacts];
-  Wrench palm_w;  // hand only: see Output
-  SurfaceFoot foot[kMaxPieces];
+  Pool<Contact> contact;    // kMaxContacts
+  Pool<SurfaceFoot> foot;   // by piece
+  Wrench palm_w;            // hand only: see Output
   Wrench contact_wrench_w;  // sum over regions, on the tool, about the tool's origin
   double energy_J = 0;
   double residual_m = 0;
@@ -149,18 +276,34 @@ struct Scratch {
   std::int32_t driven = 0;     // the tool's pose is given, nobody holds it by a spring
   double strain = 0;           // largest at the gauges (nodal)
   Pose tool_corrected_w;       // where the tool balances
-  ContactProblem nodal;
+  NodalScratch nodal_memory;
+  ContactProblem* nodal = nullptr;  // there; null unless the method is the nodes'
+  std::uint64_t bytes = 0;          // of the block that this begins
 };
 
-static_assert(std::is_trivially_copyable_v<State> && std::is_trivially_copyable_v<Scratch>);
-static_assert(sizeof(State) < 256 * 1024, "State must stay below 256 KiB");
+// Hash of every name and size in the tables: two builds that disagree about one of them have different hashes.
+constexpr std::uint64_t state_layout_hash() noexcept {
+  std::uint64_t hash = State::layout(kLayoutSeed);
+#define PALPATE_STATE_MEMBER(type, name, meaning) hash = layout_with<type>(hash, #name);
+  PALPATE_STATE_GROUPS(PALPATE_STATE_MEMBER)
+#undef PALPATE_STATE_MEMBER
+  return hash;
+}
 
-// Resets to the state before the first tick.
+// Bytes of the block that a scene's State or Scratch needs. docs/image_format.md tells what they come to.
+std::size_t state_bytes(const Model& model) noexcept;
+std::size_t scratch_bytes(const Model& model) noexcept;
+// Makes a State or Scratch at the start of `block`, which holds at least state_bytes() or scratch_bytes() and is
+// aligned to Arena::kAlignment. A State is then as after reset(); what a Scratch holds is left as it was.
+State& create_state(const Model& model, void* block) noexcept;
+Scratch& create_scratch(const Model& model, void* block) noexcept;
+// Whether `state` is laid out as create_state() would for this model: what was read from a file is checked by it first.
+bool is_laid_out_for(const Model& model, const State& state) noexcept;
+// Copies a whole block onto another of the same layout: snapshot, restore, rollback.
+void copy_state(const State& from, State& to) PALPATE_RT;
+// Resets to the state before the first tick. Bound: the block.
 void reset(State& state) PALPATE_RT;
-// Canonical hash of everything in `state` that can influence a later tick, field by field, never padding. `field`-wise
-// so that a replay can name the first difference: see `first_difference`.
-std::uint64_t hash_state(const Model& model, const State& state) PALPATE_RT;
-// Name of the first field (in hash order) whose hash differs, or nullptr; host use.
-const char* first_difference(const Model& model, const State& a, const State& b) noexcept;
+// Canonical hash of everything that can influence a later tick, field by field, never padding or unused entries.
+std::uint64_t hash_state(const State& state) PALPATE_RT;
 
 }  // namespace palpate

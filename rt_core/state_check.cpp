@@ -79,7 +79,7 @@ StateFault check_nodes(const Model& model, const State& state) noexcept {
     if (!is_friction(c.friction)) return {"nodal.contact.friction", i};
     if (!are_finite(c.force_w, c.anchor_tool_m)) return {"nodal.contact", i};
   }
-  for (int32_t i = 0; i < kMaxRegions; ++i) {
+  for (int32_t i = 0; i < nodal.motion.size(); ++i) {
     const RegionMotion& m = nodal.motion[i];
     if (!are_finite(m.centre_w, m.translation_m, m.rotation_rad, m.reach_m, m.growth, m.finite))
       return {"nodal.motion", i};
@@ -96,13 +96,13 @@ StateFault check_safety(const SafetyState& s) noexcept {
   return is_wrench(s.last_device_w) ? StateFault{} : StateFault{"safety.last_device_w"};
 }
 
-StateFault check_articulation(const Model& model, const ArticulationState& a) noexcept {
+StateFault check_articulation(const ArticulationState& a) noexcept {
   if (a.started < 0 || a.started > 1 || a.moved < 0 || a.moved > 1) return {"articulation.started"};
   for (int32_t i = 0; i < kMaxFingers; ++i)
     if (!(a.closing[i] >= 0 && a.closing[i] <= 1)) return {"articulation.closing", i};
-  for (int64_t i = 0; i < model.sizes.n_joint; ++i)
+  for (int64_t i = 0; i < a.joint.size(); ++i)
     if (!are_finite(a.joint[i], a.axis_tool[i], a.origin_tool_m[i])) return {"articulation.joint", i};
-  for (int64_t i = 0; i < model.sizes.n_piece; ++i) {
+  for (int64_t i = 0; i < a.motion_tool.size(); ++i) {
     if (!is_pose(a.motion_tool[i]) || !is_pose(a.motion_previous_tool[i])) return {"articulation.motion_tool", i};
     if (!are_finite(a.piece_force_tool_N[i], a.piece_torque_tool_Nm[i])) return {"articulation.piece_force", i};
   }
@@ -112,9 +112,10 @@ StateFault check_articulation(const Model& model, const ArticulationState& a) no
 }  // namespace
 
 StateFault check_state(const Model& model, const State& state) noexcept {
+  if (!is_laid_out_for(model, state)) return {"layout"};
   const StateFault faults[] = {
       check_poses(state),        check_points(model, state), check_regions(state),
-      check_nodes(model, state), check_safety(state.safety), check_articulation(model, state.articulation),
+      check_nodes(model, state), check_safety(state.safety), check_articulation(state.articulation),
   };
   for (const StateFault& fault : faults)
     if (fault.field != nullptr) return fault;

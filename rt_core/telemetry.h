@@ -90,26 +90,11 @@ constexpr std::uint64_t record_layout_hash() noexcept {
                                  offsetof(Output, fault),
                                  offsetof(Output, mode),
                                  offsetof(Output, palm_w),
-                                 sizeof(State),
-                                 offsetof(State, contact_stiffness),
-                                 offsetof(State, point),
-                                 offsetof(State, region),
-                                 offsetof(State, safety),
-                                 offsetof(State, high_water),
-                                 offsetof(State, articulation),
-                                 sizeof(PointState),
-                                 sizeof(Region),
-                                 sizeof(SafetyState),
-                                 sizeof(ArticulationState),
+                                 state_layout_hash(),
                                  kMaxRegions,
-                                 kMaxToolPoints,
-                                 kMaxJoints,
-                                 kMaxPieces,
                                  kStageCount};
-  std::uint64_t hash = 0xcbf29ce484222325ull;
-  for (const std::uint64_t fact : facts) {
-    for (int byte = 0; byte < 8; ++byte) hash = (hash ^ ((fact >> (8 * byte)) & 0xff)) * 0x100000001b3ull;
-  }
+  std::uint64_t hash = kLayoutSeed;
+  for (const std::uint64_t fact : facts) hash = layout_with(hash, fact);
   return hash;
 }
 inline constexpr std::uint64_t kRecordLayoutHash = record_layout_hash();
@@ -127,7 +112,6 @@ struct TelemetryHeader {
   char scene_name[kNameBytes];       // zero-terminated
   char build_id[kBuildIdBytes];      // zero-terminated
   char image_path[kImagePathBytes];  // zero-terminated
-  State initial_state;               // before the first tick: where a replay starts
 };
 
 struct TelemetryRegion {
@@ -159,8 +143,8 @@ class TelemetryWriter {
  public:
   TelemetryWriter() = default;
   // Fills the header of a zeroed region. Texts longer than their field are cut.
-  void open(TelemetryRegion& region, const Model& model, const State& initial_state, std::int64_t period_ns,
-            const char* build_id, const char* image_path) noexcept {
+  void open(TelemetryRegion& region, const Model& model, std::int64_t period_ns, const char* build_id,
+            const char* image_path) noexcept {
     region_ = &region;
     sequence_ = 0;
     TelemetryHeader& header = region.header;
@@ -175,7 +159,6 @@ class TelemetryWriter {
     copy_text(header.scene_name, model.name);
     copy_text(header.build_id, build_id);
     copy_text(header.image_path, image_path);
-    std::memcpy(static_cast<void*>(&header.initial_state), &initial_state, sizeof(State));
   }
   // Publishes one record under the next sequence number 1, 2, 3..., whatever record.sequence says. Not before open().
   void write(const TickRecord& record) PALPATE_RT {

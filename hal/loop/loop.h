@@ -83,7 +83,7 @@ class ModelController {
     tick(model_, state_, scratch_, input, output, probe);
   }
   void fill(const Input& input, const Output& output, TickRecord& record) noexcept {
-    fill_record(model_, state_, input, output, record);
+    fill_record(state_, input, output, record);
   }
 
  private:

@@ -24,7 +24,7 @@ void restart_contact(State& state) PALPATE_RT {
   for (double& k : state.contact_stiffness) k = 0;
   for (PointState& point : state.point) point = PointState{};  // bound: kMaxToolPoints
   for (Region& region : state.region) region = Region{};       // bound: kMaxRegions
-  state.nodal = NodalState{};
+  state.nodal.reset();
 }
 
 Wrench limited(const Model& model, Wrench wrench, Scratch& scratch) PALPATE_RT {

@@ -90,7 +90,7 @@ bool move_joints(const Model& model, State& state, Scratch& scratch, const Input
 
 void place_pieces(const Model& model, ArticulationState& a) PALPATE_RT {
   Pose link[kMaxJoints];
-  place_links(model, a.joint, link, a.axis_tool, a.origin_tool_m);
+  place_links(model, a.joint.data(), link, a.axis_tool.data(), a.origin_tool_m.data());
   for (std::size_t p = 0; p < model.piece.size(); ++p) {  // bound: kMaxPieces
     const std::int32_t j = model.piece[p].joint;
     if (j >= 0) a.motion_tool[p] = link[j] * joint_at(model, j).zero_inverse;

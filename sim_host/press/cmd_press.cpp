@@ -15,6 +15,7 @@
 #include "sim_host/press/force_csv.h"
 #include "sim_host/run/joint_script.h"
 #include "sim_host/status_text.h"
+#include "sim_host/tick_memory.h"
 #include "sim_host/view/picture.h"
 #include "sim_host/view/plot.h"
 #include "sim_host/view/vtu.h"
@@ -82,14 +83,15 @@ struct Collected {
   Seen status[32];  // of each status bit
   std::int64_t instructions_max = -1;
   double force_max_N = 0, depth_max_m = 0;
-  std::unique_ptr<State> strongest = std::make_unique<State>();
+  StatePtr strongest;  // of the tick with the largest force
 
   void add(const PressRow& row, const State& state) {
     const Output& output = row.record.output;
     const double force = norm(output.contact_w.force_N);
     if (rows == 0 || force > force_max_N) {
       force_max_N = force;
-      *strongest = state;
+      if (strongest == nullptr) strongest = copy_of(state);
+      copy_state(state, *strongest);
     }
     rows += 1;
     see(output.status, row.time_s);
@@ -185,7 +187,7 @@ int run_press(const PressOptions& options) {
   }
   Collected all;
   const Progress progress(poses.size());
-  const auto state = std::make_unique<State>();
+  const StatePtr state = make_state(model);
   const bool wants_anchors = !options.anchors.empty() || !options.anchor_plot.empty();
   press(model, poses, drive_of(options, scene), *state, &counter,
         [&](const PressRow& row, const State& now, const Scratch&) {

@@ -53,7 +53,7 @@ double normal_sum_N(const State& state) {
 }
 
 void keep_hold(const Model& model, const PressRow& row, const State& state, GraspRun& run) {
-  run.held = std::make_unique<State>(state);
+  run.held = copy_of(state);
   run.contact_w = row.record.output.contact_w;
   run.palm_w = row.record.output.palm_w;
   run.regions = row.record.output.regions;
@@ -83,10 +83,10 @@ GraspRun run_grasp(const Model& model, const SceneDesc& scene, const GraspOption
   GraspRun run;
   run.name = scene.name;
   run.stress_Pa.resize(model.anchor.size());
-  State state;
+  const StatePtr state = make_state(model);
   std::size_t n = 0;
   double before_N = -1;
-  press(model, poses, {options.hand_N_per_m}, state, nullptr,
+  press(model, poses, {options.hand_N_per_m}, *state, nullptr,
         [&](const PressRow& row, const State& now, const Scratch&) {
           const double sum_N = normal_sum_N(now);
           run.residual_max_m = std::max(run.residual_max_m, row.record.output.residual_m);

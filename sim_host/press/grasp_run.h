@@ -1,6 +1,8 @@
 // A scripted grasp played without a device, and what it does to the body: the figures of Cui & Xiao 2008.
 #pragma once
 
+#include "sim_host/tick_memory.h"
+
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -25,7 +27,7 @@ struct GraspRun {
   // Summed over the regions (AnchorLoad::stress_sum_Pa). History: per anchor, per sample.
   std::vector<std::vector<double>> stress_Pa;
   // At the end of the hold: the last tick with every finger told to be as closed as it ever is.
-  std::unique_ptr<State> held;
+  StatePtr held;
   std::vector<double> held_stress_Pa;  // per anchor
   Wrench contact_w, palm_w;
   std::vector<double> part_force_N;  // sum of the normal forces on each finger part; [0] unused

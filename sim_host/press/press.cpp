@@ -10,6 +10,7 @@
 
 #include "rt_core/contact/contact.h"
 #include "rt_core/tick.h"
+#include "sim_host/tick_memory.h"
 
 namespace palpate {
 
@@ -69,7 +70,7 @@ Model held_by_hand(const Model& model, double hand_N_per_m) {
 void press(const Model& model, std::span<const TimedPose> poses, const PressDrive& drive, State& state,
            InstructionCounter* counter, const PressListener& listen) {
   reset(state);
-  const auto scratch = std::make_unique<Scratch>();
+  const ScratchPtr scratch = make_scratch(model);
   PressRow row;
   std::uint64_t sequence = 0;
   Output output;
@@ -95,7 +96,7 @@ void press(const Model& model, std::span<const TimedPose> poses, const PressDriv
     tick(held, state, *scratch, input, output);
     if (counter != nullptr) row.instructions = counter->stop();
     row.compute_ns = std::chrono::nanoseconds(std::chrono::steady_clock::now() - begin).count();
-    fill_record(model, state, input, output, row.record);
+    fill_record(state, input, output, row.record);
     row.record.sequence = ++sequence;
     listen(row, state, *scratch);
   }

@@ -19,8 +19,8 @@ BlackBox::BlackBox(std::string prefix, const RecordingHeader& header, const Stat
       model_(model),
       image_(std::move(image)),
       ring_(kBlackBoxTicks),
-      state_(initial_state),
-      scratch_(std::make_unique<Scratch>()) {}
+      state_(copy_of(initial_state)),
+      scratch_(model == nullptr ? ScratchPtr() : make_scratch(*model)) {}
 
 // Moves the kept state over the oldest record, then forgets that record.
 void BlackBox::drop_oldest() {
@@ -28,8 +28,8 @@ void BlackBox::drop_oldest() {
   state_known_ = state_known_ && model_ != nullptr && oldest.sequence == state_sequence_;
   if (state_known_) {
     Output output;
-    tick(*model_, state_, *scratch_, oldest.input, output);
-    state_known_ = hash_state(*model_, state_) == oldest.state_hash;
+    tick(*model_, *state_, *scratch_, oldest.input, output);
+    state_known_ = hash_state(*state_) == oldest.state_hash;
     state_sequence_ += 1;
   }
   first_ = (first_ + 1) % kBlackBoxTicks;
@@ -85,7 +85,7 @@ void BlackBox::dump() {
 }
 
 void BlackBox::write_recording(const BlackBoxDump& dump) {
-  RecordingWriter file(PartFile(dump.recording, WhenItExists::kRefuse), header_, state_, image_);
+  RecordingWriter file(PartFile(dump.recording, WhenItExists::kRefuse), header_, block_of(*state_), image_);
   file.begin_slice(at(0).sequence, dump.replayable);
   for (std::size_t i = 0; i < count_; ++i) {
     const std::uint64_t expected = i == 0 ? at(0).sequence : at(i - 1).sequence + 1;

@@ -16,6 +16,7 @@
 #include "rt_core/state.h"
 #include "sim_host/record/candump_log.h"
 #include "sim_host/record/recording_writer.h"
+#include "sim_host/tick_memory.h"
 
 namespace palpate {
 
@@ -65,8 +66,8 @@ class BlackBox {
   std::vector<PackedPiece> image_;
   std::vector<TickRecord> ring_;
   std::size_t first_ = 0, count_ = 0;
-  State state_;  // before the record state_sequence_, if state_known_
-  std::unique_ptr<Scratch> scratch_;
+  StatePtr state_;  // before the record state_sequence_, if state_known_
+  ScratchPtr scratch_;
   std::uint64_t state_sequence_ = 1;
   bool state_known_ = true;
   std::uint32_t last_fault_ = 0;

@@ -12,6 +12,7 @@
 #include "sim_host/record/recorded_image.h"
 #include "sim_host/record/recording_reader.h"
 #include "sim_host/record/replay.h"
+#include "sim_host/record/state_dump.h"
 
 namespace palpate {
 
@@ -19,6 +20,7 @@ namespace {
 
 struct ReplayOptions {
   std::string recording, image, dump;
+  std::int64_t state = -1;  // tick after which to print the state
 };
 
 int report(const ReplayResult& result) {
@@ -49,6 +51,12 @@ int list_only(RecordingReader& recording, RecordCsv* csv) {
   return kExitFailed;
 }
 
+int print_state(RecordingReader& recording, const Model& model, std::int64_t tick) {
+  const StatePtr state = state_after(recording, model, static_cast<std::uint64_t>(tick));
+  for (const auto& [name, value] : list_state(*state)) fmt::print("{:<44} {}\n", name, value);
+  return kExitOk;
+}
+
 int run_replay(const ReplayOptions& options) {
   const MappedFile file(options.recording);
   RecordingReader recording(file.bytes());
@@ -57,6 +65,7 @@ int run_replay(const ReplayOptions& options) {
   if (!options.dump.empty()) csv = std::make_unique<RecordCsv>(options.dump);
   if (!recording.state_known()) return list_only(recording, csv.get());
   const RecordedScene scene(recording, options.image);
+  if (options.state >= 0) return print_state(recording, scene.model(), options.state);
   if (std::strcmp(header.build_id, kBuildId) != 0) {
     fmt::print("recorded by another build, verifying all the same\n  recorded {}\n  this one {}\n", header.build_id,
                kBuildId);
@@ -75,6 +84,8 @@ void add_replay_command(CLI::App& app, int& exit_code) {
   command->add_option("--image", options->image,
                       "scene image to use; default: the one the recording names, or the one inside it");
   command->add_option("--dump", options->dump, "write one row per recorded tick to this CSV file");
+  command->add_option("--state", options->state, "print every field of the state after this tick, and nothing else")
+      ->check(CLI::NonNegativeNumber);
   command->footer(
       "Prints `identical: N ticks` and exits with 0, or names the first tick, stage and field that differ and exits\n"
       "with 1. A damaged or incomplete recording is verified as far as it goes, and exits with 1. Black boxes\n"

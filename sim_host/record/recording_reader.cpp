@@ -21,9 +21,10 @@ RecordingReader::RecordingReader(std::span<const std::byte> bytes) : bytes_(byte
   }
   header_.scene_name[kNameBytes - 1] = header_.build_id[kBuildIdBytes - 1] = '\0';
   header_.image_path[kImagePathBytes - 1] = '\0';
-  const Chunk state = expect_chunk(plr::kState, sizeof(State));
-  std::memcpy(static_cast<void*>(&initial_state_), state.payload.data(), sizeof(State));
-  if (header_.initial_state_hash != plr::crc32(state.payload.data(), sizeof(State))) {
+  const Chunk state = read_chunk();
+  if (state.tag != plr::kState) throw RecordingError(fmt::format("offset {}: unexpected chunk", chunk_offset_));
+  initial_state_.assign(state.payload.begin(), state.payload.end());
+  if (header_.initial_state_hash != plr::crc32(initial_state_.data(), initial_state_.size())) {
     throw RecordingError(fmt::format("offset {}: the initial state is not the one the header names", chunk_offset_));
   }
   read_image();
@@ -61,9 +62,12 @@ void RecordingReader::read_slice() {
   state_known_ = slice.state_known != 0;
 }
 
-const State& RecordingReader::initial_state(const Model& model) const {
-  const StateFault fault = check_state(model, initial_state_);
-  if (fault.field == nullptr) return initial_state_;
+StatePtr RecordingReader::initial_state(const Model& model) const {
+  StatePtr state = make_state(model);
+  const bool fits = initial_state_.size() == state->bytes;
+  if (fits) std::memcpy(static_cast<void*>(state.get()), initial_state_.data(), initial_state_.size());
+  const StateFault fault = fits ? check_state(model, *state) : StateFault{"its size"};
+  if (fault.field == nullptr) return state;
   const std::string at = fault.index >= 0 ? fmt::format("[{}]", fault.index) : "";
   throw RecordingError(
       fmt::format("the recording's initial state is one this scene cannot have: {}{}; the file was made or changed by "

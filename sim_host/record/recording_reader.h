@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim_host/record/recording.h"
+#include "sim_host/tick_memory.h"
 
 namespace palpate {
 
@@ -18,9 +19,9 @@ class RecordingReader {
 
   const RecordingHeader& header() const { return header_; }
   // Throws RecordingError, naming the field, unless it is one that a tick of `model` may be given.
-  const State& initial_state(const Model& model) const;
-  // The same unchecked: to be copied, not to be ticked.
-  const State& stored_state() const { return initial_state_; }
+  StatePtr initial_state(const Model& model) const;
+  // Its block unchecked: to be copied, not to be ticked.
+  std::span<const std::byte> stored_state() const { return initial_state_; }
   // The scene image inside, packed; empty without one, and incomplete when the file is cut there.
   struct ImagePiece {
     std::uint32_t unpacked_bytes = 0;
@@ -65,7 +66,7 @@ class RecordingReader {
   std::span<const std::byte> ticks_;
   std::uint32_t ticks_left_ = 0;
   RecordingHeader header_;
-  State initial_state_;
+  std::vector<std::byte> initial_state_;
   std::vector<ImagePiece> image_;
   std::uint64_t records_ = 0;
   std::uint64_t lost_ = 0;

@@ -13,16 +13,16 @@ std::span<const std::byte> bytes_of(const auto& value) {
 
 }  // namespace
 
-RecordingWriter::RecordingWriter(PartFile file, RecordingHeader header, const State& initial_state,
+RecordingWriter::RecordingWriter(PartFile file, RecordingHeader header, std::span<const std::byte> initial_state,
                                  std::span<const PackedPiece> image)
     : file_(std::move(file)) {
   plr::Prefix prefix{plr::kMagic, plr::kVersion, 0};
   prefix.crc = plr::crc32(&prefix, offsetof(plr::Prefix, crc));
-  header.initial_state_hash = plr::crc32(&initial_state, sizeof(State));
+  header.initial_state_hash = plr::crc32(initial_state.data(), initial_state.size());
   try {
     file_.write(&prefix, sizeof(prefix));
     write_chunk(plr::kHead, 1, bytes_of(header));
-    write_chunk(plr::kState, 1, bytes_of(initial_state));
+    write_chunk(plr::kState, 1, initial_state);
     for (const PackedPiece& piece : image) write_chunk(plr::kImage, piece.unpacked_bytes, piece.bytes);
   } catch (const RecordingError&) {
     file_.discard();

@@ -9,6 +9,7 @@
 
 #include "sim_host/record/part_file.h"
 #include "sim_host/record/recording.h"
+#include "sim_host/tick_memory.h"
 
 namespace palpate {
 
@@ -20,12 +21,13 @@ struct PackedPiece {
 
 class RecordingWriter {
  public:
-  // `image`: the scene's, so that the recording can be replayed without it; may be empty.
-  RecordingWriter(PartFile file, RecordingHeader header, const State& initial_state,
+  // `initial_state`: the block of the State before the first record. `image`: the scene's, so that the recording can be
+  // replayed without it; may be empty.
+  RecordingWriter(PartFile file, RecordingHeader header, std::span<const std::byte> initial_state,
                   std::span<const PackedPiece> image = {});
   // The same, under a name that must be free.
   RecordingWriter(const std::string& path, const RecordingHeader& header, const State& initial_state)
-      : RecordingWriter(PartFile(path, WhenItExists::kRefuse), header, initial_state) {}
+      : RecordingWriter(PartFile(path, WhenItExists::kRefuse), header, block_of(initial_state)) {}
   // Without finish(): what was written stays, as NAME.part; nothing stays when not one record was added.
   ~RecordingWriter();
   RecordingWriter(const RecordingWriter&) = delete;

@@ -7,22 +7,11 @@
 #include <string_view>
 
 #include "rt_core/tick.h"
+#include "sim_host/record/value_text.h"
 
 namespace palpate {
 
 namespace {
-
-std::string text_of(double value) { return fmt::format("{:.17g}", value); }
-std::string text_of(std::int32_t value) { return fmt::format("{}", value); }
-std::string text_of(std::uint32_t value) { return fmt::format("{:#x}", value); }
-std::string text_of(std::uint64_t value) { return fmt::format("{:016x}", value); }
-std::string text_of(Mode value) { return fmt::format("{}", static_cast<std::int32_t>(value)); }
-std::string text_of(Vec3 v) { return fmt::format("({:.17g}, {:.17g}, {:.17g})", v.x, v.y, v.z); }
-std::string text_of(const Wrench& w) { return text_of(w.force_N) + " " + text_of(w.torque_Nm); }
-std::string text_of(const Pose& p) {
-  const Quat& q = p.orientation;
-  return fmt::format("{} ({:.17g}, {:.17g}, {:.17g}, {:.17g})", text_of(p.position_m), q.w, q.x, q.y, q.z);
-}
 
 // Compares fields in the order they are presented and keeps the first that differs, bit for bit (NaN equals itself).
 class FirstDifference {
@@ -95,21 +84,27 @@ bool first_record_difference(const TickRecord& recorded, const TickRecord& repla
   return difference.found();
 }
 
+namespace {
+
+void check_scene(const RecordingHeader& header, const Model& model) {
+  if (header.scene_hash == model.scene_hash) return;
+  throw RecordingError(
+      fmt::format("the recording was made with scene image {:016x} ('{}', {}), this image is {:016x} ('{}')",
+                  header.scene_hash, header.scene_name, header.image_path, model.scene_hash, model.name));
+}
+
+}  // namespace
+
 ReplayResult replay(RecordingReader& recording, const Model& model, const ReplayListener& listen) {
-  const RecordingHeader& header = recording.header();
-  if (header.scene_hash != model.scene_hash) {
-    throw RecordingError(
-        fmt::format("the recording was made with scene image {:016x} ('{}', {}), this image is {:016x} ('{}')",
-                    header.scene_hash, header.scene_name, header.image_path, model.scene_hash, model.name));
-  }
+  check_scene(recording.header(), model);
   ReplayResult result;
-  const auto scratch = std::make_unique<Scratch>();
+  const ScratchPtr scratch = make_scratch(model);
   TickRecord recorded;
   if (!recording.state_known()) {
     throw RecordingError(
         "a slice of a longer run without the state before its first tick: it can be listed (--dump) but not replayed");
   }
-  State state = recording.initial_state(model);
+  const StatePtr state = recording.initial_state(model);
   std::uint64_t expected = recording.first_sequence();
   while (recording.next(recorded)) {
     if (recorded.sequence != expected) {
@@ -119,8 +114,8 @@ ReplayResult replay(RecordingReader& recording, const Model& model, const Replay
     expected += 1;
     TickRecord replayed{};
     Output output;
-    tick(model, state, *scratch, recorded.input, output);
-    fill_record(model, state, recorded.input, output, replayed);
+    tick(model, *state, *scratch, recorded.input, output);
+    fill_record(*state, recorded.input, output, replayed);
     if (listen) listen(recorded, replayed);
     if (first_record_difference(recorded, replayed, result)) {
       result.differs = true;
@@ -132,6 +127,22 @@ ReplayResult replay(RecordingReader& recording, const Model& model, const Replay
   result.lost = recording.lost();
   result.damage = recording.error();
   return result;
+}
+
+StatePtr state_after(RecordingReader& recording, const Model& model, std::uint64_t wanted) {
+  check_scene(recording.header(), model);
+  StatePtr state = recording.initial_state(model);
+  const ScratchPtr scratch = make_scratch(model);
+  TickRecord record;
+  Output output;
+  while (recording.next(record)) {
+    if (record.tick != state->tick) {
+      throw RecordingError(fmt::format("tick {} is missing in the recording: nothing after it is known", state->tick));
+    }
+    tick(model, *state, *scratch, record.input, output);
+    if (record.tick == wanted) return state;
+  }
+  throw RecordingError(fmt::format("tick {} is not in the recording", wanted));
 }
 
 }  // namespace palpate

@@ -30,6 +30,10 @@ using ReplayListener = std::function<void(const TickRecord& recorded, const Tick
 // made with another scene image.
 ReplayResult replay(RecordingReader& recording, const Model& model, const ReplayListener& listen = {});
 
+// The state after the recorded tick `wanted`, by running the inputs up to it again. Throws RecordingError when the
+// image is another one, or a tick before it is missing.
+StatePtr state_after(RecordingReader& recording, const Model& model, std::uint64_t wanted);
+
 // First field in which two records of one tick differ, in the order of the stages; false when all agree.
 bool first_record_difference(const TickRecord& recorded, const TickRecord& replayed, ReplayResult& result);
 

@@ -22,6 +22,7 @@
 #include "sim_host/build_id.h"
 #include "sim_host/run/heap_count.h"
 #include "sim_host/run/host_port.h"
+#include "sim_host/tick_memory.h"
 
 namespace palpate {
 namespace {
@@ -116,7 +117,7 @@ struct HostConnection {
   TelemetryWriter writer;
 };
 
-void connect_host(const Arguments& arguments, const Model& model, const State& initial, HostConnection& host) {
+void connect_host(const Arguments& arguments, const Model& model, HostConnection& host) {
   std::string error;
   const int fd = receive_descriptor(arguments.control_fd, 'C', kSocketTimeout_ms, error);
   if (fd >= 0) host.mailbox = SharedMemory::open_peer(fd, sizeof(MailboxRegion), error);
@@ -127,7 +128,7 @@ void connect_host(const Arguments& arguments, const Model& model, const State& i
   host.telemetry = SharedMemory::create("palpate-telemetry", sizeof(TelemetryRegion), error);
   if (!host.telemetry) throw Failure{kUnavailable, "telemetry: " + error};
   const std::unique_ptr<char, void (*)(void*)> full(realpath(arguments.image.c_str(), nullptr), std::free);
-  host.writer.open(*static_cast<TelemetryRegion*>(host.telemetry.data()), model, initial,
+  host.writer.open(*static_cast<TelemetryRegion*>(host.telemetry.data()), model,
                    static_cast<std::int64_t>(model.params.period_s * 1e9 + 0.5), kBuildId,
                    full ? full.get() : arguments.image.c_str());
   if (!send_descriptor(arguments.control_fd, 'T', host.telemetry.fd(), error)) throw Failure{kUnavailable, error};
@@ -170,8 +171,9 @@ LoopOptions loop_options(const Model& model, const Arguments& arguments) {
 }
 
 struct Core {
-  State state;
-  Scratch scratch;
+  explicit Core(const Model& model) : state(make_state(model)), scratch(make_scratch(model)) {}
+  StatePtr state;
+  ScratchPtr scratch;
 };
 
 // What the device sent before the loop started is old, and reading it all would make the first tick late.
@@ -217,7 +219,7 @@ LoopSummary run_loop(const Arguments& arguments, const Model& model, Core& core,
   HostPort port(mailbox, static_cast<std::uint32_t>(kHostSilence_s / model.params.period_s), interrupted, stop);
   TelemetrySink sink(mailbox != nullptr ? &host.writer : nullptr);
   SupervisedDevice device(bus, port);
-  ModelController controller(model, core.state, core.scratch);
+  ModelController controller(model, *core.state, *core.scratch);
   const CartesianKinematics kinematics;
   LoopSummary summary;
   std::thread thread([&] {
@@ -270,18 +272,17 @@ int run(int argc, char** argv) {
   const std::atomic<bool>& interrupted = install_stop_signals();
   PrivateFile image;
   const Model model = load_image(arguments.image, image);
-  const auto core = std::make_unique<Core>();
-  reset(core->state);
+  Core core(model);
   HostConnection host;
-  if (arguments.control_fd >= 0) connect_host(arguments, model, core->state, host);
+  if (arguments.control_fd >= 0) connect_host(arguments, model, host);
   DeviceAddress address;
   const std::unique_ptr<Transport> transport = connect_device(arguments, model.params.period_s, address);
   DeviceBus bus(*transport, address.profile, address.node);
   LoopUsage usage;
   MonotonicClock clock;
   const LoopSummary summary = arguments.virtual_time()
-                                  ? run_in_virtual_time(arguments, model, *core, host, bus, interrupted, usage)
-                                  : run_loop(arguments, model, *core, host, bus, clock, interrupted, usage);
+                                  ? run_in_virtual_time(arguments, model, core, host, bus, interrupted, usage)
+                                  : run_loop(arguments, model, core, host, bus, clock, interrupted, usage);
   if (summary.end == LoopEnd::kSilentAtStart) {
     throw Failure{kSilentAtStart, "the device sent nothing at start: check power, cable, bus and node number"};
   }

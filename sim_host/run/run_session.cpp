@@ -23,6 +23,7 @@
 #include "sim_host/run/host_time.h"
 #include "sim_host/run/socket_pair.h"
 #include "sim_host/run/status_line.h"
+#include "sim_host/tick_memory.h"
 
 namespace palpate {
 
@@ -159,7 +160,7 @@ CandumpOptions candump_options(const DeviceAddress& address, bool virtual_time) 
 double recording_bytes(double duration_s, const ImageFile& image) {
   const double ticks = duration_s / image.model().params.period_s;
   return ticks * static_cast<double>(plr::kRecordPrefix + 2 * sizeof(RegionRecord)) +
-         static_cast<double>(sizeof(State) + image.bytes().size());
+         static_cast<double>(state_bytes(image.model()) + image.bytes().size());
 }
 
 // Watches the controller until the time is over, a signal comes or it ends by itself.
@@ -252,15 +253,16 @@ RunResult follow(ControllerLink& link, HostTime& time, const RunOptions& options
                  const DeviceAddress& address, const ImageFile& image, std::optional<PartFile> record_file) {
   const bool virtual_time = runs_in_virtual_time(options);
   const TelemetryHeader& header = link.telemetry().header;
+  const StatePtr initial = make_state(image.model());  // every run starts after a reset
   const std::vector<PackedPiece> packed = pack_image(image.bytes());
   std::unique_ptr<RecordingWriter> file;
   if (record_file) {
-    file = std::make_unique<RecordingWriter>(std::move(*record_file), recording_header(header), header.initial_state,
+    file = std::make_unique<RecordingWriter>(std::move(*record_file), recording_header(header), block_of(*initial),
                                              packed);
   }
   std::unique_ptr<BlackBox> box;
   if (!options.black_box.empty()) {
-    box = std::make_unique<BlackBox>(options.black_box, recording_header(header), header.initial_state, &image.model(),
+    box = std::make_unique<BlackBox>(options.black_box, recording_header(header), *initial, &image.model(),
                                      candump_options(address, virtual_time), packed);
   }
   const auto summary = std::make_unique<SharedSummary>();

@@ -14,6 +14,7 @@
 #include "sim_host/record/mapped_file.h"
 #include "sim_host/record/recorded_image.h"
 #include "sim_host/record/recording_reader.h"
+#include "sim_host/record/replay.h"
 #include "sim_host/view/picture.h"
 #include "sim_host/view/plot.h"
 
@@ -60,31 +61,8 @@ History read_history(const MappedFile& file) {
   return history;
 }
 
-// Runs the recorded inputs again up to and including `tick`.
-void state_at(const MappedFile& file, const Model& model, std::uint64_t wanted, State& state) {
-  RecordingReader recording(file.bytes());
-  if (recording.header().scene_hash != model.scene_hash) {
-    throw std::runtime_error(
-        fmt::format("recorded with scene {:016x}, but this image is {:016x}; name the right --image",
-                    recording.header().scene_hash, model.scene_hash));
-  }
-  state = recording.initial_state(model);
-  const auto scratch = std::make_unique<Scratch>();
-  TickRecord record;
-  Output output;
-  while (recording.next(record)) {
-    if (record.tick != state.tick) {
-      throw std::runtime_error(
-          fmt::format("tick {} is missing in the recording: nothing after it can be drawn", state.tick));
-    }
-    tick(model, state, *scratch, record.input, output);
-    if (record.tick == wanted) return;
-  }
-  throw std::runtime_error(fmt::format("tick {} is not in the recording", wanted));
-}
-
 int draw_recording(const DrawOptions& options, const MappedFile& file) {
-  const RecordingReader recording(file.bytes());
+  RecordingReader recording(file.bytes());
   const RecordedScene scene(recording, options.image);
   const History history = read_history(file);
   const std::uint64_t wanted = options.tick >= 0 ? static_cast<std::uint64_t>(options.tick) : history.strongest_tick;
@@ -92,8 +70,7 @@ int draw_recording(const DrawOptions& options, const MappedFile& file) {
     throw std::runtime_error(
         fmt::format("--tick {}: the recording holds ticks {} to {}", wanted, history.first_tick, history.last_tick));
   }
-  const auto state = std::make_unique<State>();
-  state_at(file, scene.model(), wanted, *state);
+  const StatePtr state = state_after(recording, scene.model(), wanted);
   PictureOptions picture;
   picture.width = options.width;
   picture.height = options.height;
@@ -110,13 +87,12 @@ int draw_recording(const DrawOptions& options, const MappedFile& file) {
 int draw_scene(const DrawOptions& options) {
   if (options.tick >= 0 || !options.plot.empty()) throw std::runtime_error("--tick and --plot need a recording");
   const SceneModel scene(options.source);
-  const auto state = std::make_unique<State>();
-  reset(*state);
+  const StatePtr state = make_state(scene.model());
   if (scene.scene() && !scene.scene()->path.point.empty()) {
     Input input;
     input.drive = Drive::kTool;
     input.pose_w = scripted_poses(scene.scene()->path, scene.model().params.period_s).front().tool_w;
-    const auto scratch = std::make_unique<Scratch>();
+    const ScratchPtr scratch = make_scratch(scene.model());
     Output output;
     tick(scene.model(), *state, *scratch, input, output);  // a hand's joints go to where they begin
   }

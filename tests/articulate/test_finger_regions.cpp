@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "rt_core/contact/regions.h"
+#include "tests/support/roomy.h"
 
 namespace palpate {
 namespace {
@@ -13,8 +14,8 @@ constexpr double kNear_m = 4e-3;
 
 struct TwoParts {
   Model model;
-  std::unique_ptr<State> state = std::make_unique<State>();
-  std::unique_ptr<Scratch> scratch = std::make_unique<Scratch>();
+  StatePtr state = test::roomy_state();
+  ScratchPtr scratch = test::roomy_scratch();
   ToolPiece piece[2];
   ToolPoint point[2];
 
@@ -26,6 +27,7 @@ struct TwoParts {
     model.piece = piece;
     model.tool_point = point;
     scratch->contact_count = 2;
+    for (Contact& contact : scratch->contact) contact = {};
     for (std::int32_t i = 0; i < 2; ++i) place(i, i);
   }
   void place(std::int32_t i, std::int32_t on_piece) {

@@ -12,7 +12,9 @@
 #include "rt_core/tool/carrier.h"
 #include "sim_host/bake/scene_model.h"
 #include "sim_host/press/grasp_run.h"
+#include "sim_host/record/state_dump.h"
 #include "tests/support/baked_scene.h"
+#include "tests/support/roomy.h"
 
 namespace palpate::test {
 namespace {
@@ -226,7 +228,7 @@ TEST(Grasp, LoopsOfFingersAndWristReturnNoEnergy) {
     now.clear();
     for (std::int32_t i = 0; i < bench.scratch->contact_count; ++i) {
       const Contact& c = bench.scratch->contact[i];
-      now.push_back({piece_of(model, c), c.position_w, c.force_N * c.normal_w});
+      now.push_back({c.piece, c.position_w, c.force_N * c.normal_w});
     }
     Pose carrier[kMaxPieces];
     for (std::size_t p = 0; p < model.piece.size(); ++p)
@@ -309,13 +311,13 @@ TEST(Grasp, APoseThatIsNoNumberIsRejectedAndTheHandHolds) {
 TEST(Grasp, ACopyOfTheStateGoesOnWithTheSameBits) {
   const Model& model = scene_named("grasp_cylinder_5").model();
   Bench a(model), b(model);
-  std::memset(static_cast<void*>(b.scratch.get()), 0x5A, sizeof(Scratch));
+  test::poison(*b.scratch, model, 0x5A);
   for (int i = 0; i < 900; ++i) a.tick_at(model.grasp_w[0], closing_all(1));
-  *b.state = *a.state;
+  copy_state(*a.state, *b.state);
   for (int i = 0; i < 300; ++i) {
     a.tick_at(model.grasp_w[0], closing_all(0.5));
     b.tick_at(model.grasp_w[0], closing_all(0.5));
-    ASSERT_EQ(hash_state(model, *a.state), hash_state(model, *b.state)) << first_difference(model, *a.state, *b.state);
+    ASSERT_EQ(hash_state(*a.state), hash_state(*b.state)) << first_state_difference(*a.state, *b.state);
   }
 }
 
@@ -357,13 +359,13 @@ TEST(GraspOverflow, ThousandsOfPointsAndTooManyRegionsDegradeDeterministically) 
   const Model& model = scene.model();
   ASSERT_EQ(model.sizes.n_tool_point, 2000);
   Bench a(model), b(model);
-  std::memset(static_cast<void*>(b.scratch.get()), 0xC3, sizeof(Scratch));
+  test::poison(*b.scratch, model, 0xC3);
   int together = 0;
   for (int i = 0; i < 150; ++i) {
     const Pose pose{{0, 0.0445, 0}, {}};
     a.tick_at(pose, closing_all(1));
     b.tick_at(pose, closing_all(1));
-    ASSERT_EQ(hash_state(model, *a.state), hash_state(model, *b.state)) << first_difference(model, *a.state, *b.state);
+    ASSERT_EQ(hash_state(*a.state), hash_state(*b.state)) << first_state_difference(*a.state, *b.state);
     ASSERT_EQ(a.output.contact_w, b.output.contact_w);
     ASSERT_EQ(a.output.status, b.output.status);
     ASSERT_LE(a.output.contacts, kMaxContacts);

@@ -106,7 +106,7 @@ TEST(Imprint, ThePalmFlattensWhatLiesAgainstItAndPressesNothing) {
   EXPECT_GT(flat, 100u);
   EXPECT_EQ(norm(held.bench.state->articulation.piece_force_tool_N[model.piece.size() - 1]), 0);
   for (std::int32_t i = 0; i < held.bench.scratch->contact_count; ++i)
-    EXPECT_NE(piece_of(model, held.bench.scratch->contact[i]), static_cast<std::int32_t>(model.piece.size()) - 1);
+    EXPECT_NE(held.bench.scratch->contact[i].piece, static_cast<std::int32_t>(model.piece.size()) - 1);
 }
 
 TEST(Imprint, DentsReachAsFarAsTheTableSaysForEachPart) {

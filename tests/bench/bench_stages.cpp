@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "rt_core/tick.h"
+#include "sim_host/tick_memory.h"
 #include "tests/support/image_file.h"
 #include "tests/support/scripted_hand.h"
 
@@ -50,8 +51,8 @@ struct SceneTimes {
 SceneTimes measure(const Model& model) {
   SceneTimes times;
   for (auto& samples : times.ns) samples.reserve(static_cast<std::size_t>(kRuns) * kScriptTicks);
-  const auto state = std::make_unique<State>();
-  const auto scratch = std::make_unique<Scratch>();
+  const auto state = make_state(model);
+  const auto scratch = make_scratch(model);
   Stamps stamps;
   const StageProbe probe{stamp, &stamps};
   for (int run = 0; run < kRuns; ++run) {

@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "hal/loop/loop.h"
+#include "sim_host/tick_memory.h"
 #include "tests/support/image_file.h"
 #include "tests/support/scene_hand.h"
 
@@ -17,7 +18,7 @@ namespace {
 
 class CountedController {
  public:
-  explicit CountedController(const Model& model) : model_(model) { reset(*state_); }
+  explicit CountedController(const Model& model) : model_(model) {}
   void step(const Input& input, Output& output, const StageProbe&) {
     CALLGRIND_TOGGLE_COLLECT;
     tick(model_, *state_, *scratch_, input, output);
@@ -31,8 +32,8 @@ class CountedController {
 
  private:
   const Model& model_;
-  std::unique_ptr<State> state_ = std::make_unique<State>();
-  std::unique_ptr<Scratch> scratch_ = std::make_unique<Scratch>();
+  StatePtr state_ = make_state(model_);
+  ScratchPtr scratch_ = make_scratch(model_);
   int ticks_ = 0;
 };
 

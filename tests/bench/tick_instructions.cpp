@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "rt_core/tick.h"
+#include "sim_host/tick_memory.h"
 #include "tests/support/image_file.h"
 #include "tests/support/scripted_hand.h"
 
@@ -17,8 +18,8 @@ namespace {
 void play(const char* path) {
   const ImageFile image(path);
   const Model& model = image.model();
-  const auto state = std::make_unique<State>();
-  const auto scratch = std::make_unique<Scratch>();
+  const auto state = make_state(model);
+  const auto scratch = make_scratch(model);
   reset(*state);
   Output output;
   ScriptedHand hand(model);

@@ -8,6 +8,7 @@
 #include "rt_core/contact/touch.h"
 #include "rt_core/surface/closest_point.h"
 #include "tests/collide/pieces.h"
+#include "tests/support/roomy.h"
 
 namespace palpate::test {
 namespace {
@@ -26,8 +27,8 @@ void give_tool(Body& body, int count, double radius, double margin) {
 
 struct Rig {
   Body body;
-  std::unique_ptr<State> state = std::make_unique<State>();
-  std::unique_ptr<Scratch> scratch = std::make_unique<Scratch>();
+  StatePtr state = test::roomy_state();
+  ScratchPtr scratch = test::roomy_scratch();
   void step(const Pose& tool) {
     state->tool_previous_w = state->tick == 0 ? tool : state->tool_w;
     state->tool_w = tool;
@@ -155,7 +156,7 @@ TEST(Collide, SameInputsSameBitsWhateverTheScratchHeld) {
   const auto run = [](int poison) {
     Rig rig{make_body(torus(0.04, 0.012, 48, 24))};
     give_tool(rig.body, 24, 0.012, 4e-3);
-    std::memset(static_cast<void*>(rig.scratch.get()), poison, sizeof(Scratch));
+    test::poison(*rig.scratch, test::roomiest_model(), poison);
     for (int t = 0; t < 200; ++t) rig.step({{0.04, 0, 0.02 - 5e-5 * t}, {}});
     std::vector<double> out;
     for (int i = 0; i < rig.scratch->contact_count; ++i) {

@@ -10,6 +10,7 @@
 #include "rt_core/surface/overlap.h"
 #include "sim_host/run/heap_count.h"
 #include "tests/collide/pieces.h"
+#include "tests/support/roomy.h"
 
 namespace palpate::test {
 namespace {
@@ -37,8 +38,8 @@ TEST(NoAllocation, StagesWithOverflowAndLoss) {
   for (int i = 0; i < 100; ++i) body.tool_point.push_back({{1e-3 * (i % 10), 1e-3 * (i / 10), 0}, 5e-3, 1e-6, 1, 0, 0});
   body.bind();
   body.model.params.cluster_distance_m = 2e-4;  // every contact its own region
-  const auto state = std::make_unique<State>();
-  const auto scratch = std::make_unique<Scratch>();
+  const auto state = test::roomy_state();
+  const auto scratch = test::roomy_scratch();
   std::uint32_t seen = 0;
   const long before = heap_calls();
   for (int t = 0; t < 300; ++t) {

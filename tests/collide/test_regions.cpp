@@ -9,6 +9,7 @@
 #include "rt_core/contact/regions.h"
 #include "rt_core/contact/touch.h"
 #include "tests/collide/pieces.h"
+#include "tests/support/roomy.h"
 
 namespace palpate::test {
 namespace {
@@ -74,8 +75,8 @@ struct Rig {
         std::count_if(std::begin(state->region), std::end(state->region), [](const Region& r) { return r.id != 0; }));
   }
   Body body = make_body(box({0.03, 0.02, 0.01}));
-  std::unique_ptr<State> state = std::make_unique<State>();
-  std::unique_ptr<Scratch> scratch = std::make_unique<Scratch>();
+  StatePtr state = test::roomy_state();
+  ScratchPtr scratch = test::roomy_scratch();
 };
 
 // Connected components by repeated relabelling.

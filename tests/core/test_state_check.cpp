@@ -10,6 +10,7 @@
 
 #include "rt_core/state_check.h"
 #include "rt_core/tick.h"
+#include "tests/support/roomy.h"
 #include "tests/support/tiny_image.h"
 
 namespace palpate {
@@ -17,9 +18,10 @@ namespace {
 
 class StateCheck : public testing::Test {
  protected:
-  StateCheck() : image_(test::tiny_image()), state_(std::make_unique<State>()), scratch_(std::make_unique<Scratch>()) {
+  StateCheck() : image_(test::tiny_image()) {
     EXPECT_EQ(open_image(image_.bytes(), model_).error, ImageError::kNone);
-    reset(*state_);
+    state_ = make_state(model_);
+    scratch_ = make_scratch(model_);
   }
   // Presses on the tetrahedron, so that point, region and friction memory are alive.
   void press(int ticks) {
@@ -34,7 +36,7 @@ class StateCheck : public testing::Test {
   }
   template <class Spoil>
   std::string fault(Spoil spoil) {
-    const auto spoilt = std::make_unique<State>(*state_);
+    const StatePtr spoilt = copy_of(*state_);
     spoil(*spoilt);
     const StateFault found = check_state(model_, *spoilt);
     return found.field == nullptr ? "" : found.field;
@@ -42,8 +44,8 @@ class StateCheck : public testing::Test {
 
   test::ImageBytes image_;
   Model model_;
-  std::unique_ptr<State> state_;
-  std::unique_ptr<Scratch> scratch_;
+  StatePtr state_;
+  ScratchPtr scratch_;
 };
 
 TEST_F(StateCheck, EveryStateThatTicksLeaveBehindPasses) {
@@ -84,11 +86,11 @@ TEST_F(StateCheck, RandomBytesAreRefusedOrHarmless) {
   std::mt19937_64 random(11);
   int refused = 0, accepted = 0;
   for (int round = 0; round < 4000; ++round) {
-    const auto spoilt = std::make_unique<State>(*state_);
+    const StatePtr spoilt = copy_of(*state_);
     auto* bytes = reinterpret_cast<unsigned char*>(spoilt.get());
     const int changes = 1 + static_cast<int>(random() % 4);
-    // Half of them in the first kilobytes, where the pose, the points and the regions of this scene lie.
-    const std::size_t reach = round % 2 == 0 ? 4096 : sizeof(State);
+    // Half of them in the fields, where poses and the layout of the pools are.
+    const std::size_t reach = round % 2 == 0 ? sizeof(State) : state_->bytes;
     for (int i = 0; i < changes; ++i) bytes[random() % reach] = static_cast<unsigned char>(random());
     if (check_state(model_, *spoilt).field != nullptr) {
       refused += 1;

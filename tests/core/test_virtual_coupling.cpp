@@ -6,6 +6,7 @@
 #include "rt_core/contact/contact.h"
 #include "rt_core/tick.h"
 #include "rt_core/tool/virtual_coupling.h"
+#include "tests/support/roomy.h"
 #include "tests/support/tiny_image.h"
 
 namespace palpate::test {
@@ -25,22 +26,19 @@ struct Wall {
 
 struct Rig {
   Model model;
-  State state;
-  Scratch scratch;
+  StatePtr state = test::roomy_state();
+  ScratchPtr scratch = test::roomy_scratch();
   Input input;
   Output output;
 
-  Rig() {
-    model.params = tiny_params();
-    reset(state);
-  }
+  Rig() { model.params = tiny_params(); }
   template <class Contact>
   void step(const Contact& contact) {
-    sense(model, state, scratch, input);
-    clear_contact(state, scratch);
-    contact(state, scratch);
-    balance_tool(model, state, scratch);
-    make_safe(model, state, scratch, input, output);
+    sense(model, *state, *scratch, input);
+    clear_contact(*state, *scratch);
+    contact(*state, *scratch);
+    balance_tool(model, *state, *scratch);
+    make_safe(model, *state, *scratch, input, output);
     input.commands = 0;
   }
   template <class Contact>
@@ -101,18 +99,18 @@ TEST(VirtualCoupling, PressDriveBypassesCouplingAndRamp) {
 TEST(Sense, ImplausibleAndNonFinitePosesAreHeldAndReported) {
   Rig rig;
   rig.arm(Wall{1000});
-  const Pose held = rig.state.device_w;
+  const Pose held = rig.state->device_w;
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinity = std::numeric_limits<double>::infinity();
   for (const Vec3 bad : {Vec3{nan, 0, 0}, Vec3{0, infinity, 0}, Vec3{0.1, 0, 0}}) {
     rig.input.pose_w.position_m = bad;
     rig.step(Wall{1000});
-    EXPECT_TRUE(rig.scratch.status & Status::kInputRejected);
-    EXPECT_EQ(rig.state.device_w, held);
+    EXPECT_TRUE(rig.scratch->status & Status::kInputRejected);
+    EXPECT_EQ(rig.state->device_w, held);
     EXPECT_NE(rig.output.mode, Mode::kForce);
     rig.input.pose_w.position_m = held.position_m;
     rig.step(Wall{1000});
-    EXPECT_FALSE(rig.scratch.status & Status::kInputRejected);
+    EXPECT_FALSE(rig.scratch->status & Status::kInputRejected);
     EXPECT_EQ(rig.output.mode, Mode::kForce);
   }
 }
@@ -149,7 +147,7 @@ TEST(Safety, MagnitudeIsClampedWithItsDirectionKept) {
   Rig rig;
   rig.input.pose_w.position_m = {0, 0, -0.05};
   rig.arm([](State&, Scratch& scratch) { scratch.contact_wrench_w = {{300, 0, 400}, {0, 3, 4}}; });
-  EXPECT_TRUE(rig.scratch.status & Status::kForceClamped);
+  EXPECT_TRUE(rig.scratch->status & Status::kForceClamped);
   EXPECT_LE(norm(rig.output.device_w.force_N), rig.model.params.force_max_N * (1 + 1e-12));
   EXPECT_LE(norm(rig.output.device_w.torque_Nm), rig.model.params.torque_max_Nm * (1 + 1e-12));
   EXPECT_GT(rig.output.device_w.force_N.x, 0);
@@ -164,7 +162,7 @@ TEST(Safety, NoForceStepExceedsTheRateLimit) {
   for (int i = 0; i < 200; ++i) {
     rig.step([i](State&, Scratch& scratch) { scratch.contact_wrench_w.force_N = {0, 0, i % 20 < 10 ? 500.0 : 0.0}; });
     EXPECT_LE(norm(rig.output.device_w.force_N - last), 1.0 + 1e-9);
-    limited |= (rig.scratch.status & Status::kRateLimited) != 0;
+    limited |= (rig.scratch->status & Status::kRateLimited) != 0;
     last = rig.output.device_w.force_N;
   }
   EXPECT_TRUE(limited);

@@ -2,9 +2,10 @@
 
 #include <limits>
 
-#include "rt_core/contact/regions/contact_order.h"
+#include "rt_core/contact/regions.h"
 #include "sim_host/view/anchors.h"
 #include "tests/deform/deform_scene.h"
+#include "tests/support/roomy.h"
 
 namespace palpate {
 namespace {
@@ -21,14 +22,15 @@ class AnchorsOf : public ::testing::Test {
   void set(SkeletonLaw law) { model().params.skeleton_law = static_cast<std::int32_t>(law); }
   void run() { field_ = anchors_of(model(), state_); }
   void run(Region first, Region second) {
-    state_ = {};
+    reset(state_);
     state_.region[0] = first;
     state_.region[1] = second;
     run();
   }
   std::int32_t anchors() const { return static_cast<std::int32_t>(scene_.anchors.size()); }
   Scene scene_;
-  State state_;
+  const StatePtr memory_ = test::roomy_state();
+  State& state_ = *memory_;
   AnchorField field_;
   const Region top_ = make_region(1, 10, ellipsoid_point(0.4, 0.3), {0, 0, 1}, 5);
   const Region side_ = make_region(2, 20, ellipsoid_point(1.2, 2.5), {0, 1, 0}, 8);
@@ -37,7 +39,7 @@ class AnchorsOf : public ::testing::Test {
 TEST_F(AnchorsOf, MatchesTheSkeletonOfTheRegion) {
   for (const SkeletonLaw law : {SkeletonLaw::kStiffness, SkeletonLaw::kPaper}) {
     set(law);
-    state_ = {};
+    reset(state_);
     state_.region[3] = top_;
     state_.region[3].friction_force_w = {0.5, -0.25, 0};
     run();

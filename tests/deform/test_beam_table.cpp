@@ -14,8 +14,8 @@
 namespace palpate {
 namespace {
 
-using deform_test::kPi;
 using deform_test::random_vector;
+using palpate::kPi;
 
 const BeamMaterial kRubber{3e6, 0.47};
 

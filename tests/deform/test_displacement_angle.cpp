@@ -13,7 +13,7 @@ TEST(DisplacementAngle, WorkedExample) {
   EXPECT_NEAR(d.x, 0.406431, 6e-7);
   EXPECT_NEAR(d.y, 0.189547, 6e-7);
   EXPECT_NEAR(d.z, -2.301291, 6e-7);
-  const double theta = std::acos(dot(d, {.6, 0, .8}) / norm(d)) * 180 / deform_test::kPi;
+  const double theta = std::acos(dot(d, {.6, 0, .8}) / norm(d)) * 180 / palpate::kPi;
   EXPECT_NEAR(theta, 132.939031, 6e-7);
 }
 

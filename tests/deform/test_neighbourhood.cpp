@@ -87,7 +87,7 @@ TEST(Neighbourhood, DegenerateRadiiSwitchTheLawOff) {
 }
 
 TEST(Neighbourhood, ContactRadiusFollowsTheAreaWithinItsClip) {
-  const double pi = deform_test::kPi;
+  const double pi = palpate::kPi;
   EXPECT_NEAR(contact_radius_m(pi * kA * kA, kR), kA, 1e-17);
   EXPECT_DOUBLE_EQ(contact_radius_m(1.0, kR), 0.9 * kR);
   EXPECT_DOUBLE_EQ(contact_radius_m(0, kR), 0.05 * kR);

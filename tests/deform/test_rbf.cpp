@@ -193,7 +193,7 @@ TEST(RbfSystem, RefusesWhatCannotBeInverted) {
   std::vector<double> inverse(static_cast<std::size_t>(kMaxRbf * kMaxRbf));
   std::vector<Vec3> ring;  // coplanar, away from the origin
   for (int i = 0; i < 8; ++i) {
-    const double angle = deform_test::kPi * i / 4;
+    const double angle = palpate::kPi * i / 4;
     ring.push_back({0.3 + 0.04 * std::cos(angle), 0.2 + 0.03 * std::sin(angle), 0.1 + 0.02 * std::cos(angle)});
   }
   EXPECT_TRUE(invert_rbf_system(ring, 0, inverse));

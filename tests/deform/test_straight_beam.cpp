@@ -9,7 +9,7 @@
 namespace palpate {
 namespace {
 
-using deform_test::kPi;
+using palpate::kPi;
 
 constexpr BeamMaterial kRubber{3e6, 0.47};
 

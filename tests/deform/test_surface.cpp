@@ -5,6 +5,7 @@
 #include "sim_host/view/anchors.h"
 #include "sim_host/view/surface_shape.h"
 #include "tests/deform/deform_scene.h"
+#include "tests/support/roomy.h"
 
 namespace palpate {
 namespace {
@@ -20,7 +21,7 @@ constexpr NeighbourhoodLaw kLaws[] = {NeighbourhoodLaw::kNone, NeighbourhoodLaw:
 void add_vertices(Scene& scene) {
   for (int i = 1; i < 12; ++i) {
     for (int j = 0; j < 24; ++j) {
-      const Vec3 p = ellipsoid_point(deform_test::kPi * i / 12, 2 * deform_test::kPi * (j + 0.5) / 24);
+      const Vec3 p = ellipsoid_point(palpate::kPi * i / 12, 2 * palpate::kPi * (j + 0.5) / 24);
       PatchWeight patch{};
       const double q[3] = {p.x * p.x / 1.6e-3, p.y * p.y / 0.9e-3, p.z * p.z / 0.625e-3};  // sums to 1
       for (int k = 0; k < 3; ++k) {
@@ -58,7 +59,8 @@ class Surface : public ::testing::Test {
     return displacement_at(model(), field_, x, vertex);
   }
   Scene scene_;
-  State state_;
+  const StatePtr memory_ = test::roomy_state();
+  State& state_ = *memory_;
   ShapeField field_;
 };
 
@@ -146,10 +148,10 @@ TEST_F(Surface, RegionsSuperpose) {
       set(law, shape);
       for (const std::int32_t vertex : {-1, 40, 100}) {
         const Vec3 x = scene_.vertices[static_cast<std::size_t>(vertex < 0 ? 77 : vertex)];
-        state_ = {};
+        reset(state_);
         press(0, points[0]);
         const Vec3 first = at(x, vertex);
-        state_ = {};
+        reset(state_);
         press(1, points[1]);
         const Vec3 second = at(x, vertex);
         press(0, points[0]);

@@ -8,6 +8,7 @@
 #include "rt_core/skeleton/skeleton.h"
 #include "rt_core/skeleton/transfer.h"
 #include "tests/deform/deform_scene.h"
+#include "tests/support/roomy.h"
 
 namespace palpate {
 namespace {
@@ -23,7 +24,7 @@ class Transfer : public ::testing::Test {
   // What the regions, first born first, get from those after them.
   std::vector<Real> added(std::vector<Region> regions) {
     std::vector<std::int32_t> slot;
-    state_ = {};
+    reset(state_);
     for (std::size_t i = 0; i < regions.size(); ++i) {
       slot.push_back(static_cast<std::int32_t>(15 - 3 * i));  // the order is the caller's, not the slots'
       state_.region[slot.back()] = regions[i];
@@ -62,7 +63,8 @@ class Transfer : public ::testing::Test {
     return dot(force, to.normal_w);
   }
   Scene scene_;
-  State state_;
+  const StatePtr memory_ = test::roomy_state();
+  State& state_ = *memory_;
   bool all_carried_ = true;
   const Region top_ = make_region(1, 10, ellipsoid_point(0.4, 0.3), {0, 0, 1}, 5);
   const Region side_ = make_region(2, 20, ellipsoid_point(1.2, 2.5), {0, 1, 0}, 8);

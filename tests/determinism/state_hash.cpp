@@ -9,15 +9,25 @@
 #include <string>
 
 #include "rt_core/tick.h"
+#include "sim_host/tick_memory.h"
 #include "tests/support/image_file.h"
 #include "tests/support/scripted_hand.h"
 
 namespace palpate::test {
 namespace {
 
+// All that a run leaves behind, in memory filled with `poison` before it is laid out and reset.
 struct Memory {
-  State state;
-  Scratch scratch;
+  Memory(const Model& model, int poison) : state(nullptr), scratch(nullptr) {
+    void* block = new_block(state_bytes(model));
+    std::memset(block, poison, state_bytes(model));
+    state = StatePtr(&create_state(model, block));
+    block = new_block(scratch_bytes(model));
+    std::memset(block, poison, scratch_bytes(model));
+    scratch = ScratchPtr(&create_scratch(model, block));
+  }
+  StatePtr state;
+  ScratchPtr scratch;
   Output output;
 };
 
@@ -49,23 +59,20 @@ struct Summary {
   int most_regions = 0;
 };
 
-// One run of the script. `poison` fills all memory before the reset. From `swap_tick` on, the run goes on in `other`.
-Summary play(const Model& model, Memory& memory, unsigned char poison, int swap_tick, Memory* other) {
-  std::memset(static_cast<void*>(&memory), poison, sizeof(memory));
-  reset(memory.state);
-  memory.output = {};
+// One run of the script. From `swap_tick` on, the run goes on in `other`.
+Summary play(const Model& model, Memory&& memory, int swap_tick = -1, Memory* other = nullptr) {
   Summary summary;
   ScriptedHand hand(model);
   Memory* now = &memory;
   for (int i = 0; i < kScriptTicks; ++i) {
     if (i == swap_tick) {
-      other->state = memory.state;
+      copy_state(*memory.state, *other->state);
       other->output = memory.output;
       now = other;
     }
     const Input input = hand.next(now->output);
-    tick(model, now->state, now->scratch, input, now->output);
-    summary.hash = hash_output(mix(summary.hash, hash_state(model, now->state)), now->output);
+    tick(model, *now->state, *now->scratch, input, now->output);
+    summary.hash = hash_output(mix(summary.hash, hash_state(*now->state)), now->output);
     summary.ticks_in_contact += now->output.contacts > 0 ? 1 : 0;
     if (now->output.regions > summary.most_regions) summary.most_regions = now->output.regions;
   }
@@ -75,14 +82,13 @@ Summary play(const Model& model, Memory& memory, unsigned char poison, int swap_
 bool run_scene(const std::string& path) {
   const ImageFile image(path);
   const Model& model = image.model();
-  const auto a = std::make_unique<Memory>(), b = std::make_unique<Memory>();
-  const Summary first = play(model, *a, 0x00, -1, nullptr);
+  const Summary first = play(model, Memory(model, 0x00));
   std::printf("%s %d %016llx %d %d\n", model.name, kScriptTicks, static_cast<unsigned long long>(first.hash),
               first.ticks_in_contact, first.most_regions);
-  const Summary poisoned = play(model, *a, 0xA5, -1, nullptr);
+  const Summary poisoned = play(model, Memory(model, 0xA5));
   if (poisoned.hash != first.hash) std::fprintf(stderr, "%s: memory left from before the reset matters\n", model.name);
-  std::memset(static_cast<void*>(b.get()), 0x5A, sizeof(Memory));
-  const Summary moved = play(model, *a, 0x00, kScriptTicks / 2, b.get());
+  Memory other(model, 0x5A);
+  const Summary moved = play(model, Memory(model, 0x00), kScriptTicks / 2, &other);
   if (moved.hash != first.hash) std::fprintf(stderr, "%s: a copied state does not continue alike\n", model.name);
   return poisoned.hash == first.hash && moved.hash == first.hash;
 }

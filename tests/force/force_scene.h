@@ -5,16 +5,17 @@
 #include <memory>
 
 #include "rt_core/contact/contact.h"
+#include "tests/support/roomy.h"
 
 namespace palpate {
 
 struct ForceScene {
   Model model;
-  std::unique_ptr<State> state = std::make_unique<State>();
-  std::unique_ptr<Scratch> scratch = std::make_unique<Scratch>();
+  StatePtr state = test::roomy_state();
+  ScratchPtr scratch = test::roomy_scratch();
 
   ForceScene() {
-    std::memset(static_cast<void*>(scratch.get()), 0xAB, sizeof(Scratch));  // nothing may depend on old scratch
+    test::poison(*scratch, test::roomiest_model(), 0xAB);  // nothing may depend on old scratch
     ModelParams& p = model.params;
     p = {};
     p.contact_weight = static_cast<std::int32_t>(ContactWeight::kWinkler);
@@ -38,7 +39,7 @@ struct ForceScene {
     clear_contacts();
   }
 
-  void reset_state() { *state = State{}; }
+  void reset_state() { reset(*state); }
   void clear_contacts() {
     scratch->contact_count = 0;
     scratch->status = 0;

@@ -287,7 +287,7 @@ TEST(ComputeForce, LostRegionsAreSilentAndRememberUntilFreed) {
 
 TEST(ComputeForce, SameBitsWhateverScratchHeld) {
   ForceScene a, b;
-  std::memset(static_cast<void*>(b.scratch.get()), 0, sizeof(Scratch));
+  test::poison(*b.scratch, test::roomiest_model(), 0);
   for (ForceScene* s : {&a, &b}) {
     std::mt19937_64 random(2);
     s->set_coupling(CouplingLaw::kCoupled);

@@ -15,6 +15,7 @@
 #include "hal/device/fault_player.h"
 #include "hal/loop/loop.h"
 #include "sim_host/run/host_port.h"
+#include "sim_host/tick_memory.h"
 #include "tests/support/tiny_image.h"
 
 namespace palpate::test {
@@ -140,8 +141,8 @@ inline FaultRun run_with_faults(const std::string& script, std::uint64_t ticks =
   image.seal();
   Model model;
   if (open_image(image.bytes(), model).error != ImageError::kNone) ADD_FAILURE() << "the tiny scene is refused";
-  const auto state = std::make_unique<State>();
-  const auto scratch = std::make_unique<Scratch>();
+  const auto state = make_state(model);
+  const auto scratch = make_scratch(model);
   reset(*state);
   ModelController core(model, *state, *scratch);
   VirtualClock clock;

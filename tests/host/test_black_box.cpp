@@ -51,7 +51,9 @@ class BlackBoxTest : public testing::Test {
  protected:
   BlackBoxTest() : image_(test::tiny_image()) {
     EXPECT_EQ(open_image(image_.bytes(), model_).error, ImageError::kNone);
-    reset(state_);
+    state_ = make_state(model_);
+    core_ = make_state(model_);
+    scratch_ = make_scratch(model_);
     folder_ = std::filesystem::temp_directory_path() / ("palpate_box_" + std::to_string(getpid()));
     std::filesystem::create_directories(folder_);
     header_.scene_hash = model_.scene_hash;
@@ -61,7 +63,7 @@ class BlackBoxTest : public testing::Test {
   ~BlackBoxTest() override { std::filesystem::remove_all(folder_); }
 
   std::unique_ptr<BlackBox> box(const Model* model) {
-    return std::make_unique<BlackBox>((folder_ / "run").string(), header_, state_, model, options_);
+    return std::make_unique<BlackBox>((folder_ / "run").string(), header_, *state_, model, options_);
   }
   // Ticks the core `ticks` times, its tool going up and down on the body; the device reports an error at `fault_at`.
   void run(BlackBox& box, std::uint64_t ticks, std::uint64_t fault_at,
@@ -74,9 +76,9 @@ class BlackBoxTest : public testing::Test {
       if (sequence_ == fault_at) input.device_fault = Fault::kDeviceReported;
       if (sequence_ % 50 == 17) input.stale_ticks = 1;
       Output output;
-      tick(model_, core_, scratch_, input, output);
+      tick(model_, *core_, *scratch_, input, output);
       TickRecord record{};
-      fill_record(model_, core_, input, output, record);
+      fill_record(*core_, input, output, record);
       record.sequence = sequence_;
       record.timing.deadline_ns = static_cast<std::int64_t>(sequence_) * 1'000'000;
       record.timing.wake_latency_ns = 40'000;
@@ -105,8 +107,8 @@ class BlackBoxTest : public testing::Test {
 
   test::ImageBytes image_;
   Model model_;
-  State state_, core_ = (reset(state_), state_);
-  Scratch scratch_;
+  StatePtr state_, core_;
+  ScratchPtr scratch_;
   std::uint64_t sequence_ = 1;
   RecordingHeader header_;
   CandumpOptions options_;

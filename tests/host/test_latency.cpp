@@ -9,6 +9,7 @@
 
 #include "sim_host/latency/latency.h"
 #include "sim_host/record/recording_writer.h"
+#include "tests/support/roomy.h"
 
 namespace palpate {
 namespace {
@@ -108,7 +109,7 @@ TEST(Latency, ReadsARecording) {
   {
     RecordingHeader header;
     header.period_ns = 1'000'000;
-    const auto state = std::make_unique<State>();
+    const auto state = test::roomy_state();
     reset(*state);
     RecordingWriter writer(path.string(), header, *state);
     for (std::uint64_t tick = 0; tick < 50; ++tick) writer.add(tick_record(tick, 5'000, 9'000, 0));

@@ -9,6 +9,7 @@
 #include "sim_host/latency/live_table.h"
 #include "sim_host/record/recording_follower.h"
 #include "sim_host/record/recording_writer.h"
+#include "tests/support/roomy.h"
 
 namespace palpate {
 namespace {
@@ -26,7 +27,7 @@ class Live : public testing::Test {
  protected:
   Live() {
     path_ = (std::filesystem::temp_directory_path() / ("palpate_live_" + std::to_string(getpid()) + ".plr")).string();
-    state_ = std::make_unique<State>();
+    state_ = test::roomy_state();
     reset(*state_);
     writer_ = std::make_unique<RecordingWriter>(path_, RecordingHeader{}, *state_);
   }
@@ -40,7 +41,7 @@ class Live : public testing::Test {
     writer_->flush();
   }
   std::string path_;
-  std::unique_ptr<State> state_;
+  StatePtr state_;
   std::unique_ptr<RecordingWriter> writer_;
   std::uint64_t written_ = 0;
 };

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "sim_host/bake/scene_model.h"
+#include "sim_host/tick_memory.h"
 #include "sim_host/view/picture.h"
 #include "sim_host/view/png_file.h"
 
@@ -128,7 +129,7 @@ std::string scene_path() { return std::string(PALPATE_SOURCE_DIR) + "/config/sce
 
 TEST(Picture, RefinementKeepsTheShape) {
   const SceneModel scene(scene_path());
-  const auto state = std::make_unique<State>();
+  const auto state = make_state(scene.model());
   reset(*state);
   const DeformedSurface fine = refined_surface(scene.model(), *state, 50'000);
   EXPECT_EQ(fine.triangle.size(), scene.model().triangle.size() * 16);
@@ -144,7 +145,7 @@ TEST(Picture, RefinementKeepsTheShape) {
 // The lids of a cylinder stay flat and its rims round, and no normal averages over a rim.
 TEST(Picture, RefinementKeepsCreases) {
   const SceneModel scene(std::string(PALPATE_SOURCE_DIR) + "/config/scenes/grasp_cylinder_2.toml");
-  const auto state = std::make_unique<State>();
+  const auto state = make_state(scene.model());
   reset(*state);
   state->tool_w.position_m = {-1, 0, 0};  // the palm, which flattens what lies against it, out of the way
   const DeformedSurface fine = refined_surface(scene.model(), *state, 50'000);
@@ -171,7 +172,7 @@ TEST(Picture, RefinementKeepsCreases) {
 TEST(Picture, EverythingIsInTheFrameBesideTitleAndLegend) {
   for (const char* name : {"ellipsoid_mallet", "grasp_sphere_5", "snap_in"}) {
     const SceneModel scene(std::string(PALPATE_SOURCE_DIR) + "/config/scenes/" + name + ".toml");
-    const auto state = std::make_unique<State>();
+    const auto state = make_state(scene.model());
     reset(*state);
     const Vec3 arrow{0.05, 0.12, -0.03};
     const Camera camera = default_camera(scene.model(), *state, std::span<const Vec3>(&arrow, 1), 4.0 / 3);
@@ -193,7 +194,7 @@ TEST(Picture, EverythingIsInTheFrameBesideTitleAndLegend) {
 
 TEST(Picture, SceneIsDrawnWithBodyToolAndLegend) {
   const SceneModel scene(scene_path());
-  const auto state = std::make_unique<State>();
+  const auto state = make_state(scene.model());
   reset(*state);
   state->tool_w.position_m = {0, 0.08, 0};
   PictureOptions options;

@@ -10,6 +10,7 @@
 #include "sim_host/bake/scene_model.h"
 #include "sim_host/press/force_csv.h"
 #include "sim_host/press/press.h"
+#include "sim_host/tick_memory.h"
 
 namespace palpate {
 namespace {
@@ -70,7 +71,7 @@ Balance balance_of(const std::string& name) {
   const double period_s = scene.model().params.period_s;
   const auto poses = scripted_poses(scene.scene()->path, period_s);
   Balance worst;
-  const auto state = std::make_unique<State>();
+  const auto state = make_state(scene.model());
   const PressDrive drive{scene.scene()->path.hand_stiffness_N_per_m};
   press(scene.model(), poses, drive, *state, nullptr,
         [&](const PressRow& row, const State& now, const Scratch& scratch) { check_row(row, now, scratch, worst); });
@@ -131,7 +132,7 @@ TEST(Press, OnePointGivesTheLawsForce) {
   const SceneModel scene(ball_scene());
   for (const double depth_m : {0.5e-3, 1e-3, 2e-3, 3e-3, 5e-3}) {
     const std::vector<TimedPose> poses = {{0, {{0, 0.030 + 0.030 + 0.010 - depth_m, 0}, {}}}};
-    const auto state = std::make_unique<State>();
+    const auto state = make_state(scene.model());
     press(scene.model(), poses, {}, *state, nullptr, [&](const PressRow& row, const State&, const Scratch&) {
       const Output& output = row.record.output;
       // The mesh touches the sphere only at its vertices; its depth is measured, the law is exact.
@@ -151,7 +152,7 @@ TEST(Press, HandSpringSettlesInEquilibrium) {
   for (int n = 0; n < 400; ++n) {
     poses.push_back({1e-3 * n, {{0.002, 0.075 - 0.01 * std::min(1.0, n / 300.0), 0}, {}}});
   }
-  const auto state = std::make_unique<State>();
+  const auto state = make_state(scene.model());
   const double hand_N_per_m = 800;
   double left_N = 1e9, force_N = 0;
   press(scene.model(), poses, {hand_N_per_m}, *state, nullptr, [&](const PressRow& row, const State&, const Scratch&) {
@@ -171,7 +172,7 @@ TEST(Press, HandOnANodalBodyIsSteadyAndInEquilibrium) {
   auto poses = scripted_poses(scene.scene()->path, scene.model().params.period_s);
   poses.resize(2300);  // pressing in, before the clip snaps
   const double hand_N_per_m = scene.scene()->path.hand_stiffness_N_per_m;
-  const auto state = std::make_unique<State>();
+  const auto state = make_state(scene.model());
   Vec3 before;
   double largest_step_N = 0, left_N = 0, force_N = 0;
   std::uint32_t seen = 0;
@@ -194,7 +195,7 @@ TEST(Press, TheSamePosesGiveTheSameBits) {
   const SceneModel scene(scene_path("heart_compass"));
   const auto poses = scripted_poses(scene.scene()->path, 5e-3);
   std::vector<std::uint64_t> first, second;
-  const auto state = std::make_unique<State>();
+  const auto state = make_state(scene.model());
   for (std::vector<std::uint64_t>* hashes : {&first, &second}) {
     press(scene.model(), poses, {800}, *state, nullptr,
           [&](const PressRow& row, const State&, const Scratch&) { hashes->push_back(row.record.state_hash); });

@@ -8,6 +8,7 @@
 
 #include "sim_host/bake/scene_model.h"
 #include "sim_host/press/press.h"
+#include "sim_host/tick_memory.h"
 
 namespace palpate {
 namespace {
@@ -83,7 +84,7 @@ struct Totals {
 
 Totals run_loops(const Model& model, Vec3 above, double depth_m, int loops, int steps, std::uint64_t seed) {
   std::mt19937_64 random(seed);
-  const auto state = std::make_unique<State>();
+  const auto state = make_state(model);
   Totals totals;
   for (int loop = 0; loop < loops; ++loop) {
     const LoopWork work = loop_work(model, random_loop(random, above, depth_m, steps), *state);
@@ -119,7 +120,7 @@ TEST(PressEnergy, CompassLoopsReturnNoEnergy) {
   const SceneModel scene(scene_path("heart_compass"));
   const Vec3 start = scene.scene()->path.point.front().position_m;
   // Lowered until the first tip just touches: the loops' depths start there.
-  const auto state = std::make_unique<State>();
+  const auto state = make_state(scene.model());
   std::vector<TimedPose> fall;
   for (int n = 0; n < 4000; ++n) fall.push_back({0, {start - Vec3{0, 2e-5 * n, 0}, {}}});
   Vec3 touch = start;
@@ -141,7 +142,7 @@ TEST(PressEnergy, FrictionlessLoopsAreConservative) {
   scene.friction.law = FrictionLaw::kNone;
   const SceneModel model(scene);
   std::mt19937_64 random(3);
-  const auto state = std::make_unique<State>();
+  const auto state = make_state(model.model());
   for (int loop = 0; loop < 20; ++loop) {
     const LoopWork work = loop_work(model.model(), random_loop(random, {0, 0.0725, 0}, 0.004, 4000), *state);
     EXPECT_LT(std::abs(work.user_J), work.uncertainty_J + 1e-12);

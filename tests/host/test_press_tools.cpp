@@ -11,6 +11,7 @@
 
 #include "sim_host/bake/scene_model.h"
 #include "sim_host/press/press.h"
+#include "sim_host/tick_memory.h"
 
 namespace palpate {
 namespace {
@@ -45,7 +46,7 @@ struct SlideResult {
 };
 
 SlideResult slide(const Model& model, const std::vector<TimedPose>& poses) {
-  const auto state = std::make_unique<State>();
+  const auto state = make_state(model);
   SlideResult result;
   Vec3 last;
   std::int32_t triangle = -1;
@@ -95,7 +96,7 @@ struct LoopWork {
 };
 // Work of a loop by the trapezoidal rule, with the energy the tick itself reports as the measure.
 LoopWork loop_work(const Model& model, const std::vector<TimedPose>& poses) {
-  const auto state = std::make_unique<State>();
+  const auto state = make_state(model);
   LoopWork loop;
   Wrench last;
   Pose from;
@@ -162,7 +163,7 @@ void expect_energy_is_work(const SceneModel& scene, const char* name) {
     const double t = static_cast<double>(i) / kSteps;
     poses.push_back({t, pose_at(0.02 * t * t, 0.1 * t, 0.004 * t)});
   }
-  const auto state = std::make_unique<State>();
+  const auto state = make_state(scene.model());
   double work = 0, worst = 0, energy = 0;
   Wrench last;
   Pose from;
@@ -316,7 +317,7 @@ TEST(PressTools, DeepOverTheRimAndBackStaysFinite) {
     broken.position_m.x = std::numeric_limits<double>::quiet_NaN();
     poses.push_back({0, broken});
     poses.push_back({0, pose_at(0, 0, 0.002)});
-    const auto state = std::make_unique<State>();
+    const auto state = make_state(scene.model());
     std::uint32_t status = 0;
     double last = 0;
     press(scene.model(), poses, {}, *state, nullptr, [&](const PressRow& row, const State&, const Scratch&) {
@@ -340,7 +341,7 @@ TEST(PressTools, LayerIsExactThroughTheTick) {
   overlays.setting = {"contact.tip.sphere=parabola", "friction.law=none"};
   const SceneModel scene(load_scene(scene_path("tools_on_layer"), overlays));
   const double depth = 0.25 * 1e-4 / 6.35e-3;
-  const auto state = std::make_unique<State>();
+  const auto state = make_state(scene.model());
   double force = 0;
   press(scene.model(), std::vector<TimedPose>{{0, {{0, 0.01 - depth + kTip, 0}, {}}}}, {}, *state, nullptr,
         [&](const PressRow& row, const State&, const Scratch&) { force = norm(row.record.output.contact_w.force_N); });
@@ -358,7 +359,7 @@ TEST(PressTools, DeepPressesNeverPull) {
     const SceneModel layer(load_scene(scene_path("tools_on_layer"), overlays));
     std::vector<TimedPose> down;
     for (int i = 0; i <= 2000; ++i) down.push_back({0, {{0.003, 0.02 - 9.5e-6 * i + kTip, 0.002}, {}}});
-    const auto state = std::make_unique<State>();
+    const auto state = make_state(layer.model());
     double last = 0;
     press(layer.model(), down, {}, *state, nullptr, [&](const PressRow& row, const State&, const Scratch&) {
       const Vec3 force = row.record.output.contact_w.force_N;

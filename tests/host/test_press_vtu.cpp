@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "sim_host/bake/scene_model.h"
+#include "sim_host/tick_memory.h"
 #include "sim_host/view/vtu.h"
 #include "tests/host/xml_check.h"
 
@@ -96,7 +97,7 @@ TEST_F(Vtu, AnchorsHoldDisplacementAndStress) {
 TEST_F(Vtu, SeriesHasAnIndexWithTimes) {
   const std::filesystem::path folder =
       std::filesystem::temp_directory_path() / ("palpate_vtu_" + std::to_string(getpid()));
-  const auto state = std::make_unique<State>();
+  const auto state = make_state(model_);
   reset(*state);
   {
     VtuSeries series(folder.string());

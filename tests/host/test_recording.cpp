@@ -15,6 +15,7 @@
 #include "sim_host/record/recorder.h"
 #include "sim_host/record/recording_reader.h"
 #include "sim_host/record/recording_writer.h"
+#include "tests/support/roomy.h"
 
 namespace palpate {
 namespace {
@@ -52,10 +53,10 @@ TickRecord record_of(std::uint64_t sequence) {
 // A recording of 5 records in 3 chunks, with one gap of 2.
 std::vector<std::byte> small_recording() {
   const std::string path = temporary("small.plr");
-  State state;
-  state.next_region_id = 42;
+  const StatePtr state = test::roomy_state();
+  state->next_region_id = 42;
   {
-    RecordingWriter writer(path, header_of("build A"), state);
+    RecordingWriter writer(path, header_of("build A"), *state);
     writer.add(record_of(1));
     writer.add(record_of(2));
     writer.flush();
@@ -96,7 +97,7 @@ TEST(Recording, RoundTrip) {
   EXPECT_STREQ(reader.header().build_id, "build A");
   EXPECT_STREQ(reader.header().image_path, "scene.pal");
   EXPECT_EQ(reader.header().scene_hash, 0xabcdefu);
-  EXPECT_EQ(reader.stored_state().next_region_id, 42u);
+  EXPECT_EQ(reader.initial_state(test::roomiest_model())->next_region_id, 42u);
   std::uint64_t records = 0;
   EXPECT_EQ(read_back(bytes, records), "");
   EXPECT_EQ(records, 5u);
@@ -149,7 +150,7 @@ TEST(Recording, AnotherLayoutIsRefusedNamingTheBuild) {
   const std::string path = temporary("layout.plr");
   RecordingHeader header = header_of("build of the past");
   header.layout_hash ^= 1;
-  { RecordingWriter(path, header, State{}).finish(); }
+  { RecordingWriter(path, header, *test::roomy_state()).finish(); }
   const std::vector<std::byte> bytes = read_all(path);
   std::filesystem::remove(path);
   std::uint64_t records = 0;
@@ -164,12 +165,12 @@ TEST(Recording, OtherFilesAreRefused) {
   EXPECT_NE(read_back(text, records).find("not a Palpate recording"), std::string::npos);
   EXPECT_THROW(MappedFile("/nonexistent/file.plr"), RecordingError);
   EXPECT_THROW(MappedFile("/tmp"), RecordingError);
-  EXPECT_THROW(RecordingWriter("/nonexistent/file.plr", header_of("x"), State{}), RecordingError);
+  EXPECT_THROW(RecordingWriter("/nonexistent/file.plr", header_of("x"), *test::roomy_state()), RecordingError);
 }
 
 TEST(Recording, FileOfAKilledHostHoldsEverythingFlushed) {
   const std::string path = temporary("killed.plr");
-  RecordingWriter writer(path, header_of("x"), State{});
+  RecordingWriter writer(path, header_of("x"), *test::roomy_state());
   writer.add(record_of(1));
   writer.add(record_of(2));
   writer.flush();
@@ -185,7 +186,7 @@ TEST(Recording, RecorderDrainsEverythingAndDeclaresLosses) {
   TelemetryWriter ring;
   Model model;
   model.name = "recorder";
-  ring.open(*region, model, State{}, 1'000'000, "build", "image");
+  ring.open(*region, model, 1'000'000, "build", "image");
   const std::string path = temporary("recorder.plr");
   std::uint64_t heard = 0;
   // Overrun before the recorder starts: those records are lost, and the file says so.
@@ -193,7 +194,7 @@ TEST(Recording, RecorderDrainsEverythingAndDeclaresLosses) {
   TickRecord record = record_of(1);
   for (std::uint64_t i = 0; i < before; ++i) ring.write(record);
   {
-    RecordingWriter file(path, recording_header(region->header), State{});
+    RecordingWriter file(path, recording_header(region->header), *test::roomy_state());
     Recorder recorder(*region, &file, [&](const TickRecord&) { ++heard; });
     recorder.start();
     for (std::uint64_t i = 0; i < after; ++i) ring.write(record);
@@ -217,13 +218,13 @@ TEST(Recording, RecorderDrainsEverythingAndDeclaresLosses) {
 }
 
 TEST(Recording, FullDiskIsReportedAndDoesNotStopTheRun) {
-  EXPECT_THROW(RecordingWriter("/dev/full", header_of("x"), State{}), RecordingError);
+  EXPECT_THROW(RecordingWriter("/dev/full", header_of("x"), *test::roomy_state()), RecordingError);
   const auto region = std::make_unique<TelemetryRegion>();
   TelemetryWriter ring;
   Model model;
-  ring.open(*region, model, State{}, 1, "b", "i");
+  ring.open(*region, model, 1, "b", "i");
   const std::string path = temporary("full.plr");
-  RecordingWriter file(path, header_of("x"), State{});
+  RecordingWriter file(path, header_of("x"), *test::roomy_state());
   Recorder recorder(*region, &file, {});
   // A file-size limit stands in for the full disk; its signal would end the process.
   rlimit before{};

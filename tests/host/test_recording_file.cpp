@@ -14,6 +14,7 @@
 #include "sim_host/record/recorded_image.h"
 #include "sim_host/record/recover.h"
 #include "sim_host/record/replay.h"
+#include "tests/support/roomy.h"
 #include "tests/support/tiny_image.h"
 
 namespace palpate {
@@ -35,9 +36,9 @@ std::string text_of(const std::filesystem::path& path) {
 
 class RecordingFile : public testing::Test {
  protected:
-  RecordingFile() : image_(test::tiny_image()), state_(std::make_unique<State>()) {
+  RecordingFile() : image_(test::tiny_image()) {
     EXPECT_EQ(open_image(image_.bytes(), model_).error, ImageError::kNone);
-    reset(*state_);
+    state_ = make_state(model_);
     folder_ = std::filesystem::temp_directory_path() / ("palpate_files_" + std::to_string(getpid()));
     std::filesystem::create_directories(folder_);
     path_ = (folder_ / "run.plr").string();
@@ -52,8 +53,8 @@ class RecordingFile : public testing::Test {
   // Ticks `from` to `to` of one and the same run, recorded or left unfinished.
   std::vector<TickRecord> records(std::uint64_t ticks) {
     std::vector<TickRecord> all;
-    const auto state = std::make_unique<State>(*state_);
-    const auto scratch = std::make_unique<Scratch>();
+    const StatePtr state = copy_of(*state_);
+    const ScratchPtr scratch = make_scratch(model_);
     for (std::uint64_t i = 0; i < ticks; ++i) {
       Input input;
       input.pose_w.position_m = {0.01, 0.005, 0.02 - 1e-4 * static_cast<double>(i)};
@@ -61,7 +62,7 @@ class RecordingFile : public testing::Test {
       Output output;
       tick(model_, *state, *scratch, input, output);
       TickRecord record{};
-      fill_record(model_, *state, input, output, record);
+      fill_record(*state, input, output, record);
       record.sequence = i + 1;
       record.timing.deadline_ns = static_cast<std::int64_t>(i) * 1'000'000;
       all.push_back(record);
@@ -69,7 +70,7 @@ class RecordingFile : public testing::Test {
     return all;
   }
   std::unique_ptr<RecordingWriter> writer() {
-    return std::make_unique<RecordingWriter>(PartFile(path_, WhenItExists::kRefuse), header_, *state_,
+    return std::make_unique<RecordingWriter>(PartFile(path_, WhenItExists::kRefuse), header_, block_of(*state_),
                                              pack_image(image_.bytes()));
   }
   ReplayResult replay_inside(const std::string& path) {
@@ -81,7 +82,7 @@ class RecordingFile : public testing::Test {
 
   test::ImageBytes image_;
   Model model_;
-  std::unique_ptr<State> state_;
+  StatePtr state_;
   std::filesystem::path folder_;
   std::string path_, part_;
   RecordingHeader header_;
@@ -114,7 +115,7 @@ TEST_F(RecordingFile, TheSecondOfTwoWritersIsRefusedAndNothingIsLost) {
   EXPECT_NE(error_of([&] { writer(); }).find("--overwrite"), std::string::npos);
   const std::string before = text_of(path_);
   {
-    RecordingWriter over(PartFile(path_, WhenItExists::kReplace), header_, *state_);
+    RecordingWriter over(PartFile(path_, WhenItExists::kReplace), header_, block_of(*state_));
     over.add(run[0]);
     EXPECT_EQ(text_of(path_), before) << "the old one stays until the new one is complete";
     over.finish();
@@ -191,7 +192,7 @@ TEST_F(RecordingFile, WithoutAnyImageTheUserIsTold) {
 TEST_F(RecordingFile, AnImageInsideThatLiesIsRefused) {
   const auto error_with = [&](std::vector<PackedPiece> pieces) {
     std::filesystem::remove(path_);
-    RecordingWriter file(PartFile(path_, WhenItExists::kRefuse), header_, *state_, pieces);
+    RecordingWriter file(PartFile(path_, WhenItExists::kRefuse), header_, block_of(*state_), pieces);
     file.add(records(1)[0]);
     file.finish();
     return error_of([&] { replay_inside(path_); });
@@ -260,7 +261,7 @@ TEST_F(RecordingFile, TheControllersOwnFileIsJoinedToTheHosts) {
   const auto write = [&](const std::string& path, std::size_t from, std::size_t to, bool finish, const char* build) {
     RecordingHeader header = header_;
     std::strcpy(header.build_id, build);
-    RecordingWriter file(PartFile(path, WhenItExists::kReplace), header, *state_, pack_image(image_.bytes()));
+    RecordingWriter file(PartFile(path, WhenItExists::kReplace), header, block_of(*state_), pack_image(image_.bytes()));
     if (from > 0) file.begin_slice(from + 1, false);
     for (std::size_t i = from; i < to; ++i) file.add(run[i]);
     if (finish) file.finish();

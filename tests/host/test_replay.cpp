@@ -15,6 +15,7 @@
 #include "sim_host/record/recording_reader.h"
 #include "sim_host/record/recording_writer.h"
 #include "sim_host/record/replay.h"
+#include "tests/support/roomy.h"
 #include "tests/support/tiny_image.h"
 
 namespace palpate {
@@ -25,7 +26,7 @@ constexpr std::uint64_t kTicks = 400;
 struct RecordedRun {
   RecordedRun() : image(test::tiny_image()) {
     EXPECT_EQ(open_image(image.bytes(), model).error, ImageError::kNone);
-    reset(initial);
+    initial = make_state(model);
   }
   // Runs the core and records it; `spoil` may change a record before it is written.
   void record(const std::function<void(TickRecord&)>& spoil = {}) {
@@ -34,10 +35,11 @@ struct RecordedRun {
     header.scene_hash = model.scene_hash;
     std::strcpy(header.scene_name, "tiny");
     std::strcpy(header.image_path, "tiny.pal");
-    RecordingWriter writer(path, header, initial);
-    State state = initial;
-    if (check_state(model, state).field != nullptr) reset(state);  // a hostile file, made by nobody's tick
-    Scratch scratch;
+    RecordingWriter writer(path, header, *initial);
+    StatePtr state = copy_of(*initial);
+    if (check_state(model, *state).field != nullptr)
+      state = make_state(model);  // a hostile file, made by nobody's tick
+    const ScratchPtr scratch = make_scratch(model);
     for (std::uint64_t i = 0; i < kTicks; ++i) {
       Input input;
       // Comes down on the tetrahedron's face, slides and leaves.
@@ -45,9 +47,9 @@ struct RecordedRun {
       input.pose_w.position_m = {0.02 * phase, 0.01 * phase, 0.06 - 0.05 * std::sin(3.14159 * phase)};
       input.commands = i > 5 ? Command::kArm : 0;
       Output output;
-      tick(model, state, scratch, input, output);
+      tick(model, *state, *scratch, input, output);
       TickRecord record{};
-      fill_record(model, state, input, output, record);
+      fill_record(*state, input, output, record);
       record.sequence = i + 1;
       if (spoil) spoil(record);
       if (record.sequence != 0) writer.add(record);
@@ -63,7 +65,7 @@ struct RecordedRun {
 
   test::ImageBytes image;
   Model model;
-  State initial;
+  StatePtr initial;
   std::string path;
 };
 
@@ -80,8 +82,8 @@ TEST(Replay, SameInputsGiveTheSameBits) {
 
 TEST(Replay, StartsFromTheRecordedStateNotFromZero) {
   RecordedRun run;
-  run.initial.next_region_id = 1000;
-  run.initial.tick = 77;
+  run.initial->next_region_id = 1000;
+  run.initial->tick = 77;
   run.record();
   EXPECT_TRUE(run.replay_it().identical());
 }
@@ -166,7 +168,7 @@ TEST(Replay, EveryFieldOfTheOutputIsCompared) {
 TEST(Replay, AnInitialStateThatTheSceneCannotHaveIsRefused) {
   const auto error_of = [](auto spoil) {
     RecordedRun run;
-    spoil(run.initial);
+    spoil(*run.initial);
     run.record();
     try {
       run.replay_it();

@@ -31,7 +31,7 @@ void open_writer(TelemetryWriter& writer, TelemetryRegion& region) {
   Model model;
   model.scene_hash = 0x1234;
   model.name = "ring";
-  writer.open(region, model, State{}, 1'000'000, "build", "ring.pal");
+  writer.open(region, model, 1'000'000, "build", "ring.pal");
 }
 
 // Every word of the record carries the sequence number, so that a mixture of two records shows.
@@ -158,7 +158,7 @@ TEST(Ring, LongTextsAreCutAndTerminated) {
   Model model;
   const std::string name(1000, 'n'), path(5000, 'p');
   model.name = name.c_str();
-  writer.open(*region, model, State{}, 1, path.c_str(), path.c_str());
+  writer.open(*region, model, 1, path.c_str(), path.c_str());
   EXPECT_EQ(std::strlen(region->header.scene_name), static_cast<std::size_t>(kNameBytes - 1));
   EXPECT_EQ(std::strlen(region->header.build_id), kBuildIdBytes - 1);
   EXPECT_EQ(std::strlen(region->header.image_path), kImagePathBytes - 1);

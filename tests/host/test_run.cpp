@@ -154,7 +154,9 @@ TEST_F(Run, ControllerKilledInTheMiddleLeavesEverythingBeforeInTheRecording) {
                       device.controller_end());
   device.close_controller_end();
   const TelemetryHeader& header = link.telemetry().header;
-  RecordingWriter file(options_.record, recording_header(header), header.initial_state);
+  const ImageFile image(scene.image_path);
+  const StatePtr initial = make_state(image.model());
+  RecordingWriter file(options_.record, recording_header(header), *initial);
   Recorder recorder(link.telemetry(), &file, {});
   recorder.start();
   TelemetryReader reader(link.telemetry());

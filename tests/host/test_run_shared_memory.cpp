@@ -136,7 +136,7 @@ TEST(SharedMemory, StoppedAndKilledReaderDisturbsNobody) {
   auto& region = *static_cast<TelemetryRegion*>(owner.data());
   TelemetryWriter writer;
   Model model;
-  writer.open(region, model, State{}, 1'000'000, "build", "image");
+  writer.open(region, model, 1'000'000, "build", "image");
   const pid_t child = fork();
   ASSERT_GE(child, 0);
   if (child == 0) {

@@ -15,7 +15,7 @@ TickRecord tick_of(std::uint64_t number, std::int32_t wake_ns, std::int32_t comp
   record.tick = number;
   record.timing.wake_latency_ns = wake_ns;
   record.timing.compute_ns = compute_ns;
-  record.timing.stage_ns[static_cast<int>(Stage::kForce)] = compute_ns / 2;
+  record.timing.stage_ns[static_cast<int>(Stage::kSolve)] = compute_ns / 2;
   return record;
 }
 

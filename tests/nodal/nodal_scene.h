@@ -9,8 +9,10 @@
 #include "config/bake/nodal_body.h"
 #include "config/bake/tool_points.h"
 #include "config/fem/tet_procedural.h"
+#include "rt_core/contact/nodes/node_problem.h"
 #include "rt_core/image.h"
 #include "rt_core/tick.h"
+#include "tests/support/roomy.h"
 #include "tests/support/tiny_image.h"
 
 namespace palpate::test {
@@ -75,7 +77,7 @@ class NodalScene {
   }
   void restart() {
     reset(*state_);
-    std::memset(static_cast<void*>(scratch_.get()), 0xAB, sizeof(Scratch));  // nothing may depend on old scratch
+    test::poison(*scratch_, model_, 0xAB);  // nothing may depend on old scratch
     first_ = true;
   }
   // One tick with the tool held at a place (kTool) or pulled by a handle there (kDevice).
@@ -107,8 +109,8 @@ class NodalScene {
  private:
   std::unique_ptr<ImageBytes> bytes_;
   Model model_;
-  std::unique_ptr<State> state_ = std::make_unique<State>();
-  std::unique_ptr<Scratch> scratch_ = std::make_unique<Scratch>();
+  StatePtr state_ = make_state(model_);
+  ScratchPtr scratch_ = make_scratch(model_);
   Output output_{};
   bool first_ = true;
 };

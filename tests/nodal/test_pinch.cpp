@@ -43,7 +43,7 @@ Seen play(const BakedScene& scene, const SceneDesc& desc) {
         seen.squeeze_N = std::max(seen.squeeze_N, norm(bench.state->articulation.piece_force_tool_N[j]));
     }
   }
-  seen.hash = hash_state(scene.model(), *bench.state);
+  seen.hash = hash_state(*bench.state);
   return seen;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "rt_core/tool/virtual_coupling.h"
+#include "sim_host/tick_memory.h"
 #include "tests/support/baked_scene.h"
 
 namespace palpate {
@@ -48,8 +49,8 @@ class Handle {
 
  private:
   test::BakedScene scene_;
-  std::unique_ptr<State> state_ = std::make_unique<State>();
-  std::unique_ptr<Scratch> scratch_ = std::make_unique<Scratch>();
+  StatePtr state_ = make_state(scene_.model());
+  ScratchPtr scratch_ = make_scratch(scene_.model());
   Output output_;
 };
 

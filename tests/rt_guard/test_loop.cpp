@@ -18,6 +18,7 @@
 #include "hal/system/rt_linux.h"
 #include "hal/system/syscall_filter.h"
 #include "rt_core/telemetry.h"
+#include "sim_host/tick_memory.h"
 #include "tests/rt_guard/guard.h"
 #include "tests/support/image_file.h"
 #include "tests/support/scripted_hand.h"
@@ -94,8 +95,8 @@ struct RealTimeThread {
   void run() {
     id = gettid();
     const RtSetup setup({.priority = 0, .no_deep_sleep = false});
-    const auto state = std::make_unique<State>();
-    const auto scratch = std::make_unique<Scratch>();
+    const auto state = make_state(model);
+    const auto scratch = make_scratch(model);
     visit_all_code(*state, *scratch);
     ModelController controller(model, *state, *scratch);
     DeviceBus device(transport, WireProfile::kFd);
@@ -135,7 +136,7 @@ TEST(RealTimeThread, HundredThousandTicksWithoutHeapLockPageFaultOrForbiddenCall
   ASSERT_TRUE(controller_end && device_end) << error;
   const auto region = std::make_unique<TelemetryRegion>();
   TelemetryWriter telemetry;
-  telemetry.open(*region, image.model(), State{}, kPeriod_ns, "", "");
+  telemetry.open(*region, image.model(), kPeriod_ns, "", "");
   clear_forbidden_syscall();
 
   std::atomic<bool> device_stop{false};

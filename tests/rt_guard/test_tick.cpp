@@ -13,6 +13,7 @@
 
 #include "rt_core/record.h"
 #include "rt_core/tick.h"
+#include "sim_host/tick_memory.h"
 #include "tests/rt_guard/guard.h"
 #include "tests/support/image_file.h"
 #include "tests/support/scripted_hand.h"
@@ -40,15 +41,15 @@ struct Bench {
       }
       const Input input = hand.next(*output);
       tick(image.model(), *state, *scratch, input, *output);
-      fill_record(image.model(), *state, input, *output, *record);
+      fill_record(*state, input, *output, *record);
       in_contact += output->contacts > 0 ? 1 : 0;
     }
     return in_contact;
   }
   ImageFile image;
   ScriptedHand fresh{image.model()};
-  std::unique_ptr<State> state = std::make_unique<State>();
-  std::unique_ptr<Scratch> scratch = std::make_unique<Scratch>();
+  StatePtr state = make_state(image.model());
+  ScratchPtr scratch = make_scratch(image.model());
   std::unique_ptr<Output> output = std::make_unique<Output>();
   std::unique_ptr<TickRecord> record = std::make_unique<TickRecord>();
 };

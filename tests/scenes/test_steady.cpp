@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "rt_core/tick.h"
+#include "sim_host/tick_memory.h"
 #include "tests/support/image_file.h"
 #include "tests/support/scripted_hand.h"
 
@@ -52,8 +53,8 @@ class EveryScene : public testing::TestWithParam<std::string> {};
 // half a step per tick shows that one in every other tick, and must. Measured 2026-11-21: no run longer than 1 tick.
 TEST_P(EveryScene, DoesNotBuzzInTheHand) {
   const ImageFile image(std::string(PALPATE_IMAGE_DIR) + "/" + GetParam() + ".pal");
-  const auto state = std::make_unique<State>();
-  const auto scratch = std::make_unique<Scratch>();
+  const auto state = make_state(image.model());
+  const auto scratch = make_scratch(image.model());
   reset(*state);
   ScriptedHand hand(image.model());
   Output output;

@@ -10,6 +10,7 @@
 #include "config/bake/compile.h"
 #include "rt_core/image.h"
 #include "rt_core/tick.h"
+#include "sim_host/tick_memory.h"
 
 namespace palpate::test {
 
@@ -54,8 +55,8 @@ struct Bench {
   }
 
   const Model& model;
-  std::unique_ptr<State> state = std::make_unique<State>();
-  std::unique_ptr<Scratch> scratch = std::make_unique<Scratch>();
+  StatePtr state = make_state(model);
+  ScratchPtr scratch = make_scratch(model);
   Output output;
 };
 

@@ -1,4 +1,5 @@
 #include "rt_core/contact/nodes/nodes.h"
+#include "rt_core/contact/nodes/region_motion.h"
 #include "rt_core/tool/carrier.h"
 #include "rt_core/tool/piece_gap.h"
 
@@ -20,7 +21,7 @@ class NodeSearch {
  public:
   NodeSearch(const Model& model, State& state, Scratch& scratch) PALPATE_RT : model_(model),
                                                                               state_(state),
-                                                                              problem_(scratch.nodal) {
+                                                                              problem_(*scratch.nodal) {
     problem_.near_count = 0;
     const auto vertices = static_cast<std::size_t>(model.sizes.n_vertex);
     __builtin_memset(problem_.memory_of, 0xff, vertices * sizeof problem_.memory_of[0]);

@@ -4,6 +4,7 @@
 
 #include "rt_core/contact/nodes/friction_block.h"
 #include "rt_core/contact/nodes/pivoting.h"
+#include "rt_core/state.h"
 #include "rt_core/vec.h"
 
 namespace palpate {
@@ -62,12 +63,16 @@ struct ContactProblem {
   double per_N = 0, per_Nm = 0;                   // compliance of the virtual coupling; 0: the tool is held
   // Nodes within the margin of the tool, in the order of the vertices for a tool of one piece.
   std::int32_t near_count = 0;
-  NearFour near[kMaxNearFours + 1];  // and one that is looked at
-  // Which entry of State::nodal a vertex is, and which of `near` four vertices are; -1: none. Valid up to n_vertex.
-  std::int8_t memory_of[4 * kMaxNearFours];
-  std::int16_t near_of[kMaxNearFours];
+  NearFour* near = nullptr;  // for all vertices, and one that is looked at
+  // Which entry of State::nodal a vertex is, and which of `near` four vertices are; -1: none.
+  std::int8_t* memory_of = nullptr;
+  std::int16_t* near_of = nullptr;
 };
 static_assert(kMaxContacts <= 127 && kMaxNodalVertices <= 32767, "numbered in 8 and 16 bits");
+
+// Room for the problem of a body with n_vertex nodes in the block of a Scratch, and the problem made there.
+void place_problem(const Model& model, NodalScratch& memory, Arena& arena) noexcept;
+ContactProblem* create_problem(NodalScratch& memory) noexcept;
 
 // What its push does to the body.
 inline Vec3 push_w(const ContactNode& node) PALPATE_RT {

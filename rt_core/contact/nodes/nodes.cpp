@@ -14,7 +14,7 @@ constexpr std::int32_t kDof = 6;
 
 // Where the tool goes: the handle's pull against the pushes, no faster than the handle itself and the limit.
 void place_tool(const Model& model, const State& state, Scratch& scratch, const Twist& drift) PALPATE_RT {
-  const ContactProblem& p = scratch.nodal;
+  const ContactProblem& p = *scratch.nodal;
   Pose& tool = scratch.tool_corrected_w;
   if (scratch.driven) {
     tool = state.tool_w;
@@ -34,7 +34,7 @@ void place_tool(const Model& model, const State& state, Scratch& scratch, const 
 
 // Keeps the nodes that push: with what force, and where on the tool.
 void remember(const Model& model, State& state, const Scratch& scratch) PALPATE_RT {
-  const ContactProblem& p = scratch.nodal;
+  const ContactProblem& p = *scratch.nodal;
   NodalContact before[kMaxContacts];
   for (std::int32_t m = 0; m < state.nodal.count; ++m) before[m] = state.nodal.contact[m];  // bound: kMaxContacts
   state.nodal.count = 0;
@@ -62,7 +62,7 @@ void remember(const Model& model, State& state, const Scratch& scratch) PALPATE_
 // normals' Jacobian. The factor at hand may contain the coupling's compliance; then S = G^T M^-1 G is K in series with
 // it, and K = (1 - S / K_coupling)^-1 S.
 void set_stiffness(State& state, const Scratch& scratch) PALPATE_RT {
-  const ContactProblem& p = scratch.nodal;
+  const ContactProblem& p = *scratch.nodal;
   const ContactFactor& factor = p.normal.factor;
   if (p.normal.factored == 0 || factor.n == 0) return;
   FactorRow column[kContactStride];
@@ -102,7 +102,7 @@ void set_stiffness(State& state, const Scratch& scratch) PALPATE_RT {
 
 // Contacts for the later stages and telemetry: the nodes that push.
 void list_contacts(Scratch& scratch) PALPATE_RT {
-  const ContactProblem& p = scratch.nodal;
+  const ContactProblem& p = *scratch.nodal;
   for (std::int32_t i = 0; i < p.count; ++i) {  // bound: kMaxContacts
     const ContactNode& node = p.node[i];
     if (!(node.push.normal_N > 0)) continue;
@@ -121,7 +121,7 @@ void list_contacts(Scratch& scratch) PALPATE_RT {
 
 // Total wrench on the tool and elastic energy of the body, f . C f / 2.
 void sum_up(Scratch& scratch) PALPATE_RT {
-  const ContactProblem& p = scratch.nodal;
+  const ContactProblem& p = *scratch.nodal;
   Real work = 0;
   for (std::int32_t i = 0; i < p.count; ++i) {  // bound: kMaxContacts
     const Vec3 force = p.node[i].force_w;
@@ -196,21 +196,21 @@ Real largest_strain(const Model& model, const ContactProblem& p) PALPATE_RT {
 
 void check_strain(const Model& model, Scratch& scratch) PALPATE_RT {
   if (model.strain_gauge.empty()) return;
-  scratch.strain = largest_strain(model, scratch.nodal);
+  scratch.strain = largest_strain(model, *scratch.nodal);
   if (scratch.strain > model.params.strain_limit) scratch.status |= Status::kStrainBeyondLinear;
 }
 
 void find_rows(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   scratch.contact_count = 0;
-  scratch.nodal.count = 0;
+  scratch.nodal->count = 0;
   if (!is_finite(state.tool_w)) return;
   find_near_nodes(model, state, scratch);
   choose_nodes(model, state, scratch);
-  if (scratch.nodal.count > state.high_water.contacts) state.high_water.contacts = scratch.nodal.count;
+  if (scratch.nodal->count > state.high_water.contacts) state.high_water.contacts = scratch.nodal->count;
 }
 
 void solve(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
-  ContactProblem& p = scratch.nodal;
+  ContactProblem& p = *scratch.nodal;
   p.per_N = scratch.driven ? 0.0 : 1.0 / model.params.coupling_N_per_m;
   p.per_Nm = scratch.driven ? 0.0 : 1.0 / model.params.coupling_Nm_per_rad;
   p.force_N = p.torque_Nm = {};
@@ -221,7 +221,7 @@ void solve(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
 }
 
 void account(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
-  if (scratch.nodal.count > 0) set_stiffness(state, scratch);
+  if (scratch.nodal->count > 0) set_stiffness(state, scratch);
   remember(model, state, scratch);
   list_contacts(scratch);
   sum_up(scratch);

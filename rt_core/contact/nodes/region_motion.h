@@ -3,17 +3,9 @@
 #pragma once
 
 #include "rt_core/lanes.h"
+#include "rt_core/state.h"
 
 namespace palpate {
-
-struct RegionMotion {
-  Vec3 centre_w;  // mean rest position of the nodes it was fitted to
-  Vec3 translation_m;
-  Vec3 rotation_rad;
-  double reach_m = 0;  // rest points farther from the centre are not carried
-  double growth = 0;   // of the motion by finite rotation, see bend_of()
-  double finite = 0;   // 1: finite rotation counts, 0: it does not
-};
 
 // Of four rest points, `arm` away from the centre.
 inline Vec3x4 carry_at(const RegionMotion& motion, const Vec3x4& arm) PALPATE_RT {
