@@ -269,11 +269,11 @@ LoopSummary run_loop(const Arguments& arguments, const Model& model, Core& core,
   const bool host_died = mailbox != nullptr && crash.wait_for_death();
   if (host_died) {
     port.host_has_died();
-    crash.write(*static_cast<const TelemetryRegion*>(host.telemetry.data()), true);
+    crash.write(*static_cast<const TelemetryRegion*>(host.telemetry.data()), model, true);
   }
   thread.join();
   if (!host_died && (port.faults() & Fault::kHostSilent) != 0) {
-    crash.write(*static_cast<const TelemetryRegion*>(host.telemetry.data()), false);
+    crash.write(*static_cast<const TelemetryRegion*>(host.telemetry.data()), model, false);
   }
   return summary;
 }
