@@ -36,7 +36,6 @@ inline constexpr std::uint32_t kButtonClose = 1u << 0;
 
 struct Input {
   Pose pose_w;                      // device handle (kDevice) or tool (kTool)
-  Vec3 velocity_w;                  // m/s, of the handle; zero if unknown
   std::uint32_t stale_ticks = 0;    // 0: fresh sample; n: no sample for n ticks (pose_w repeats the last one)
   std::uint32_t commands = 0;       // Command bits
   std::uint32_t device_fault = 0;   // Fault bits found by the HAL: silence, bus-off, device report, overrun

@@ -69,7 +69,6 @@ enum class NodalCarry : std::int32_t { kFarField = 0, kRest = 1, kTurned = 2 };
   X(double, cluster_distance_m, "m", 1e-6, 1, "contact points nearer than this are one region")              \
   X(double, youngs_modulus_Pa, "Pa", 1, 1e13, "E")                                                           \
   X(double, poisson_ratio, "-", -0.999, 0.5, "nu")                                                           \
-  X(double, density_kg_per_m3, "kg/m3", 1, 1e5, "rho")                                                       \
   X(double, far_field_radius_m, "m", 1e-6, 1, "core radius of the far-field kernel between regions")         \
   X(double, neighbourhood_radius_m, "m", 1e-6, 1, "R of the local dent")                                     \
   X(double, surface_size_m, "m", 1e-6, 100, "largest extent of the body; scale of tolerances")               \
@@ -191,8 +190,7 @@ struct PatchWeight {
 // A surface node of a finite-element body: vertex i of the surface, with the same index.
 struct NodalVertex {
   double area_m2;        // a third of the areas of its triangles
-  std::int32_t owner;    // the one of its triangles that presents it to a search of the hierarchy
-  std::int32_t is_free;  // 0: held in some direction
+  std::int64_t is_free;  // 0: held in some direction
   // Where the surface bends sharply between its nodes, the ball that fits it there: radius (0: none), the surface's
   // normal at the node on the bent side of any crease, and the cosine of the angle the node's share of it spans.
   double round_m = 0;

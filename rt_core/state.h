@@ -99,8 +99,7 @@ struct PointState {
   X(double, tangential_k_N_per_m, 0, "Mindlin variant: stiffness of the last tick")                                 \
   X(double, reversal_N_per_m, 0, "while it slips: its stiffness against motion back, along -stretch_w; else 0")     \
   X(FrictionMode, friction, FrictionMode::kFree, "stick, slip or free")                                             \
-  X(std::int32_t, reserved, 0, "-")                                                                                 \
-  X(Vec3, origin_w, {}, "origin of the deformation p_o on the rest surface")
+  X(std::int32_t, reserved, 0, "-")
 
 // A contact region: a cluster of contacts with an identity that lasts.
 struct Region {

@@ -49,7 +49,7 @@ StateFault check_region(const Region& r, int64_t i) noexcept {
   const bool finite =
       are_finite(r.area_m2, r.depth_max_m, r.centre_w, r.normal_w, r.normal_force_N, r.friction_force_w) &&
       are_finite(r.depth_equivalent_m, r.energy_J, r.tangent_N_per_m, r.lean_tool_m) &&
-      are_finite(r.lean_normal_tool, r.stretch_w, r.tangential_k_N_per_m, r.reversal_N_per_m, r.origin_w);
+      are_finite(r.lean_normal_tool, r.stretch_w, r.tangential_k_N_per_m, r.reversal_N_per_m);
   return finite && is_wrench(r.wrench_w) ? StateFault{} : StateFault{"region", i};
 }
 

@@ -71,7 +71,6 @@ constexpr std::uint64_t record_layout_hash() noexcept {
                                  sizeof(TickTiming),
                                  offsetof(TickTiming, stage_ns),
                                  sizeof(Input),
-                                 offsetof(Input, velocity_w),
                                  offsetof(Input, stale_ticks),
                                  offsetof(Input, commands),
                                  offsetof(Input, device_fault),

@@ -26,6 +26,7 @@ inline constexpr int kExitUnavailable = 3;  // the machine lacks something: inte
 // Each registers its subcommand; when the user picks it, the callback sets `exit_code`. Errors may be thrown as
 // std::exception: main prints what() after "palpate: " and exits with kExitUsage.
 void add_bake_command(CLI::App& app, int& exit_code);
+void add_explain_command(CLI::App& app, int& exit_code);
 void add_press_command(CLI::App& app, int& exit_code);
 void add_run_command(CLI::App& app, int& exit_code);
 void add_replay_command(CLI::App& app, int& exit_code);

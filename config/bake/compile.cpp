@@ -121,7 +121,6 @@ class Compiler {
     p.rbf_tail = scene_.shape.tail;
     p.youngs_modulus_Pa = scene_.material.youngs_modulus_Pa;
     p.poisson_ratio = effective_poisson_ratio(scene_.material);
-    p.density_kg_per_m3 = scene_.material.density_kg_per_m3;
     if (scene_.material.poisson_ratio > 0.5) warn("poisson_ratio 1.0 is impossible; 0.47 is used instead");
 
     report_.contact = contact_coefficients(scene_);

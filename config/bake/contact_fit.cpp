@@ -22,17 +22,26 @@ double effective_poisson_ratio(const MaterialDesc& material) {
   return material.legacy_paper_material && material.poisson_ratio > 0.5 ? 0.47 : material.poisson_ratio;
 }
 
+ContactCoefficients duffing_paper_coefficients(const DuffingDesc& d) {
+  const double share = d.coefficient == DuffingCoefficient::kPaper ? 0.75 : 1.0;
+  return {1e3 * d.mass_kg * d.omega0 * d.omega0, 1e9 * share * d.mass_kg * d.beta0sq_eps,
+          format("Duffing in mm and N: k1 = 1e3 m omega0^2, k3 = 1e9 * %.2f m beta0^2 eps", share)};
+}
+
+ContactCoefficients hertz_coefficients(double youngs_modulus_Pa, double poisson_ratio, double radius_m,
+                                       double reference_depth_m) {
+  const double depth = reference_depth_m, root = square_root(depth);
+  const double factor = 4.0 / 3.0 * youngs_modulus_Pa / (1 - poisson_ratio * poisson_ratio) * square_root(radius_m);
+  return {0.75 * factor * root, 0.25 * factor / (depth * root),
+          format("Hertz, sphere of %.4g mm, value and slope matched at %.4g mm (%.4g N)", 1e3 * radius_m, 1e3 * depth,
+                 factor * depth * root)};
+}
+
 ContactCoefficients contact_coefficients(const SceneDesc& scene) {
   ContactCoefficients c;
   switch (scene.contact.law) {
-    case ContactLaw::kDuffing: {
-      const DuffingDesc& d = scene.duffing;
-      const double share = d.coefficient == DuffingCoefficient::kPaper ? 0.75 : 1.0;
-      c.k1_N_per_m = 1e3 * d.mass_kg * d.omega0 * d.omega0;
-      c.k3_N_per_m3 = 1e9 * share * d.mass_kg * d.beta0sq_eps;
-      c.derivation = format("Duffing in mm and N: k1 = 1e3 m omega0^2, k3 = 1e9 * %.2f m beta0^2 eps", share);
-      break;
-    }
+    case ContactLaw::kDuffing:
+      return duffing_paper_coefficients(scene.duffing);
     case ContactLaw::kCubic:
       c.k1_N_per_m = scene.cubic.k1_N_per_m;
       c.k3_N_per_m3 = scene.cubic.k3_N_per_m3;
@@ -42,16 +51,9 @@ ContactCoefficients contact_coefficients(const SceneDesc& scene) {
     case ContactLaw::kTable:
       c.derivation = "not used: the tips carry their own laws";
       break;
-    case ContactLaw::kHertz: {
-      const double nu = effective_poisson_ratio(scene.material);
-      const double depth = scene.hertz.fit_depth_m, radius = scene.hertz.tool_radius_m;
-      const double factor = 4.0 / 3.0 * scene.material.youngs_modulus_Pa / (1 - nu * nu) * square_root(radius);
-      c.k1_N_per_m = 0.75 * factor * square_root(depth);
-      c.k3_N_per_m3 = 0.25 * factor / (depth * square_root(depth));
-      c.derivation = format("Hertz, sphere of %.4g mm, value and slope matched at %.4g mm (%.4g N)", 1e3 * radius,
-                            1e3 * depth, factor * depth * square_root(depth));
-      break;
-    }
+    case ContactLaw::kHertz:
+      return hertz_coefficients(scene.material.youngs_modulus_Pa, effective_poisson_ratio(scene.material),
+                                scene.hertz.tool_radius_m, scene.hertz.fit_depth_m);
   }
   return c;
 }

@@ -20,17 +20,13 @@ std::vector<Triangle> linked_triangles(const SurfaceMesh& mesh) {
 }
 
 std::vector<NodalVertex> nodal_vertices(const CondensedBody& body, const std::vector<Triangle>& triangle) {
-  std::vector<NodalVertex> vertex(body.surface.vertex_m.size(), NodalVertex{0, -1, 1, 0, {}, 1});
+  std::vector<NodalVertex> vertex(body.surface.vertex_m.size(), NodalVertex{0, 1, 0, {}, 1});
   for (std::size_t i = 0; i < vertex.size(); ++i) vertex[i].is_free = body.held[i] == 0 ? 1 : 0;
   for (std::size_t t = 0; t < triangle.size(); ++t) {
     const auto corner = [&](int k) { return static_cast<std::size_t>(triangle[t].vertex[k]); };
     const auto& x = body.surface.vertex_m;
     const double area = 0.5 * norm(cross(x[corner(1)] - x[corner(0)], x[corner(2)] - x[corner(0)]));
-    for (int k = 0; k < 3; ++k) {
-      NodalVertex& v = vertex[corner(k)];
-      v.area_m2 += area / 3;
-      if (v.owner < 0) v.owner = static_cast<std::int32_t>(t);
-    }
+    for (int k = 0; k < 3; ++k) vertex[corner(k)].area_m2 += area / 3;
   }
   return vertex;
 }

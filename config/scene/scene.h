@@ -266,6 +266,7 @@ struct SceneSource {
 
 struct SceneDesc {
   std::string name = "scene";
+  std::int32_t budget_instructions = 0;
   BodyDesc body;
   FemDesc fem;
   MaterialDesc material;

@@ -61,6 +61,9 @@ constexpr KeyKind kVec3 = KeyKind::kVec3;
 
 const KeySpec kTop[] = {
     text<&SceneDesc::name>("name", kNameBytes - 1, "name stored in the image and shown everywhere", true),
+    integer<&SceneDesc::budget_instructions>("budget_instructions", 0, 10'000'000,
+                                             "most instructions a tick may take in tests/bench, "
+                                             "counted by callgrind; 0: none stated"),
 };
 
 const KeySpec kBody[] = {

@@ -6,7 +6,6 @@ namespace palpate {
 namespace {
 
 // A classic sample carries no device time; nodes send one per period of 1 ms.
-constexpr double kClassicPeriod_s = 1e-3;
 
 std::span<const std::uint8_t> payload(const Frame& frame) noexcept { return {frame.data, frame.length}; }
 
@@ -58,14 +57,12 @@ bool DeviceBus::follow(std::uint32_t sequence) noexcept {
   counters_.restarts += step == SequenceTracker::Step::kRestart;
   counters_.lost += missing;
   sample_.gaps += missing;
-  step_ = missing + 1;
   return step == SequenceTracker::Step::kNew || step == SequenceTracker::Step::kRestart;
 }
 
-void DeviceBus::accept(Vec3 position_m, Quat orientation, double dt_s) noexcept {
+void DeviceBus::accept(Vec3 position_m, Quat orientation) noexcept {
   sample_.position_m = position_m;
   sample_.orientation = orientation;
-  sample_.velocity_m_per_s = velocity_.update(position_m, dt_s);
   sample_.sequence = sequence_.last();
   sample_.received += 1;
   counters_.accepted += 1;
@@ -86,7 +83,7 @@ void DeviceBus::take_status(const Frame& frame) noexcept {
   Vec3 position_m;
   Quat orientation;
   wire::get_pose(status, position_m, orientation);
-  accept(position_m, orientation, forward ? 1e-6 * static_cast<double>(elapsed_us) : 0.0);
+  accept(position_m, orientation);
   sample_.device_time_us = status.time_us;
   sample_.flags = status.flags;
   sample_.buttons = status.buttons;
@@ -114,7 +111,7 @@ void DeviceBus::take_orientation(const Frame& frame) noexcept {
   Vec3 position_m;
   Quat rotation;
   wire::get_pose(pending_, orientation, position_m, rotation);
-  accept(position_m, rotation, static_cast<double>(step_) * kClassicPeriod_s);
+  accept(position_m, rotation);
   sample_.flags = orientation.flags;
   sample_.buttons = orientation.buttons;
   sample_.error_code = 0;

@@ -70,20 +70,18 @@ class DeviceBus {
   void take_orientation(const Frame& frame) noexcept;
   bool decoded(wire::DecodeResult result) noexcept;
   bool follow(std::uint32_t sequence) noexcept;
-  void accept(Vec3 position_m, Quat orientation, double dt_s) noexcept;
+  void accept(Vec3 position_m, Quat orientation) noexcept;
   std::uint32_t faults() const noexcept;
 
   Transport& transport_;
   WireProfile profile_;
   int node_;
   SequenceTracker sequence_;
-  VelocityEstimator velocity_;
   DeviceSample sample_;  // newest accepted
   BusCounters counters_;
   wire::ClassicPosition pending_;  // first half of a classic sample
   bool has_pending_ = false;
   bool has_time_ = false;
-  std::uint32_t step_ = 0;  // sequence numbers from the last accepted sample to this one
   std::uint32_t sent_ = 0, obeyed_ = 0;
 };
 

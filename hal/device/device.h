@@ -34,7 +34,6 @@ inline constexpr std::uint32_t kEnable = 1u << 0;  // power the drives; without 
 struct DeviceSample {
   Vec3 position_m;                   // of the handle, device frame
   Quat orientation;                  // handle to device frame, unit
-  Vec3 velocity_m_per_s;             // device frame, estimated over a few samples; zero until there are two
   std::uint32_t device_time_us = 0;  // device clock, wraps; 0 where the profile does not carry it
   std::uint32_t sequence = 0;        // as sent; wraps with the profile's width
   std::uint32_t flags = 0;           // DeviceFlag

@@ -131,7 +131,6 @@ void SimulatedDevice::receive(DeviceSample& sample) noexcept {
   if (sample_.fresh) {
     sample_.position_m = plant_.measured_m();
     sample_.orientation = plant_.pose().orientation;
-    sample_.velocity_m_per_s = velocity_.update(sample_.position_m, elapsed * plant_.options().period_s);
     sample_.sequence = static_cast<std::uint32_t>(plant_.ticks()) & 0xFFFFu;
     sample_.device_time_us = static_cast<std::uint32_t>(plant_.ticks() * static_cast<std::uint64_t>(period_ns_) / 1000);
     sample_.flags = DeviceFlag::kCalibrated;

@@ -88,7 +88,6 @@ class SimulatedDevice {
   const VirtualClock& clock_;
   std::int64_t start_ns_, period_ns_;
   DeviceCommand command_;
-  VelocityEstimator velocity_;
   bool first_ = true;
   DeviceSample sample_;
 };

@@ -30,9 +30,6 @@ inline Pose pose_in_world(const CartesianKinematics& k, const DeviceSample& samp
   return {k.position_w + rotate(k.orientation_w, k.scale * sample.position_m),
           normalised(k.orientation_w * sample.orientation)};
 }
-inline Vec3 velocity_in_world(const CartesianKinematics& k, Vec3 velocity_m_per_s) noexcept {
-  return rotate(k.orientation_w, k.scale * velocity_m_per_s);
-}
 inline Pose pose_in_device(const CartesianKinematics& k, const Pose& pose_w) noexcept {
   const Quat back = conjugate(k.orientation_w);
   return {(1.0 / k.scale) * rotate(back, pose_w.position_m - k.position_w), normalised(back * pose_w.orientation)};
@@ -68,28 +65,5 @@ inline DeviceCommand to_command(const CartesianKinematics& k, const Output& outp
   }
   return command;
 }
-
-// First-order low-pass of the finite difference of a quantised position. Time constant 2 ms (cut-off 80 Hz): at a count
-// of 0.03 mm and 1 kHz a bare difference jumps by 30 mm/s; filtered it jumps by 12 mm/s.
-class VelocityEstimator {
- public:
-  // `dt_s` since the last position; outside (0, 0.1] the estimate restarts from zero.
-  Vec3 update(Vec3 position_m, double dt_s) noexcept {
-    constexpr double kTimeConstant_s = 2e-3;
-    if (started_ && dt_s > 0 && dt_s <= 0.1) {
-      const double gain = dt_s / (dt_s + kTimeConstant_s);
-      velocity_ += gain * ((1.0 / dt_s) * (position_m - last_m_) - velocity_);
-    } else {
-      velocity_ = {};
-    }
-    last_m_ = position_m;
-    started_ = true;
-    return velocity_;
-  }
-
- private:
-  Vec3 last_m_, velocity_;
-  bool started_ = false;
-};
 
 }  // namespace palpate

@@ -202,7 +202,6 @@ class Loop {
       // A position outside the workspace is passed on as not a number: the core rejects and reports it.
       input_.pose_w = pose_in_world(kinematics_, sample_);
       if (!believed) input_.pose_w.position_m.x = std::numeric_limits<double>::quiet_NaN();
-      input_.velocity_w = velocity_in_world(kinematics_, sample_.velocity_m_per_s);
       input_.buttons = sample_.buttons;
     }
     input_.stale_ticks = stale_;

@@ -191,7 +191,6 @@ void slide(const Model& model, const State& state, Scratch& scratch, const Frict
   region.wrench_w.force_N += force;
   region.wrench_w.torque_Nm += cross(arm, force);
   region.energy_J += friction.energy_J;
-  region.origin_w = region.centre_w - region.stretch_w;
   add_tangential_stiffness(scratch.stiffness, friction, region.normal_w, arm);
 }
 

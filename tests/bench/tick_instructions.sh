@@ -2,13 +2,13 @@
 # Gate on instruction counts, which are the same on every run: the worst tick of each scene against its budget, and the
 # same ellipsoid meshed three ways; and a tick with sixty nodes that push and slip. `scenes` plays the scripted hand,
 # `paths` the scene's own path as `palpate run` and the laboratory do. Usage:
-#   tick_instructions.sh scenes PROGRAM IMAGE_DIR
+#   tick_instructions.sh scenes PROGRAM IMAGE_DIR SCENE_DIR
 #   tick_instructions.sh paths PATH_PROGRAM IMAGE_DIR SCENE_DIR
 #   tick_instructions.sh meshes PROGRAM PALPATE SCENE.toml
 #   tick_instructions.sh nodal NODAL_PROGRAM
 #   tick_instructions.sh overlays PROGRAM PALPATE SCENE_DIR
 set -euo pipefail
-usage="usage: tick_instructions.sh scenes PROGRAM IMAGE_DIR | paths PROGRAM IMAGE_DIR SCENE_DIR |"
+usage="usage: tick_instructions.sh scenes PROGRAM IMAGE_DIR SCENE_DIR | paths PROGRAM IMAGE_DIR SCENE_DIR |"
 usage+=" meshes PROGRAM PALPATE SCENE.toml |"
 usage+=" overlays PROGRAM PALPATE SCENE_DIR | nodal PROGRAM"
 mode=${1:?$usage} program=${2:?$usage}
@@ -20,17 +20,13 @@ command -v valgrind >/dev/null || { echo "valgrind is missing: apt-get install v
 # The functions of the stages, in order, from their one list.
 stages=$(sed -nE 's/^ *X\(k[A-Za-z]+, ([a-z_]+), "[a-z]+", .*/\1/p' "$here/../../rt_core/status.h")
 
-# Scene and the most instructions its worst tick may take.
-budgets='ellipsoid_mallet 30000
-heart_compass 60000
-tools_on_cylinder 20000
-tools_on_layer 20000
-half_shell 60000
-ring 60000
-hollow_cylinder 60000
-grasp_cylinder_5 250000
-snap_in 300000
-pinch_block 300000'
+# The most instructions a scene's worst tick may take stand in the scene itself; a shipped scene without is an error.
+budget_of() {
+  local budget
+  budget=$(sed -nE 's/^budget_instructions *= *([0-9]+).*/\1/p' "$1")
+  [ "${budget:-0}" -gt 0 ] || { echo "$1: no budget_instructions: state what its worst tick may cost" >&2; exit 1; }
+  echo "$budget"
+}
 # The scenes in which a path reaches states that the scripted hand does not: a tube seated in its clip, a block tugged at.
 path_scenes='snap_in pinch_block'
 # Every tool on the softest and the stiffest material in the two tool scenes.
@@ -54,19 +50,21 @@ if [ "$mode" = paths ]; then
   images=${3:?$usage} scenes=${4:?$usage} least_contact=3
   for scene in $path_scenes; do
     echo "== $scene, its own path"
-    budget=$(awk -v scene="$scene" '$1 == scene { print $2 }' <<<"$budgets")
+    budget=$(budget_of "$scenes/$scene.toml")
     count "$images/$scene.pal" "$scenes/$scene.toml"
     if [ "$worst" -le "$budget" ]; then verdict=ok; else verdict="OVER BUDGET" status=1; fi
     echo "worst tick $worst of $budget instructions: $verdict"
   done
 elif [ "$mode" = scenes ]; then
-  images=${3:?$usage}
-  while read -r scene budget; do
+  images=${3:?$usage} scenes=${4:?$usage}
+  for file in "$scenes"/*.toml; do budget_of "$file" >/dev/null; done
+  for file in "$scenes"/*.toml; do
+    scene=$(basename "$file" .toml) budget=$(budget_of "$file")
     echo "== $scene"
     count "$images/$scene.pal"
     if [ "$worst" -le "$budget" ]; then verdict=ok; else verdict="OVER BUDGET" status=1; fi
     echo "worst tick $worst of $budget instructions: $verdict"
-  done <<<"$budgets"
+  done
 elif [ "$mode" = meshes ]; then
   palpate=${3:?$usage} scene=${4:?$usage}
   grep -qE '^triangles *=' "$scene" || { echo "$scene has no key 'triangles' to vary"; exit 1; }

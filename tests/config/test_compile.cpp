@@ -162,7 +162,6 @@ speed_max_m_per_s = 2
   EXPECT_DOUBLE_EQ(p.cluster_distance_m, 0.007);
   EXPECT_DOUBLE_EQ(p.youngs_modulus_Pa, 2e6);
   EXPECT_DOUBLE_EQ(p.poisson_ratio, 0.47);
-  EXPECT_DOUBLE_EQ(p.density_kg_per_m3, 1200);
   EXPECT_DOUBLE_EQ(p.far_field_radius_m, 0.004);
   EXPECT_DOUBLE_EQ(p.neighbourhood_radius_m, 0.009);
   EXPECT_NEAR(p.surface_size_m, 0.08, 1e-3);  // no vertex need lie on the axis

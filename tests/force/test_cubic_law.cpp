@@ -5,8 +5,8 @@
 #include <limits>
 #include <random>
 
+#include "config/bake/contact_fit.h"
 #include "rt_core/contact/cubic_law.h"
-#include "rt_core/contact/points/duffing.h"
 
 namespace palpate {
 namespace {
@@ -87,22 +87,28 @@ TEST(CubicLaw, DegenerateLawsAndArguments) {
 }
 
 TEST(Duffing, PaperParametersInMillimetresAndNewtons) {
-  constexpr DuffingParameters kObject{1, 0.2, 0.4};
-  constexpr CubicCoefficients kPaper = duffing_coefficients(kObject, DuffingCoefficient::kPaper);
-  EXPECT_NEAR(kPaper.k1_N_per_m, 40, 1e-12);
-  EXPECT_NEAR(kPaper.k3_N_per_m3, 3e8, 1e-5);
-  EXPECT_NEAR(law_depth_m({kPaper.k1_N_per_m, kPaper.k3_N_per_m3, kHuge}, 25), 4.35773e-3, 1e-8);
-  const CubicCoefficients settled = duffing_coefficients(kObject, DuffingCoefficient::kStatic);
+  DuffingDesc object;
+  object.mass_kg = 1;
+  object.omega0 = 0.2;
+  object.beta0sq_eps = 0.4;
+  object.coefficient = DuffingCoefficient::kPaper;
+  const ContactCoefficients paper = duffing_paper_coefficients(object);
+  EXPECT_NEAR(paper.k1_N_per_m, 40, 1e-12);
+  EXPECT_NEAR(paper.k3_N_per_m3, 3e8, 1e-5);
+  EXPECT_NEAR(law_depth_m({paper.k1_N_per_m, paper.k3_N_per_m3, kHuge}, 25), 4.35773e-3, 1e-8);
+  object.coefficient = DuffingCoefficient::kStatic;
+  const ContactCoefficients settled = duffing_paper_coefficients(object);
   // Where a constant 25 N on the damped oscillator comes to rest (integrated separately): 3.96010 mm.
   EXPECT_NEAR(law_depth_m({settled.k1_N_per_m, settled.k3_N_per_m3, kHuge}, 25), 3.96010e-3, 1e-8);
-  const CubicCoefficients finger = duffing_coefficients({0.1, 0.2, 0.4}, DuffingCoefficient::kPaper);
+  object.mass_kg = 0.1;
+  object.coefficient = DuffingCoefficient::kPaper;
+  const ContactCoefficients finger = duffing_paper_coefficients(object);
   EXPECT_NEAR(finger.k1_N_per_m, 4, 1e-12);
   EXPECT_NEAR(finger.k3_N_per_m3, 3e7, 1e-6);
 }
 
 TEST(Duffing, HertzFit) {
-  EXPECT_NEAR(contact_modulus_Pa(3e6, 0.47), 3850596.8425, 1e-3);
-  const CubicCoefficients fit = hertz_coefficients(3e6, 0.47, 0.02, 4e-3);
+  const ContactCoefficients fit = hertz_coefficients(3e6, 0.47, 0.02, 4e-3);
   EXPECT_NEAR(fit.k1_N_per_m, 34440.785175, 1e-6);
   EXPECT_NEAR(fit.k3_N_per_m3, 7.17516357816e8, 1e-3);
   const CubicLaw law{fit.k1_N_per_m, fit.k3_N_per_m3, kHuge};

@@ -2,9 +2,9 @@
 // tube, a ring under two fingers. SI units.
 #pragma once
 
-#include "config/fem/arm_series.h"
 #include "config/fem/large_strain_solver.h"
-#include "config/fem/pair_fit.h"
+#include "tests/strain/arm_series.h"
+#include "tests/strain/pair_states.h"
 #include "tests/strain/strain_scenes.h"
 
 namespace palpate::fem {

@@ -5,9 +5,9 @@
 
 #include <cmath>
 
-#include "config/fem/arm_series.h"
 #include "config/fem/pair_fit.h"
 #include "config/scene/config_error.h"
+#include "tests/strain/arm_series.h"
 #include "tests/strain/plane_scenes.h"
 
 namespace palpate::fem {

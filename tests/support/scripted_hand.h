@@ -61,7 +61,6 @@ class ScriptedHand {
     handle_.orientation = target.orientation;
     Input input;
     input.pose_w = {quantised(handle_.position_m), handle_.orientation};
-    input.velocity_w = velocity_;
     input.commands = tick_ == 1 ? Command::kArm : 0;
     for (float& closing : input.joints.closing) closing = static_cast<float>(closing_at(t_s));
     tick_ += 1;

@@ -57,7 +57,6 @@ inline ModelParams tiny_params() {
   p.cluster_distance_m = 5e-3;
   p.youngs_modulus_Pa = 3e6;
   p.poisson_ratio = 0.47;
-  p.density_kg_per_m3 = 1100;
   p.far_field_radius_m = 0.01;
   p.neighbourhood_radius_m = 0.01;
   p.surface_size_m = 0.1;
@@ -140,8 +139,7 @@ inline ImageBytes tiny_image(bool nodal = false) {
     p.wall_N_per_m = 5e4;
     p.proxy_speed_max_m_per_s = 0.5;
     for (std::int32_t i = 0; i < 4; ++i) {
-      const std::int32_t owner = i == 0 ? 1 : 0;
-      image.array<NodalVertex>(kNodalVertex)[i] = {1e-3, owner, i < 3 ? 1 : 0, 0, {}, 1};
+      image.array<NodalVertex>(kNodalVertex)[i] = {1e-3, i < 3 ? 1 : 0, 0, {}, 1};
     }
     for (int i = 0; i < 9; ++i) image.array<double>(kCompliance64)[13 * i] = 1e-4;
     for (int i = 0; i < 72; ++i) image.array<float>(kStrainGauge)[i] = 1e-3f;

@@ -1,4 +1,4 @@
-#include "config/fem/arm_series.h"
+#include "tests/strain/arm_series.h"
 
 #include <Eigen/Dense>
 #include <cmath>

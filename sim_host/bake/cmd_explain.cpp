@@ -1,0 +1,46 @@
+// `palpate explain`: what a scene makes the tick do, and what that takes.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "sim_host/bake/explain.h"
+#include "sim_host/bake/scene_model.h"
+#include "sim_host/cli.h"
+
+namespace palpate {
+
+namespace {
+
+struct ExplainOptions {
+  std::string scene;
+  SceneOverlays overlays;
+};
+
+int run_explain(const ExplainOptions& options) {
+  const SceneModel scene(options.scene, options.overlays);
+  const std::int32_t budget = scene.scene() ? scene.scene()->budget_instructions : 0;
+  fmt::print("{}", explain(scene.model(), budget));
+  return kExitOk;
+}
+
+}  // namespace
+
+void add_explain_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<ExplainOptions>();
+  CLI::App* command =
+      app.add_subcommand("explain", "Show what a scene makes each tick do: stages, laws, data and its readers, budget");
+  command->add_option("SCENE", options->scene, "scene (.toml) or image (.pal)")->required();
+  command->add_option("--with", options->overlays.file,
+                      "lay a file with some of the scene's tables over it; repeatable");
+  command->add_option("--set", options->overlays.setting, "KEY=VALUE: set one key of the scene; repeatable");
+  command->footer(
+      "Arrays that hold nothing are left out. What is baked but read by nobody does not pass the project's tests.\n"
+      "Examples:\n"
+      "  palpate explain config/scenes/half_shell.toml\n"
+      "  palpate explain config/scenes/heart_compass.toml --set coupling.law=temporal\n"
+      "  palpate explain mallet.pal");
+  command->callback([options, &exit_code] { exit_code = run_explain(*options); });
+}
+
+}  // namespace palpate

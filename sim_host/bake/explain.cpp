@@ -1,0 +1,103 @@
+#include "sim_host/bake/explain.h"
+
+#include <fmt/format.h>
+
+#include <cstring>
+#include <iterator>
+#include <string_view>
+
+#include "rt_core/state.h"
+#include "rt_core/tool/carrier.h"
+#include "sim_host/bake/data_readers.h"
+#include "sim_host/status_text.h"
+
+namespace palpate {
+
+namespace {
+
+const char* method_text(const Model& model) {
+  if (static_cast<Backend>(model.params.backend) == Backend::kNodal)
+    return "nodes of a finite-element body, forces and the tool's place in one problem";
+  switch (static_cast<ResponseLaw>(model.params.response_law)) {
+    case ResponseLaw::kPoints:
+      return "tool points with springs";
+    case ResponseLaw::kTip:
+      return "whole tips, each with its own law";
+    default:
+      return "whole tips, their laws tabulated over the surface";
+  }
+}
+
+// What a stage has to do in this scene beyond its usual work.
+std::string stage_note(const Model& model, std::string_view stage) {
+  const bool temporal = static_cast<CouplingLaw>(model.params.coupling_law) == CouplingLaw::kTemporal;
+  if (stage == "articulate")
+    return is_articulated(model) ? fmt::format("{} joints", model.joint.size()) : "nothing: the tool is rigid";
+  if ((stage == "force" || stage == "solve") && temporal)
+    return fmt::format("a skeleton of {} beams per region: coupling is temporal", model.anchor.size());
+  return "";
+}
+
+// Who reads an array: the tick, unless the table of readers names another.
+std::string readers_of(const char* name) {
+  for (const DataReader& r : kDataReaders)
+    if (std::strcmp(r.name, name) == 0) return std::string("host: ") + r.reader;
+  return "tick";
+}
+
+std::string array_row(const char* name, std::size_t elements, std::size_t bytes, const char* meaning) {
+  if (elements == 0) return "";
+  return fmt::format("  {:<16}{:>10}{:>12}  {:<36}{}\n", name, elements, bytes, readers_of(name), meaning);
+}
+
+// A choice by its word, where it has words.
+template <class T>
+std::string value_text(T value) {
+  if constexpr (requires { word_of(value); })
+    return word_of(value);
+  else
+    return fmt::format("{}", value);
+}
+
+// Parameters that choose: numbers without a unit from a short list.
+template <class T>
+std::string law_row(const char* name, T value, const char* unit, double highest, const char* meaning) {
+  constexpr double kMostChoices = 8;
+  if constexpr (std::is_same_v<T, double>) return "";
+  if (std::strcmp(unit, "-") != 0 || highest > kMostChoices) return "";
+  return fmt::format("  {:<18}{:<18}{}\n", name, value_text(value), meaning);
+}
+
+}  // namespace
+
+std::string explain(const Model& model, std::int32_t budget_instructions) {
+  std::string text = fmt::format(
+      "scene   {}: {} triangles, {} pieces with {} points, {} anchors\nmethod  {}\n\nstages\n", model.name,
+      model.triangle.size(), model.piece.size(), model.tool_point.size(), model.anchor.size(), method_text(model));
+  const auto out = std::back_inserter(text);
+  for (std::int32_t i = 0; i < kStageCount; ++i) {
+    const char* name = stage_name(static_cast<Stage>(i));
+    fmt::format_to(out, "  {:<12}{}\n", name, stage_note(model, name));
+  }
+  text += "\nlaws and choices\n";
+#define PALPATE_ROW(type, field, unit, lowest, highest, meaning) \
+  text += law_row(#field, model.params.field, unit, static_cast<double>(highest), meaning);
+  PALPATE_MODEL_PARAMS(PALPATE_ROW)
+#undef PALPATE_ROW
+  std::size_t bytes = 0;
+  text += "\narrays            elements       bytes  read by                             meaning\n";
+#define PALPATE_ROW(type, field, count, frame, meaning)                             \
+  text += array_row(#field, model.field.size(), model.field.size_bytes(), meaning); \
+  bytes += model.field.size_bytes();
+  PALPATE_MODEL_ARRAYS(PALPATE_ROW)
+#undef PALPATE_ROW
+  fmt::format_to(out, "\nmemory  arrays {} bytes, State {} bytes, Scratch {} bytes\n", bytes, state_bytes(model),
+                 scratch_bytes(model));
+  if (budget_instructions > 0)
+    fmt::format_to(out, "budget  {} instructions for the worst tick (budget_instructions)\n", budget_instructions);
+  else
+    text += "budget  none stated: the scene's .toml holds it (budget_instructions)\n";
+  return text;
+}
+
+}  // namespace palpate
