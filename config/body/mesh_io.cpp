@@ -1,7 +1,5 @@
 #include "config/body/mesh_io.h"
 
-#include <assimp/scene.h>
-#include <assimp/Importer.hpp>
 #include <cmath>
 #include <filesystem>
 #include <unordered_map>
@@ -51,22 +49,22 @@ bool add_fan(const std::vector<std::int32_t>& polygon, SurfaceMesh& mesh) {
   return false;
 }
 
-// Appends every face of the assimp mesh. OBJ, STL and PLY have no node transforms, so meshes are in file space.
-void append(const aiMesh& part, double scale, const std::string& path, SurfaceMesh& mesh) {
+// Appends every face. OBJ, STL and PLY have no node transforms, so meshes are in file space.
+void append(const RawMesh& part, double scale, const std::string& path, SurfaceMesh& mesh) {
   const auto base = static_cast<std::int32_t>(mesh.vertex_m.size());
-  for (unsigned i = 0; i < part.mNumVertices; ++i) {
-    const aiVector3D& p = part.mVertices[i];
+  for (const auto& p : part.vertex) {
     mesh.vertex_m.push_back(
-        {scale * static_cast<double>(p.x), scale * static_cast<double>(p.y), scale * static_cast<double>(p.z)});
+        {scale * static_cast<double>(p[0]), scale * static_cast<double>(p[1]), scale * static_cast<double>(p[2])});
   }
-  for (unsigned f = 0; f < part.mNumFaces; ++f) {
-    const aiFace& face = part.mFaces[f];
+  std::size_t first = 0;
+  for (std::size_t f = 0; f < part.corners.size(); first += part.corners[f], ++f) {
     std::vector<std::int32_t> polygon;
-    for (unsigned k = 0; k < face.mNumIndices; ++k) {
-      if (face.mIndices[k] >= part.mNumVertices)
-        throw ConfigError(path + ": face " + std::to_string(f) + " refers to vertex " +
-                          std::to_string(face.mIndices[k]) + " of " + std::to_string(part.mNumVertices));
-      polygon.push_back(base + static_cast<std::int32_t>(face.mIndices[k]));
+    for (std::size_t k = 0; k < part.corners[f]; ++k) {
+      const std::uint32_t vertex = part.index[first + k];
+      if (vertex >= part.vertex.size())
+        throw ConfigError(path + ": face " + std::to_string(f) + " refers to vertex " + std::to_string(vertex) +
+                          " of " + std::to_string(part.vertex.size()));
+      polygon.push_back(base + static_cast<std::int32_t>(vertex));
     }
     if (polygon.size() < 3) continue;  // points and lines carry no surface
     if (!add_fan(polygon, mesh))
@@ -151,15 +149,10 @@ void drop_unused(SurfaceMesh& mesh) {
 
 }  // namespace
 
-MeshFile read_mesh(const std::string& path, double scale) {
+MeshFile read_mesh(const std::string& path, double scale, const ImportLimits& limits) {
   check_file(path);
-  Assimp::Importer importer;
-  // No post-processing: splitting, welding and checks are ours, so that faults are reported and not silently repaired.
-  const aiScene* scene = importer.ReadFile(path, 0);
-  if (scene == nullptr)
-    throw ConfigError(path + ": cannot read the mesh (truncated or damaged?): " + importer.GetErrorString());
   MeshFile file;
-  for (unsigned i = 0; i < scene->mNumMeshes; ++i) append(*scene->mMeshes[i], scale, path, file.mesh);
+  for (const RawMesh& part : import_meshes(path, limits)) append(part, scale, path, file.mesh);
   if (file.mesh.triangle.empty()) throw ConfigError(path + ": the mesh file holds no triangles (truncated?)");
   weld(file);
   drop_unused(file.mesh);

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "config/body/mesh.h"
+#include "config/body/mesh_import.h"
 
 namespace palpate {
 
@@ -15,7 +16,8 @@ struct MeshFile {
 
 // Reads `path`, multiplies coordinates by `scale` (file units to metres), welds vertices closer than 1e-7 of the
 // extent (STL repeats every vertex) and drops vertices no triangle uses. Does not check the surface: see check_mesh.
-// Throws ConfigError naming the file and the reason: missing, unreadable, truncated, unknown extension, no triangles.
-MeshFile read_mesh(const std::string& path, double scale);
+// Throws ConfigError naming the file and the reason: missing, unreadable, truncated, unknown extension, no triangles,
+// or nothing the library can make sense of within `limits`.
+MeshFile read_mesh(const std::string& path, double scale, const ImportLimits& limits = {});
 
 }  // namespace palpate

@@ -54,7 +54,25 @@ void remove_stale(const Address& address) {
   if (dead) ::unlink(address.un.sun_path);
 }
 
+// A device decides what the hand feels and where it is said to be: only this user's own programs, or root's, may be
+// one. An abstract name is open to everybody on the machine: user nobody once drove root's controller (2026-11-21).
+bool is_own(int fd, const std::string& name, std::string& error) {
+  ucred peer{};
+  socklen_t size = sizeof peer;
+  if (::getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &peer, &size) != 0) {
+    error = reason("cannot tell who is at the other end of", name);
+    return false;
+  }
+  if (is_trusted_peer(peer.uid, ::geteuid())) return true;
+  error = "loopback '" + name + "': the other end is process " + std::to_string(peer.pid) + " of user " +
+          std::to_string(peer.uid) + ", refused: only programs of user " + std::to_string(::geteuid()) +
+          " or root are taken";
+  return false;
+}
+
 }  // namespace
+
+bool is_trusted_peer(unsigned peer_user, unsigned own_user) { return peer_user == own_user || peer_user == 0; }
 
 std::unique_ptr<Transport> adopt_loopback(int fd, std::string& error) {
   int type = 0;
@@ -88,10 +106,12 @@ std::unique_ptr<Transport> accept_loopback(const std::string& name, int timeout_
   } else if (::poll(&wait, 1, timeout_ms) <= 0) {
     error = "nobody connected to loopback '" + name + "' within " + std::to_string(timeout_ms) +
             " ms: start the other side (palpate-device)";
-  } else if (const int fd = ::accept4(listener, nullptr, nullptr, SOCK_CLOEXEC); fd >= 0) {
+  } else if (const int fd = ::accept4(listener, nullptr, nullptr, SOCK_CLOEXEC); fd < 0) {
+    error = reason("cannot accept on", name);
+  } else if (is_own(fd, name, error)) {
     transport = std::make_unique<FrameSocket>(fd);
   } else {
-    error = reason("cannot accept on", name);
+    ::close(fd);
   }
   if (listener >= 0) ::close(listener);
   if (address.is_path && bound) ::unlink(address.un.sun_path);
@@ -104,7 +124,11 @@ std::unique_ptr<Transport> connect_loopback(const std::string& name, int timeout
   const int fd = open_socket();
   constexpr int kStep_ms = 5;
   for (int waited_ms = 0;; waited_ms += kStep_ms) {
-    if (::connect(fd, generic(address), address.length) == 0) return std::make_unique<FrameSocket>(fd);
+    if (::connect(fd, generic(address), address.length) == 0) {
+      if (is_own(fd, name, error)) return std::make_unique<FrameSocket>(fd);
+      ::close(fd);
+      return nullptr;
+    }
     const bool not_yet = errno == ECONNREFUSED || errno == ENOENT || errno == EAGAIN;
     if (!not_yet || waited_ms >= timeout_ms) break;
     const timespec step{0, kStep_ms * 1'000'000};

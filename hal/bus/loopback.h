@@ -15,9 +15,13 @@ std::pair<std::unique_ptr<Transport>, std::unique_ptr<Transport>> open_loopback_
 
 // Waits up to timeout_ms for the other side on `name`: a path if it contains '/', otherwise a name in the abstract
 // namespace (nothing in the file system). Start-up only: these wait. The listener is the controller, or the device:
-// either order of starting works. A path left over by a dead process is replaced.
+// either order of starting works. A path left over by a dead process is replaced. The other end must be a program of
+// this user, or of root: `error` names who it was instead.
 std::unique_ptr<Transport> accept_loopback(const std::string& name, int timeout_ms, std::string& error);
 std::unique_ptr<Transport> connect_loopback(const std::string& name, int timeout_ms, std::string& error);
+
+// Whether a process of user `peer_user` may be the other end of a program of `own_user`.
+bool is_trusted_peer(unsigned peer_user, unsigned own_user);
 
 // Takes over an already connected SOCK_SEQPACKET descriptor (inherited from a parent).
 std::unique_ptr<Transport> adopt_loopback(int fd, std::string& error);

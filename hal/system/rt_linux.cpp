@@ -97,6 +97,11 @@ static_assert(std::atomic<bool>::is_always_lock_free, "the signal handler writes
 
 void on_signal(int) { stop_flag.store(true, std::memory_order_relaxed); }
 
+std::atomic<std::uint32_t> arm_requests{0};
+static_assert(std::atomic<std::uint32_t>::is_always_lock_free, "the signal handler writes it");
+
+void on_arm_signal(int) { arm_requests.fetch_add(1, std::memory_order_relaxed); }
+
 }  // namespace
 
 RtSetup::RtSetup(const RtOptions& options) {
@@ -139,6 +144,14 @@ const std::atomic<bool>& install_stop_signals() {
   ::sigaction(SIGPIPE, &action, nullptr);
   ::sigaction(SIGTSTP, &action, nullptr);
   return stop_flag;
+}
+
+const std::atomic<std::uint32_t>& install_arm_signal() {
+  struct sigaction action {};
+  action.sa_handler = on_arm_signal;
+  action.sa_flags = SA_RESTART;
+  ::sigaction(SIGUSR1, &action, nullptr);
+  return arm_requests;
 }
 
 }  // namespace palpate

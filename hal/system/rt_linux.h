@@ -56,5 +56,7 @@ inline ThreadUsage operator-(const ThreadUsage& a, const ThreadUsage& b) {
 // SIGINT and SIGTERM set the flag returned here instead of ending the process; SIGPIPE and SIGTSTP are ignored (a
 // stopped controller would leave the device waiting). Call once at start-up.
 const std::atomic<bool>& install_stop_signals();
+// SIGUSR1 counts up the number returned here: an operator's request to arm, where there is no host.
+const std::atomic<std::uint32_t>& install_arm_signal();
 
 }  // namespace palpate

@@ -5,8 +5,6 @@
 #include <csignal>
 #include <stdexcept>
 
-#include "sim_host/run/socket_pair.h"
-
 namespace palpate {
 
 namespace {
@@ -24,17 +22,16 @@ ControllerLink::ControllerLink(const std::string& program, std::vector<std::stri
   mailbox_writer_ = std::make_unique<MailboxWriter>(*static_cast<MailboxRegion*>(mailbox_memory_.data()));
   mailbox_writer_->set(0, false);
 
-  SocketPair sockets;
   arguments.insert(arguments.end(), {"--control-fd", std::to_string(kControlDescriptor)});
-  std::vector<std::pair<int, int>> descriptors{{sockets.end(1), kControlDescriptor}};
+  std::vector<std::pair<int, int>> descriptors{{control_.end(1), kControlDescriptor}};
   if (device_fd >= 0) descriptors.emplace_back(device_fd, kDeviceDescriptor);
   descriptors.insert(descriptors.end(), others.begin(), others.end());
   process_ = Process::start(program, arguments, descriptors);
-  sockets.close_end(1);  // so that the controller's death shows as a closed connection
+  control_.close_end(1);  // so that the controller's death shows as a closed connection
 
   int fd = -1;
-  if (send_descriptor(sockets.end(0), 'C', mailbox_memory_.fd(), error)) {
-    fd = receive_descriptor(sockets.end(0), 'T', kStartTimeout_ms, error);
+  if (send_descriptor(control_.end(0), 'C', mailbox_memory_.fd(), error)) {
+    fd = receive_descriptor(control_.end(0), 'T', kStartTimeout_ms, error);
   }
   if (fd < 0) throw std::runtime_error("the controller did not start: " + error);
   telemetry_ = SharedMemory::open_peer(fd, sizeof(TelemetryRegion), error);

@@ -4,7 +4,8 @@
 // Set-up protocol on the socket (SOCK_SEQPACKET), each step one descriptor with a label:
 //   host -> controller  'C'  the command mailbox      (the controller checks size and seals, maps it read-only)
 //   controller -> host  'T'  the telemetry region     (the host does the same)
-// Nothing travels on the socket afterwards.
+// Nothing travels on the socket afterwards; but the host keeps its end open as long as it lives, so that the controller
+// knows of its death at once.
 #pragma once
 
 #include <memory>
@@ -16,6 +17,7 @@
 #include "rt_core/mailbox.h"
 #include "rt_core/telemetry.h"
 #include "sim_host/run/process.h"
+#include "sim_host/run/socket_pair.h"
 
 namespace palpate {
 
@@ -29,6 +31,8 @@ class ControllerLink {
 
   const TelemetryRegion& telemetry() const { return *static_cast<const TelemetryRegion*>(telemetry_.data()); }
   MailboxWriter& mailbox() { return *mailbox_writer_; }
+  // What the writer writes to, for tests of what a broken host may do to a controller.
+  MailboxRegion& mailbox_region() { return *static_cast<MailboxRegion*>(mailbox_memory_.data()); }
   Process& process() { return process_; }
   // Asks for zero force and the end of the loop, waits, then insists: SIGTERM after 3 s, SIGKILL after 1 s more.
   // Returns the controller's exit code.
@@ -40,6 +44,7 @@ class ControllerLink {
   static constexpr int kHostTurnDescriptor = 6;
 
  private:
+  SocketPair control_;
   SharedMemory mailbox_memory_, telemetry_;
   std::unique_ptr<MailboxWriter> mailbox_writer_;
   Process process_;

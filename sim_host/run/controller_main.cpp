@@ -15,11 +15,13 @@
 #include "hal/bus/loopback.h"
 #include "hal/loop/lockstep.h"
 #include "hal/loop/loop.h"
+#include "hal/system/device_lock.h"
 #include "hal/system/private_file.h"
 #include "hal/system/rt_linux.h"
 #include "hal/system/shared_memory.h"
 #include "rt_core/image.h"
 #include "sim_host/build_id.h"
+#include "sim_host/run/crash_file.h"
 #include "sim_host/run/heap_count.h"
 #include "sim_host/run/host_port.h"
 #include "sim_host/tick_memory.h"
@@ -35,7 +37,9 @@ constexpr char kHelp[] =
     "  --device ADDRESS    auto, can:IFACE, usb:/dev/hidrawN or loopback[:NAME], each with optional ,classic and "
     ",node=N\n"
     "  --device-fd N       use the inherited socket N instead of opening the loopback\n"
-    "  --control-fd N      inherited Unix socket to the host: telemetry and commands; default: none, arm at once\n"
+    "  --control-fd N      inherited Unix socket to the host: telemetry and commands; default: none; then\n"
+    "                      SIGUSR1 arms: an operator's act, never by itself\n"
+    "  --crash-file FILE   when the host dies: write the last ticks to this recording\n"
     "  --duration S        stop after S seconds; default: when told to\n"
     "  --cpu N             pin to this CPU; default: any\n"
     "  --priority P        SCHED_FIFO priority 1..98, 0: ordinary scheduling; default 80\n"
@@ -50,7 +54,7 @@ constexpr double kHostSilence_s = 2.0;  // forty heartbeats; see host_port.h
 constexpr double kStartTimeout_s = 3.0;
 
 struct Arguments {
-  std::string image, device = "auto";
+  std::string image, device = "auto", crash_file;
   int device_fd = -1, control_fd = -1, cpu = -1, priority = 80;
   int device_turn_fd = -1, host_turn_fd = -1;
   double duration_s = 0;
@@ -72,17 +76,20 @@ double number(const char* option, const char* text, double lowest, double highes
 
 Arguments parse(int argc, char** argv) {
   Arguments arguments;
-  const option options[] = {
-      {"image", 1, nullptr, 'i'},          {"device", 1, nullptr, 'd'},       {"device-fd", 1, nullptr, 'f'},
-      {"control-fd", 1, nullptr, 'c'},     {"duration", 1, nullptr, 's'},     {"cpu", 1, nullptr, 'u'},
-      {"priority", 1, nullptr, 'p'},       {"help", 0, nullptr, 'h'},         {"version", 0, nullptr, 'v'},
-      {"device-turn-fd", 1, nullptr, 'D'}, {"host-turn-fd", 1, nullptr, 'H'}, {nullptr, 0, nullptr, 0}};
+  const option options[] = {{"image", 1, nullptr, 'i'},        {"device", 1, nullptr, 'd'},
+                            {"device-fd", 1, nullptr, 'f'},    {"control-fd", 1, nullptr, 'c'},
+                            {"duration", 1, nullptr, 's'},     {"cpu", 1, nullptr, 'u'},
+                            {"priority", 1, nullptr, 'p'},     {"help", 0, nullptr, 'h'},
+                            {"version", 0, nullptr, 'v'},      {"device-turn-fd", 1, nullptr, 'D'},
+                            {"host-turn-fd", 1, nullptr, 'H'}, {"crash-file", 1, nullptr, 'x'},
+                            {nullptr, 0, nullptr, 0}};
   const auto integer = [](const char* name, double low, double high) {
     return static_cast<int>(number(name, optarg, low, high));
   };
   for (int c; (c = getopt_long(argc, argv, "", options, nullptr)) != -1;) {
     if (c == 'i') arguments.image = optarg;
     if (c == 'd') arguments.device = optarg;
+    if (c == 'x') arguments.crash_file = optarg;
     if (c == 'f') arguments.device_fd = integer("--device-fd", 0, 1 << 20);
     if (c == 'c') arguments.control_fd = integer("--control-fd", 0, 1 << 20);
     if (c == 's') arguments.duration_s = number("--duration", optarg, 0.001, 1e6);
@@ -144,13 +151,28 @@ void check_bus(const DeviceAddress& address, double period_s) {
   if (!verdict.fits) throw Failure{kUnavailable, "the bus cannot carry this traffic in every period"};
 }
 
-std::unique_ptr<Transport> connect_device(const Arguments& arguments, double period_s, DeviceAddress& address) {
+// A real device has one controller at a time.
+DeviceLock lock_device(const DeviceAddress& address) {
+  if (address.kind == TransportKind::kLoopback) return {};
+  const std::unique_ptr<char, void (*)(void*)> full(realpath(address.name.c_str(), nullptr), std::free);
+  const std::string name = address.kind == TransportKind::kCan
+                               ? "can-" + address.name + "-node" + std::to_string(address.node)
+                               : "usb" + std::string(full ? full.get() : address.name.c_str());
+  std::string error;
+  DeviceLock lock = DeviceLock::take(name, error);
+  if (!lock) throw Failure{kUnavailable, error};
+  return lock;
+}
+
+std::unique_ptr<Transport> connect_device(const Arguments& arguments, double period_s, DeviceAddress& address,
+                                          DeviceLock& lock) {
   std::string line, error;
   const std::optional<DeviceAddress> parsed = parse_device_address(arguments.device, line, error);
   if (!parsed) throw Failure{kUsage, error};
   address = *parsed;
   std::fprintf(stderr, "%s\n", line.c_str());
   check_bus(address, period_s);
+  lock = lock_device(address);
   std::unique_ptr<Transport> transport =
       arguments.device_fd >= 0 ? adopt_loopback(arguments.device_fd, error)
                                : open_transport(address, DeviceSide::kController, 5 * kSocketTimeout_ms, error);
@@ -217,6 +239,8 @@ LoopSummary run_loop(const Arguments& arguments, const Model& model, Core& core,
   std::atomic<bool> stop{false};
   const auto* mailbox = static_cast<const MailboxRegion*>(host.mailbox.data());
   HostPort port(mailbox, static_cast<std::uint32_t>(kHostSilence_s / model.params.period_s), interrupted, stop);
+  if (mailbox == nullptr) port.arm_on(install_arm_signal());
+  CrashFile crash(arguments.control_fd, arguments.crash_file);
   TelemetrySink sink(mailbox != nullptr ? &host.writer : nullptr);
   SupervisedDevice device(bus, port);
   ModelController controller(model, *core.state, *core.scratch);
@@ -240,8 +264,17 @@ LoopSummary run_loop(const Arguments& arguments, const Model& model, Core& core,
     usage.heap_calls = heap_calls_after < 0 ? -1 : heap_calls_after - heap_calls_before;
     usage.thread = thread_usage() - before;
     summary.faults |= port.faults();
+    crash.loop_ended();
   });
+  const bool host_died = mailbox != nullptr && crash.wait_for_death();
+  if (host_died) {
+    port.host_has_died();
+    crash.write(*static_cast<const TelemetryRegion*>(host.telemetry.data()), model, true);
+  }
   thread.join();
+  if (!host_died && (port.faults() & Fault::kHostSilent) != 0) {
+    crash.write(*static_cast<const TelemetryRegion*>(host.telemetry.data()), model, false);
+  }
   return summary;
 }
 
@@ -276,7 +309,8 @@ int run(int argc, char** argv) {
   HostConnection host;
   if (arguments.control_fd >= 0) connect_host(arguments, model, host);
   DeviceAddress address;
-  const std::unique_ptr<Transport> transport = connect_device(arguments, model.params.period_s, address);
+  DeviceLock lock;
+  const std::unique_ptr<Transport> transport = connect_device(arguments, model.params.period_s, address, lock);
   DeviceBus bus(*transport, address.profile, address.node);
   LoopUsage usage;
   MonotonicClock clock;

@@ -24,7 +24,7 @@ class TelemetrySink {
   TelemetryWriter* writer_;
 };
 
-// CommandSource of the loop. Without a host it arms at once and runs until stopped.
+// CommandSource of the loop. Without a host it runs until stopped, and arms only on an operator's signal.
 class HostPort {
  public:
   // `stop` is set when the host asks to quit or has died, after a forbidden system call, and with `interrupted` (set by
@@ -40,10 +40,14 @@ class HostPort {
     // Relaxed, here and below: flags polled every tick, nothing else is published through them.
     if (interrupted_.load(std::memory_order_relaxed)) stop_.store(true, std::memory_order_relaxed);
     if (forbidden_syscall() >= 0) faults_ |= Fault::kForbiddenCall;
-    const std::uint32_t commands = reader_.connected() ? poll_mailbox() : Command::kArm;
+    const std::uint32_t commands = reader_.connected() ? poll_mailbox() : poll_operator();
     if (command_.quit != 0 || faults_ != 0) stop_.store(true, std::memory_order_relaxed);
     return commands;
   }
+  // Without a host: counts the operator's requests to arm. Must outlive this.
+  void arm_on(const std::atomic<std::uint32_t>& requests) noexcept { arm_requests_ = &requests; }
+  // From another thread: the host has ended. A fault at once, without waiting for its silence.
+  void host_has_died() noexcept { host_died_.store(true, std::memory_order_relaxed); }
   // What the host last asked of an articulated tool's joints; open without a host.
   const JointCommand& joints() const noexcept { return command_.joints; }
   // Fault bits; they stay for the rest of this controller's life.
@@ -54,12 +58,28 @@ class HostPort {
     const std::uint64_t heartbeat = command_.heartbeat;
     if (reader_.poll(command_) == MailboxResult::kInvalid) faults_ |= Fault::kCommandInvalid;
     silent_ticks_ = command_.heartbeat != heartbeat ? 0 : silent_ticks_ + 1;
-    if (silent_ticks_ >= silence_ticks_) faults_ |= Fault::kHostSilent;
+    const bool died = host_died_.load(std::memory_order_relaxed);
+    if (silent_ticks_ >= silence_ticks_ || died) faults_ |= Fault::kHostSilent;
     return command_.commands;
+  }
+
+  // Arming is an edge, ignored by a tick without a fresh sample: each request offers some edges.
+  std::uint32_t poll_operator() noexcept {
+    constexpr std::uint32_t kOffers = 200;
+    if (arm_requests_ == nullptr) return 0;
+    const std::uint32_t requests = arm_requests_->load(std::memory_order_relaxed);
+    if (requests != arm_requests_seen_) arm_offers_ = kOffers;
+    arm_requests_seen_ = requests;
+    if (arm_offers_ == 0) return 0;
+    arm_offers_ -= 1;
+    return arm_offers_ % 2 != 0 ? Command::kArm : 0;
   }
 
   MailboxReader reader_;
   HostCommand command_;
+  const std::atomic<std::uint32_t>* arm_requests_ = nullptr;
+  std::uint32_t arm_requests_seen_ = 0, arm_offers_ = 0;
+  std::atomic<bool> host_died_{false};
   std::uint32_t silence_ticks_;
   std::uint32_t silent_ticks_ = 0;
   std::uint32_t faults_ = 0;

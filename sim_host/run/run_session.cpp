@@ -18,6 +18,7 @@
 #include "sim_host/record/recorded_image.h"
 #include "sim_host/record/recorder.h"
 #include "sim_host/record/recording_writer.h"
+#include "sim_host/record/recover.h"
 #include "sim_host/run/controller_link.h"
 #include "sim_host/run/device_process.h"
 #include "sim_host/run/host_time.h"
@@ -67,6 +68,7 @@ std::vector<std::string> controller_arguments(const RunOptions& options, const s
                                               const std::string& device, bool device_inherited, bool virtual_time) {
   std::vector<std::string> arguments{"--image", image,        "--device",
                                      device,    "--priority", std::to_string(options.priority)};
+  if (!options.record.empty()) arguments.insert(arguments.end(), {"--crash-file", crash_path(options.record)});
   if (options.cpu >= 0) arguments.insert(arguments.end(), {"--cpu", std::to_string(options.cpu)});
   if (device_inherited) {
     arguments.insert(arguments.end(), {"--device-fd", std::to_string(ControllerLink::kDeviceDescriptor)});

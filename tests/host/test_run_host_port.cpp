@@ -15,10 +15,26 @@ struct Host {
   HostPort port{&region, 10, interrupted, stop};
 };
 
-TEST(HostPort, WithoutAHostItArmsAndRunsOn) {
+// As a service started at boot it armed by itself, whoever held the handle (2026-11-21).
+TEST(HostPort, WithoutAHostItRunsButArmsOnlyWhenAnOperatorAsks) {
   std::atomic<bool> stop{false}, interrupted{false};
+  std::atomic<std::uint32_t> requests{0};
   HostPort port(nullptr, 10, interrupted, stop);
-  for (int i = 0; i < 100; ++i) EXPECT_EQ(port.poll(), Command::kArm);
+  for (int i = 0; i < 100; ++i) EXPECT_EQ(port.poll(), 0u);
+  port.arm_on(requests);
+  for (int i = 0; i < 100; ++i) EXPECT_EQ(port.poll(), 0u);
+  requests += 1;
+  int edges = 0;
+  std::uint32_t before = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const std::uint32_t commands = port.poll();
+    edges += commands == Command::kArm && before == 0 ? 1 : 0;
+    EXPECT_EQ(commands & ~Command::kArm, 0u);
+    before = commands;
+  }
+  EXPECT_GT(edges, 10) << "a tick without a fresh sample ignores an edge";
+  EXPECT_LE(edges, 100) << "and the request does not stand for ever";
+  EXPECT_EQ(before, 0u);
   EXPECT_EQ(port.faults(), 0u);
   EXPECT_FALSE(stop);
   interrupted = true;
@@ -54,6 +70,17 @@ TEST(HostPort, AHostWhoseHeartbeatStopsIsAFault) {
   host.writer.beat();  // coming back does not undo it
   host.port.poll();
   EXPECT_EQ(host.port.faults(), Fault::kHostSilent);
+}
+
+TEST(HostPort, AHostThatHasEndedIsAFaultAtOnce) {
+  Host host;
+  host.writer.set(Command::kArm, false);
+  host.port.poll();
+  EXPECT_EQ(host.port.faults(), 0u);
+  host.port.host_has_died();
+  host.port.poll();
+  EXPECT_EQ(host.port.faults(), Fault::kHostSilent);
+  EXPECT_TRUE(host.stop);
 }
 
 TEST(HostPort, GarbageIsAFaultAndTheLastCommandStands) {

@@ -65,6 +65,8 @@ class NodalScene {
     bytes_ = std::make_unique<ImageBytes>(bytes.size());
     std::memcpy(bytes_->bytes().data(), bytes.data(), bytes.size());
     reopen();
+    state_ = make_state(model_);
+    scratch_ = make_scratch(model_);
     restart();
   }
 
@@ -109,8 +111,8 @@ class NodalScene {
  private:
   std::unique_ptr<ImageBytes> bytes_;
   Model model_;
-  StatePtr state_ = make_state(model_);
-  ScratchPtr scratch_ = make_scratch(model_);
+  StatePtr state_;
+  ScratchPtr scratch_;
   Output output_{};
   bool first_ = true;
 };

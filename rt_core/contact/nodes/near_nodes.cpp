@@ -21,7 +21,9 @@ class NodeSearch {
  public:
   NodeSearch(const Model& model, State& state, Scratch& scratch) PALPATE_RT : model_(model),
                                                                               state_(state),
-                                                                              problem_(*scratch.nodal) {
+                                                                              problem_(*scratch.nodal),
+                                                                              near_(problem_.near),
+                                                                              near_of_(problem_.near_of) {
     problem_.near_count = 0;
     const auto vertices = static_cast<std::size_t>(model.sizes.n_vertex);
     __builtin_memset(problem_.memory_of, 0xff, vertices * sizeof problem_.memory_of[0]);
@@ -99,6 +101,7 @@ class NodeSearch {
       return node[first + k < vertices ? first + k : vertices - 1];
     };
     const Double4 radius{at(0).round_m, at(1).round_m, at(2).round_m, at(3).round_m};
+    if (bits_of(radius > 0) == 0) return radius;  // most: flat there, or bent little
     const Double4 cosine{at(0).round_cosine, at(1).round_cosine, at(2).round_cosine, at(3).round_cosine};
     return (kFades * radius) * (1 - cosine);
   }
@@ -124,7 +127,7 @@ class NodeSearch {
     const PieceGapOf<Vec3x4> gap = piece_gap(shape, into(frame, carried));
     const Double4 margin = margin_m_ + kCarryShare * square_root(dot(carry, carry));
     if (bits_of(gap.gap_m - bulge < margin) == 0) return;
-    NearFour& near = problem_.near[problem_.near_count];
+    NearFour& near = near_[problem_.near_count];
     near.carry_w = carry;
     near.bend_w = bend;
     near.position_w = carried;
@@ -165,13 +168,13 @@ class NodeSearch {
 
   // `found` stands in the first free place. A vertex near several pieces meets the one that is nearest.
   void keep(const NearFour& found) PALPATE_RT {
-    std::int16_t& at = problem_.near_of[found.first / 4];
+    std::int16_t& at = near_of_[found.first / 4];
     if (at < 0) {
       at = static_cast<std::int16_t>(problem_.near_count);
       problem_.near_count += 1;
       return;
     }
-    NearFour& near = problem_.near[at];
+    NearFour& near = near_[at];
     for (std::uint32_t k = 0; k < 4; ++k) {  // bound: 4
       if ((found.lanes >> k & 1) == 0 || ((near.lanes >> k & 1) != 0 && !(found.gap_m[k] < near.gap_m[k]))) continue;
       near.lanes |= 1u << k;
@@ -187,6 +190,8 @@ class NodeSearch {
   const Model& model_;
   State& state_;
   ContactProblem& problem_;
+  NearFour* const near_;
+  std::int16_t* const near_of_;
   RegionMotion region_[kMaxRegions];
   std::int32_t regions_ = 0;
   std::int32_t piece_ = 0;

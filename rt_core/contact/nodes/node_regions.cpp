@@ -145,12 +145,14 @@ void fit_motions(const Model& model, State& state, const Scratch& scratch) PALPA
     fit[slot].add(p.node[i].rest_w, motion_of(p, i));
     reach2[slot] = max_of(reach2[slot], distance2);
   }
-  for (std::int32_t s = 0; s < kMaxRegions; ++s) {  // bound: kMaxRegions
-    state.nodal.motion[s] = fit[s].result(kBlur * model.params.cluster_distance_m, state.nodal.far_share);
-    const bool turned = model.params.nodal_carry == static_cast<std::int32_t>(NodalCarry::kTurned);
-    state.nodal.motion[s].finite = turned ? 1 : 0;
-    state.nodal.motion[s].growth = growth_under(state.nodal.motion[s], -state.region[s].wrench_w.force_N);
-    state.nodal.motion[s].reach_m = square_root(reach2[s]) + 2 * model.params.cluster_distance_m;
+  const bool turned = model.params.nodal_carry == static_cast<std::int32_t>(NodalCarry::kTurned);
+  for (std::int32_t k = 0; k < count; ++k) {  // bound: kMaxRegions; of the others nobody reads it
+    const std::int32_t s = touching[k];
+    RegionMotion& motion = state.nodal.motion[s];
+    motion = fit[s].result(kBlur * model.params.cluster_distance_m, state.nodal.far_share);
+    motion.finite = turned ? 1 : 0;
+    motion.growth = growth_under(motion, -state.region[s].wrench_w.force_N);
+    motion.reach_m = square_root(reach2[s]) + 2 * model.params.cluster_distance_m;
   }
 }
 
