@@ -45,7 +45,7 @@ ImageResult check_params(const ModelParams& params) noexcept {
 #define PALPATE_CHECK(type, name, unit, lowest, highest, meaning)          \
   if (!(static_cast<double>(params.name) >= static_cast<double>(lowest) && \
         static_cast<double>(params.name) <= static_cast<double>(highest))) \
-    return {ImageError::kParamRange, #name};
+    return {ImageError::kParamRange, #name, -1, static_cast<double>(lowest), static_cast<double>(highest)};
   PALPATE_MODEL_PARAMS(PALPATE_CHECK)
 #undef PALPATE_CHECK
   return {};

@@ -44,8 +44,9 @@ enum class ImageError : std::int32_t {
 
 struct ImageResult {
   ImageError error = ImageError::kNone;
-  const char* field = "";   // static text naming the offending field
-  std::int64_t index = -1;  // element within it, where that makes sense
+  const char* field = "";          // static text naming the offending field
+  std::int64_t index = -1;         // element within it, where that makes sense
+  double lowest = 0, highest = 0;  // kParamRange: what is allowed
 };
 
 // Hash of the image layout this build writes and reads.

@@ -11,8 +11,9 @@ namespace palpate {
 
 // Who moves the tool. kDevice: the pose is the device handle's and the virtual coupling stands between it and the tool.
 // kTool: the pose is the tool's own (presses without a device); the coupling is rigid and the output is the contact
-// wrench.
-enum class Drive : std::int32_t { kDevice = 0, kTool = 1 };
+// wrench. kHeld: as kDevice, but no hand holds the handle (presses of finite-element bodies): poses may jump, and
+// nothing is armed, ramped or limited in its change.
+enum class Drive : std::int32_t { kDevice = 0, kTool = 1, kHeld = 2 };
 
 namespace Command {
 inline constexpr std::uint32_t kArm = 1u << 0;    // edge: leave kIdle for kForce
@@ -21,6 +22,9 @@ inline constexpr std::uint32_t kReset = 1u << 2;  // edge: leave kFault for kIdl
 // Set by the loop beside kStop, never by a host: it stops because the machine stood still, and will arm again by
 // itself. The tick ignores it; it is here so that a recording says why.
 inline constexpr std::uint32_t kStall = 1u << 3;
+// Level, set by the control loop alone (a host's command region with it is refused): the device does not show that
+// commands reach it. Force ramps to zero while it lasts and back afterwards; nothing is armed meanwhile.
+inline constexpr std::uint32_t kUnheard = 1u << 4;
 }  // namespace Command
 
 // What an articulated tool's joints are to do; rigid tools ignore it. Levels: repeated every tick. Single precision

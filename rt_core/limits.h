@@ -61,6 +61,18 @@ inline constexpr std::int32_t kStepHalvings = 4;
 // A lost region keeps its identity this long and this close, so a bounce does not lose its friction history.
 inline constexpr std::int32_t kRegionMemoryTicks = 50;
 inline constexpr double kRegionMemoryDistance_m = 2e-3;
+// Largest change of the rendered force (and torque) in one tick, as a share of its limit: whatever happens to samples,
+// commands or numbers, the hand gets no impulse above it. It cannot drive an oscillation: at the coupling's 1.5 N/mm
+// and 0.2 kg of hand and handle (14 Hz) a swing would need 9.9 N before its slope met 0.85 N a millisecond.
+inline constexpr double kOutputStepShare = 0.10;
+// A tool that would push the hand harder than this the moment force may begin is not armed: Status::kStartsInside.
+inline constexpr double kArmForceMax_N = 1.0;
+// What a force command can carry (hal/bus/wire_table.h: signed 16 bits of 1 mN and 0.1 mN m). A scene whose device asks
+// for more is refused at bake and at load: beyond it each axis would saturate by itself and the force would turn.
+inline constexpr double kWireForceMax_N = 32.767;
+inline constexpr double kWireTorqueMax_Nm = 3.2767;
+// A quaternion whose squared length is further from 1 than this is no orientation: 16-bit rounding makes 1e-4 of it.
+inline constexpr double kQuaternionSlack = 0.02;
 // Ticks kept whole by the black box and by the "worst ticks" list.
 inline constexpr std::int32_t kWorstTicksKept = 16;
 // Length of the scene name stored in an image, with its terminating zero.

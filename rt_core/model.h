@@ -38,61 +38,62 @@ enum class NodalSolver : std::int32_t { kPivoting = 0, kGaussSeidel = 1 };
 enum class NodalCarry : std::int32_t { kFarField = 0, kRest = 1, kTurned = 2 };
 
 // X(type, name, unit, lowest, highest, meaning). All are finite; the loader checks every range.
-#define PALPATE_MODEL_PARAMS(X)                                                                              \
-  X(std::int32_t, contact_weight, "-", 0, 2, "how sample forces are weighted (ContactWeight)")               \
-  X(std::int32_t, friction_law, "-", 0, 6, "FrictionLaw")                                                    \
-  X(std::int32_t, tangential_law, "-", 0, 1, "TangentialLaw")                                                \
-  X(std::int32_t, skeleton_law, "-", 0, 4, "SkeletonLaw")                                                    \
-  X(std::int32_t, shape_law, "-", 0, 1, "ShapeLaw: how anchor displacements spread over the surface")        \
-  X(std::int32_t, neighbourhood_law, "-", 0, 3, "NeighbourhoodLaw: dent around a contact")                   \
-  X(std::int32_t, coupling_law, "-", 0, 2, "CouplingLaw: how regions influence one another")                 \
-  X(std::int32_t, rbf_tail, "-", 0, 1, "0 constant tail, 1 linear tail of the surface interpolation")        \
-  X(std::int32_t, silence_hold_ticks, "ticks", 1, 5, "ticks the last sample is held")                        \
-  X(std::int32_t, silence_passive_ticks, "ticks", 1, 20, "ticks after which force ramps to zero")            \
-  X(std::int32_t, silence_fault_ticks, "ticks", 2, 1000, "ticks of silence that latch a fault")              \
-  X(std::int32_t, backend, "-", 0, 1, "Backend: who measures contact and makes force")                       \
-  X(std::int32_t, nodal_solver, "-", 0, 1, "NodalSolver")                                                    \
-  X(std::int32_t, nodal_sweeps, "-", 0, 100, "Gauss-Seidel sweeps of the normal problem")                    \
-  X(std::int32_t, friction_sweeps, "-", 0, 20, "Gauss-Seidel sweeps of the problem with friction")           \
-  X(std::int32_t, articulation, "-", 0, 2, "Articulation: whether pieces of the tool move by joints")        \
-  X(std::int32_t, late_ticks_max, "ticks", 2, 1000, "ticks in a row that each missed deadlines: a fault")    \
-  X(std::int32_t, nodal_carry, "-", 0, 2, "NodalCarry: where gaps and normals are taken")                    \
-  X(std::int32_t, response_law, "-", 0, 2, "ResponseLaw: what carries the normal force")                     \
-  X(std::int32_t, response_root, "-", 0, 1, "1: the knots of the tables are roots of depths")                \
-  X(double, period_s, "s", 1e-5, 1e-1, "tick period")                                                        \
-  X(double, k1_N_per_m, "N/m", 0, 1e9, "linear coefficient of the contact law, per unit weight")             \
-  X(double, k3_N_per_m3, "N/m3", 0, 1e15, "cubic coefficient of the contact law, per unit weight")           \
-  X(double, max_depth_m, "m", 1e-6, 1, "depth beyond which the law continues by its tangent")                \
-  X(double, friction_k_N, "N^(1-beta)", 0, 1e6, "K of the static limit K F^beta")                            \
-  X(double, friction_beta, "-", 0.5, 1, "exponent of the static limit")                                      \
-  X(double, friction_mu_dynamic, "-", 0, 10, "sliding coefficient")                                          \
-  X(double, cluster_distance_m, "m", 1e-6, 1, "contact points nearer than this are one region")              \
-  X(double, youngs_modulus_Pa, "Pa", 1, 1e13, "E")                                                           \
-  X(double, poisson_ratio, "-", -0.999, 0.5, "nu")                                                           \
-  X(double, far_field_radius_m, "m", 1e-6, 1, "core radius of the far-field kernel between regions")         \
-  X(double, neighbourhood_radius_m, "m", 1e-6, 1, "R of the local dent")                                     \
-  X(double, surface_size_m, "m", 1e-6, 100, "largest extent of the body; scale of tolerances")               \
-  X(double, coupling_N_per_m, "N/m", 1, 1e6, "translational stiffness of the virtual coupling")              \
-  X(double, coupling_Nm_per_rad, "N*m/rad", 1e-6, 1e4, "rotational stiffness of the virtual coupling")       \
-  X(double, force_max_N, "N", 0, 1000, "magnitude limit of the rendered force")                              \
-  X(double, torque_max_Nm, "N*m", 0, 100, "magnitude limit of the rendered torque")                          \
-  X(double, force_rate_max_N_per_s, "N/s", 1, 1e7, "fault limiter of the force change")                      \
-  X(double, ramp_in_s, "s", 0, 10, "force ramp after arming")                                                \
-  X(double, ramp_out_s, "s", 1e-3, 1, "force ramp to zero after a fault")                                    \
-  X(double, stall_max_s, "s", 1e-3, 1, "deadlines missed at one go for so long: a fault")                    \
-  X(double, speed_max_m_per_s, "m/s", 0.01, 100, "a device sample that implies a faster motion is rejected") \
-  X(double, contact_margin_m, "m", 0, 1, "nodes with a smaller gap take part in the contact problem")        \
-  X(double, regularisation, "-", 0, 0.1, "share added to the diagonal of the contact problem")               \
-  X(double, wall_N_per_m, "N/m", 0, 1e9, "stiffness of the body's held nodes")                               \
-  X(double, proxy_speed_max_m_per_s, "m/s", 0, 100, "fastest motion of the tool in contact")                 \
-  X(double, strain_limit, "-", 0, 10, "largest strain for which the linear body is trusted")                 \
-  X(double, closing_rate_per_s, "1/s", 0, 1e3, "fastest change of a closing fraction")                       \
-  X(double, stop_force_N, "N", 0, 1e6, "a joint stops where it would press a part harder than this")         \
-  X(double, body_mass_kg, "kg", 0, 1e9, "mass of the body: what a palm has to hold")                         \
-  X(double, body_centre_x_m, "m", -1e3, 1e3, "centre of the body's volume, world")                           \
-  X(double, body_centre_y_m, "m", -1e3, 1e3, "the same, y")                                                  \
-  X(double, body_centre_z_m, "m", -1e3, 1e3, "the same, z")                                                  \
-  X(double, friction_slip_m, "m", 0, 1, "presliding_paper: stretch at which the contact slides")             \
+#define PALPATE_MODEL_PARAMS(X)                                                                               \
+  X(std::int32_t, contact_weight, "-", 0, 2, "how sample forces are weighted (ContactWeight)")                \
+  X(std::int32_t, friction_law, "-", 0, 6, "FrictionLaw")                                                     \
+  X(std::int32_t, tangential_law, "-", 0, 1, "TangentialLaw")                                                 \
+  X(std::int32_t, skeleton_law, "-", 0, 4, "SkeletonLaw")                                                     \
+  X(std::int32_t, shape_law, "-", 0, 1, "ShapeLaw: how anchor displacements spread over the surface")         \
+  X(std::int32_t, neighbourhood_law, "-", 0, 3, "NeighbourhoodLaw: dent around a contact")                    \
+  X(std::int32_t, coupling_law, "-", 0, 2, "CouplingLaw: how regions influence one another")                  \
+  X(std::int32_t, rbf_tail, "-", 0, 1, "0 constant tail, 1 linear tail of the surface interpolation")         \
+  X(std::int32_t, silence_hold_ticks, "ticks", 1, 5, "ticks the last sample is held")                         \
+  X(std::int32_t, silence_passive_ticks, "ticks", 1, 20, "ticks after which force ramps to zero")             \
+  X(std::int32_t, silence_fault_ticks, "ticks", 2, 1000, "ticks of silence that latch a fault")               \
+  X(std::int32_t, backend, "-", 0, 1, "Backend: who measures contact and makes force")                        \
+  X(std::int32_t, nodal_solver, "-", 0, 1, "NodalSolver")                                                     \
+  X(std::int32_t, nodal_sweeps, "-", 0, 100, "Gauss-Seidel sweeps of the normal problem")                     \
+  X(std::int32_t, friction_sweeps, "-", 0, 20, "Gauss-Seidel sweeps of the problem with friction")            \
+  X(std::int32_t, articulation, "-", 0, 2, "Articulation: whether pieces of the tool move by joints")         \
+  X(std::int32_t, late_ticks_max, "ticks", 2, 1000, "ticks in a row that each missed deadlines: a fault")     \
+  X(std::int32_t, nodal_carry, "-", 0, 2, "NodalCarry: where gaps and normals are taken")                     \
+  X(std::int32_t, response_law, "-", 0, 2, "ResponseLaw: what carries the normal force")                      \
+  X(std::int32_t, response_root, "-", 0, 1, "1: the knots of the tables are roots of depths")                 \
+  X(double, period_s, "s", 1e-5, 1e-1, "tick period")                                                         \
+  X(double, k1_N_per_m, "N/m", 0, 1e9, "linear coefficient of the contact law, per unit weight")              \
+  X(double, k3_N_per_m3, "N/m3", 0, 1e15, "cubic coefficient of the contact law, per unit weight")            \
+  X(double, max_depth_m, "m", 1e-6, 1, "depth beyond which the law continues by its tangent")                 \
+  X(double, friction_k_N, "N^(1-beta)", 0, 1e6, "K of the static limit K F^beta")                             \
+  X(double, friction_beta, "-", 0.5, 1, "exponent of the static limit")                                       \
+  X(double, friction_mu_dynamic, "-", 0, 10, "sliding coefficient")                                           \
+  X(double, cluster_distance_m, "m", 1e-6, 1, "contact points nearer than this are one region")               \
+  X(double, youngs_modulus_Pa, "Pa", 1, 1e13, "E")                                                            \
+  X(double, poisson_ratio, "-", -0.999, 0.5, "nu")                                                            \
+  X(double, far_field_radius_m, "m", 1e-6, 1, "core radius of the far-field kernel between regions")          \
+  X(double, neighbourhood_radius_m, "m", 1e-6, 1, "R of the local dent")                                      \
+  X(double, surface_size_m, "m", 1e-6, 100, "largest extent of the body; scale of tolerances")                \
+  X(double, coupling_N_per_m, "N/m", 1, 1e6, "translational stiffness of the virtual coupling")               \
+  X(double, coupling_Nm_per_rad, "N*m/rad", 1e-6, 1e4, "rotational stiffness of the virtual coupling")        \
+  X(double, force_max_N, "N", 0, kWireForceMax_N, "magnitude limit of the rendered force")                    \
+  X(double, torque_max_Nm, "N*m", 0, kWireTorqueMax_Nm, "magnitude limit of the rendered torque")             \
+  X(double, force_rate_max_N_per_s, "N/s", 1, 1e7, "fault limiter of the force change")                       \
+  X(double, ramp_in_s, "s", 0, 10, "force ramp after arming")                                                 \
+  X(double, ramp_out_s, "s", 1e-3, 1, "force ramp to zero after a fault")                                     \
+  X(double, stall_max_s, "s", 1e-3, 1, "deadlines missed at one go for so long: a fault")                     \
+  X(double, speed_max_m_per_s, "m/s", 0.01, 100, "a device sample that implies a faster motion is rejected")  \
+  X(double, turn_max_rad_per_s, "rad/s", 0.1, 1000, "a device sample that implies a faster turn is rejected") \
+  X(double, contact_margin_m, "m", 0, 1, "nodes with a smaller gap take part in the contact problem")         \
+  X(double, regularisation, "-", 0, 0.1, "share added to the diagonal of the contact problem")                \
+  X(double, wall_N_per_m, "N/m", 0, 1e9, "stiffness of the body's held nodes")                                \
+  X(double, proxy_speed_max_m_per_s, "m/s", 0, 100, "fastest motion of the tool in contact")                  \
+  X(double, strain_limit, "-", 0, 10, "largest strain for which the linear body is trusted")                  \
+  X(double, closing_rate_per_s, "1/s", 0, 1e3, "fastest change of a closing fraction")                        \
+  X(double, stop_force_N, "N", 0, 1e6, "a joint stops where it would press a part harder than this")          \
+  X(double, body_mass_kg, "kg", 0, 1e9, "mass of the body: what a palm has to hold")                          \
+  X(double, body_centre_x_m, "m", -1e3, 1e3, "centre of the body's volume, world")                            \
+  X(double, body_centre_y_m, "m", -1e3, 1e3, "the same, y")                                                   \
+  X(double, body_centre_z_m, "m", -1e3, 1e3, "the same, z")                                                   \
+  X(double, friction_slip_m, "m", 0, 1, "presliding_paper: stretch at which the contact slides")              \
   X(double, smooth_slack_m, "m", 0, 4e-4, "how far the smooth surface stands off its facets, at most")
 
 struct ModelParams {

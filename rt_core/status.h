@@ -23,7 +23,7 @@ namespace palpate {
   X(kRateLimited, 6, "the force change per tick exceeded the fault limiter",                                           \
     "look for a jump in the device position; raise device.force_rate_max_N_per_s")                                     \
   X(kInputHeld, 7, "no fresh device sample this tick; the last one is held", "see docs/realtime.md, missed samples")   \
-  X(kInputRejected, 8, "a device sample was not finite or jumped further than the device can move",                    \
+  X(kInputRejected, 8, "a device sample was not finite, no rotation, or moved or turned further than a hand can",      \
     "check encoder and bus")                                                                                           \
   X(kCouplingSingular, 9, "a small linear system was singular; the step was skipped", "report this scene")             \
   X(kSkeletonDegenerate, 10, "the beam skeleton had no usable stiffness; anchors keep still",                          \
@@ -40,23 +40,32 @@ namespace palpate {
   X(kFootHeld, 16, "a tip is deeper than the surface's curvature allows; its last place of contact is kept",           \
     "press less deeply, or use a larger body")                                                                         \
   X(kStrainBeyondLinear, 17, "a finite-element body is strained beyond its linear range; forces are extrapolated",     \
-    "press less deeply, or raise contact.nodal.strain_limit if the error is acceptable")
+    "press less deeply, or raise contact.nodal.strain_limit if the error is acceptable")                               \
+  X(kCommandsUnheard, 18, "the device does not show that commands reach it; force is let go until it does",            \
+    "check the bus towards the device: palpate device-test")                                                           \
+  X(kStartsInside, 19, "arming refused: the tool starts inside the body and would push with more than 1 N",            \
+    "move the handle out of the body, then arm again")
 
 // X(name, bit, cause, remedy)
-#define PALPATE_FAULT_BITS(X)                                                                                       \
-  X(kNotFinite, 0, "the force computed was not a finite number", "replay the recording; report it")                 \
-  X(kDeviceSilent, 1, "the device sent nothing for the silence limit", "check cable, power and bus")                \
-  X(kOverrun, 2, "too many ticks in a row missed deadlines (device.late_ticks_max)",                                \
-    "run palpate latency; reduce the load")                                                                         \
-  X(kDeviceReported, 3, "the device reported an error or its emergency stop", "release the stop; clear the device") \
-  X(kBusOff, 4, "the bus controller went bus-off", "check wiring and termination; restart the interface")           \
-  X(kImageInvalid, 5, "the scene image failed its checks", "bake the scene again")                                  \
-  X(kCommandInvalid, 6, "the host's command region failed its checks", "restart the host")                          \
-  X(kForbiddenCall, 7, "the real-time thread attempted a forbidden system call", "report it")                       \
-  X(kHostSilent, 8, "the host's heartbeat stopped while it was required", "restart the host")                       \
-  X(kStateCorrupt, 9, "the state failed its finite check", "replay the recording; report it")                       \
-  X(kStalled, 10, "the computer stood still once for too long (device.stall_max_ms)",                               \
-    "run palpate doctor; use a real-time kernel and an isolated CPU")
+#define PALPATE_FAULT_BITS(X)                                                                                        \
+  X(kNotFinite, 0, "the force computed was not a finite number", "replay the recording; report it")                  \
+  X(kDeviceSilent, 1, "the device sent nothing for the silence limit", "check cable, power and bus")                 \
+  X(kOverrun, 2, "too many ticks in a row missed deadlines (device.late_ticks_max)",                                 \
+    "run palpate latency; reduce the load")                                                                          \
+  X(kDeviceReported, 3, "the device reported an error or its emergency stop", "release the stop; clear the device")  \
+  X(kBusOff, 4, "the bus controller went bus-off", "check wiring and termination; restart the interface")            \
+  X(kImageInvalid, 5, "the scene image failed its checks", "bake the scene again")                                   \
+  X(kCommandInvalid, 6, "the host's command region failed its checks", "restart the host")                           \
+  X(kForbiddenCall, 7, "the real-time thread attempted a forbidden system call", "report it")                        \
+  X(kHostSilent, 8, "the host's heartbeat stopped while it was required", "restart the host")                        \
+  X(kStateCorrupt, 9, "the state failed its finite check", "replay the recording; report it")                        \
+  X(kStalled, 10, "the computer stood still once for too long (device.stall_max_ms)",                                \
+    "run palpate doctor; use a real-time kernel and an isolated CPU")                                                \
+  X(kDeviceDeaf, 11, "the device did not show that commands reach it, or would not be enabled again",                \
+    "palpate device-test; check the bus towards the device")                                                         \
+  X(kNotCalibrated, 12, "the device says that its positions are not calibrated", "calibrate the device, then reset") \
+  X(kSamplesRejected, 13, "samples came, but none a hand could have made, for the silence limit",                    \
+    "check encoder and calibration; device.speed_max_m_per_s, device.turn_max_rad_per_s")
 
 namespace Status {
 #define PALPATE_BIT(name, bit, what, remedy) inline constexpr std::uint32_t name = 1u << bit;

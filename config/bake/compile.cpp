@@ -354,7 +354,10 @@ class Compiler {
     p.period_s = d.period_s;
     p.force_max_N = d.force_max_N;
     p.torque_max_Nm = d.torque_max_Nm;
-    p.force_rate_max_N_per_s = d.force_rate_max_N_per_s;
+    // All of it within 5 ms: above what a hand's tap on a wall asks for, and still able to act on a device of any size.
+    constexpr double kFullForce_s = 5e-3;
+    p.force_rate_max_N_per_s =
+        is_auto(d.force_rate_max_N_per_s) ? d.force_max_N / kFullForce_s : d.force_rate_max_N_per_s;
     p.ramp_in_s = d.ramp_in_s;
     p.ramp_out_s = d.ramp_out_s;
     p.silence_hold_ticks = d.silence_hold_ticks;
@@ -363,6 +366,7 @@ class Compiler {
     p.late_ticks_max = d.late_ticks_max;
     p.stall_max_s = d.stall_max_s;
     p.speed_max_m_per_s = d.speed_max_m_per_s;
+    p.turn_max_rad_per_s = d.turn_max_rad_per_s;
   }
 
   void add_skeleton() {

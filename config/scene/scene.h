@@ -225,7 +225,7 @@ struct DeviceDesc {
   double delay_s = 5e-4;
   double force_max_N = 8.5;
   double torque_max_Nm = 0.188;
-  double force_rate_max_N_per_s = 20000;
+  double force_rate_max_N_per_s = kAuto;
   double coupling_N_per_m = kAuto;
   double coupling_Nm_per_rad = kAuto;
   double ramp_in_s = 0.1;
@@ -236,6 +236,7 @@ struct DeviceDesc {
   std::int32_t late_ticks_max = 10;
   double stall_max_s = 20e-3;
   double speed_max_m_per_s = 5;
+  double turn_max_rad_per_s = 30;
 };
 
 // The demonstration: what the simulated hand does. Not part of the image.

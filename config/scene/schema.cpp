@@ -358,10 +358,12 @@ const KeySpec kDevice[] = {
     number<&DeviceDesc::encoder_step_m>("encoder_step_mm", 0, 10, kMilli, "position resolution Delta"),
     number<&DeviceDesc::encoder_step_rad>("encoder_step_rad", 0, 1, 1, "angular resolution"),
     number<&DeviceDesc::delay_s>("delay_ms", 0, 100, kMilli, "delay tau from sample to force, beyond the tick"),
-    number<&DeviceDesc::force_max_N>("force_max_N", 0.01, 1000, 1, "largest force commanded"),
-    number<&DeviceDesc::torque_max_Nm>("torque_max_Nm", 0, 100, 1, "largest torque commanded"),
-    number<&DeviceDesc::force_rate_max_N_per_s>("force_rate_max_N_per_s", 1, 1e7, 1,
-                                                "fault limiter of the force change"),
+    number<&DeviceDesc::force_max_N>("force_max_N", 0.01, kWireForceMax_N, 1,
+                                     "largest force commanded; the highest is what a command can carry"),
+    number<&DeviceDesc::torque_max_Nm>("torque_max_Nm", 0, kWireTorqueMax_Nm, 1, "largest torque commanded; the same"),
+    number_or_auto<&DeviceDesc::force_rate_max_N_per_s>(
+        "force_rate_max_N_per_s", 1, 1e7, 1,
+        "fault limiter of the force change; auto: force_max_N in 5 ms. In no tick more than 10 % of force_max_N"),
     number_or_auto<&DeviceDesc::coupling_N_per_m>(
         "coupling_N_per_m", 1, 1e6, 1,
         "virtual coupling; auto: 0.8 of what the device admits, min(2b / (T + 2 tau), 2 f_c / Delta)"),
@@ -379,6 +381,8 @@ const KeySpec kDevice[] = {
                                      "deadlines missed at one go for so long: a fault; at least two periods count"),
     number<&DeviceDesc::speed_max_m_per_s>("speed_max_m_per_s", 0.01, 100, 1,
                                            "a sample that implies a faster motion is rejected"),
+    number<&DeviceDesc::turn_max_rad_per_s>("turn_max_rad_per_s", 0.1, 1000, 1,
+                                            "a sample that implies a faster turn is rejected"),
 };
 const KeySpec kPath[] = {
     number<&PathDesc::hand_stiffness_N_per_m>("hand_stiffness_N_per_m", 1, 1e5, 1, "impedance of the simulated hand"),

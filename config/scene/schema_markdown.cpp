@@ -25,6 +25,7 @@ std::string unit_text(const std::string& key) {
       {"_kg_per_m3", "kg/m^3"},
       {"_kg_m2", "kg m^2"},
       {"_m_per_s", "m/s"},
+      {"_rad_per_s", "rad/s"},
       {"_mm2", "mm^2"},
       {"_mm", "mm"},
       {"_ms", "ms"},

@@ -114,12 +114,24 @@ constexpr double kClassicPositionUnit_m = unit_of(kSignalsClassicPosition, 8);
 constexpr double kClassicComponentUnit = unit_of(kSignalsClassicOrientation, 20);
 static_assert(kForceUnit_N > 0 && kTorqueUnit_Nm > 0 && kPositionUnit_m > 0 && kQuaternionUnit > 0);
 static_assert(kClassicForceUnit_N > 0 && kClassicTorqueUnit_Nm > 0 && kClassicPositionUnit_m > 0);
+static_assert(kWireForceMax_N <= 32767 * kForceUnit_N * (1 + 1e-12) &&
+              kWireForceMax_N <= 32767 * kClassicForceUnit_N * (1 + 1e-12));
+static_assert(kWireTorqueMax_Nm <= 32767 * kTorqueUnit_Nm * (1 + 1e-12) &&
+              kWireTorqueMax_Nm <= 8191 * kClassicTorqueUnit_Nm);
 static_assert(kClassicComponentUnit * 2047 > 0.70711, "a kept quaternion component reaches 1/sqrt 2");
 
 void put_vector(std::int32_t* counts, Vec3 value, double unit, int bits) noexcept {
   counts[0] = to_counts(value.x, unit, bits);
   counts[1] = to_counts(value.y, unit, bits);
   counts[2] = to_counts(value.z, unit, bits);
+}
+
+// As put_vector, but a vector beyond the field is shortened as a whole.
+void put_direction(std::int32_t* counts, Vec3 value, double unit, int bits) noexcept {
+  const double limit = unit * static_cast<double>((std::int64_t{1} << (bits - 1)) - 1);
+  const double largest = max_of(abs_of(value.x), max_of(abs_of(value.y), abs_of(value.z)));
+  if (is_finite(value) && largest > limit && largest < kHuge) value = (limit / largest) * value;
+  put_vector(counts, value, unit, bits);
 }
 
 Vec3 vector_of(const std::int32_t* counts, double unit) noexcept {
@@ -179,8 +191,8 @@ void set_pose(Status& status, Vec3 position_m, Quat orientation) noexcept {
 void get_pose(const Status& status, Vec3& position_m, Quat& orientation) noexcept {
   const std::int32_t* q = status.quaternion;
   position_m = vector_of(status.position, kPositionUnit_m);
-  orientation = normalised({from_counts(q[0], kQuaternionUnit), from_counts(q[1], kQuaternionUnit),
-                            from_counts(q[2], kQuaternionUnit), from_counts(q[3], kQuaternionUnit)});
+  orientation = {from_counts(q[0], kQuaternionUnit), from_counts(q[1], kQuaternionUnit),
+                 from_counts(q[2], kQuaternionUnit), from_counts(q[3], kQuaternionUnit)};
 }
 
 void set_pose(ClassicPosition& p, ClassicOrientation& o, Vec3 position_m, Quat orientation) noexcept {
@@ -206,14 +218,14 @@ void get_pose(const ClassicPosition& p, const ClassicOrientation& o, Vec3& posit
     q_wxyz[i] = from_counts(o.component[kept++], kClassicComponentUnit);
     rest -= q_wxyz[i] * q_wxyz[i];
   }
-  q_wxyz[o.largest & 3u] = square_root(rest);
+  q_wxyz[o.largest & 3u] = square_root(max_of(0.0, rest));  // below zero: longer than 1, and refused for it
   position_m = vector_of(p.position, kClassicPositionUnit_m);
-  orientation = normalised({q_wxyz[0], q_wxyz[1], q_wxyz[2], q_wxyz[3]});
+  orientation = {q_wxyz[0], q_wxyz[1], q_wxyz[2], q_wxyz[3]};
 }
 
 void set_wrench(Command& command, Vec3 force_N, Vec3 torque_Nm) noexcept {
-  put_vector(command.force, force_N, kForceUnit_N, 16);
-  put_vector(command.torque, torque_Nm, kTorqueUnit_Nm, 16);
+  put_direction(command.force, force_N, kForceUnit_N, 16);
+  put_direction(command.torque, torque_Nm, kTorqueUnit_Nm, 16);
 }
 
 void get_wrench(const Command& command, Vec3& force_N, Vec3& torque_Nm) noexcept {
@@ -222,8 +234,8 @@ void get_wrench(const Command& command, Vec3& force_N, Vec3& torque_Nm) noexcept
 }
 
 void set_wrench(ClassicForce& f, ClassicTorque& t, Vec3 force_N, Vec3 torque_Nm) noexcept {
-  put_vector(f.force, force_N, kClassicForceUnit_N, 16);
-  put_vector(t.torque, torque_Nm, kClassicTorqueUnit_Nm, 14);
+  put_direction(f.force, force_N, kClassicForceUnit_N, 16);
+  put_direction(t.torque, torque_Nm, kClassicTorqueUnit_Nm, 14);
 }
 
 void get_wrench(const ClassicForce& f, const ClassicTorque& t, Vec3& force_N, Vec3& torque_Nm) noexcept {

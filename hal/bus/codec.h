@@ -39,7 +39,7 @@ struct ClassicPosition {
   friend bool operator==(const ClassicPosition&, const ClassicPosition&) = default;
 };
 struct ClassicOrientation {
-  std::uint32_t sequence = 0, flags = 0, buttons = 0, largest = 0;
+  std::uint32_t sequence = 0, flags = 0, buttons = 0, command_echo = 0, largest = 0;
   std::int32_t component[3] = {};
   friend bool operator==(const ClassicOrientation&, const ClassicOrientation&) = default;
 };
@@ -92,7 +92,12 @@ PALPATE_WIRE_MESSAGES(PALPATE_DECLARE)
 std::uint16_t crc16(std::span<const std::uint8_t> bytes, std::uint16_t crc = 0xFFFF) noexcept;
 std::uint8_t crc8(std::span<const std::uint8_t> bytes, std::uint8_t crc = 0xFF) noexcept;
 
-// Pose and wrench in SI units <-> counts of each profile. Out-of-range values saturate; not finite ones become 0.
+// What the classic profile has room for: the second half's share of the sample's number and the echo of a command's.
+inline constexpr std::uint32_t kClassicPairMask = 0xF, kClassicEchoMask = 0x3F, kClassicButtonMask = 0x3;
+
+// Pose and wrench in SI units <-> counts of each profile. Positions out of range saturate per axis; a force or torque
+// out of range is scaled as a whole, so that it keeps its direction; not finite ones become 0. get_pose does not
+// normalise: whether four numbers are a rotation is for the reader to judge.
 void set_pose(Status& status, Vec3 position_m, Quat orientation) noexcept;
 void get_pose(const Status& status, Vec3& position_m, Quat& orientation) noexcept;
 void set_pose(ClassicPosition& p, ClassicOrientation& o, Vec3 position_m, Quat orientation) noexcept;

@@ -42,10 +42,23 @@ SequenceTracker::Step SequenceTracker::follow(std::uint32_t sequence, std::uint3
   return step;
 }
 
-bool DeviceBus::decoded(wire::DecodeResult result) noexcept {
-  if (result == wire::DecodeResult::kBadChecksum) counters_.checksum += 1;
-  if (result == wire::DecodeResult::kWrongLength) counters_.malformed += 1;
+void DeviceBus::drop(const Frame& frame, DropReason reason, std::uint64_t& counter) noexcept {
+  counter += 1;
+  if (first_reason_ != DropReason::kNone) return;
+  first_reason_ = reason;
+  first_bad_ = frame;
+}
+
+bool DeviceBus::decoded(const Frame& frame, wire::DecodeResult result) noexcept {
+  if (result == wire::DecodeResult::kBadChecksum) drop(frame, DropReason::kChecksum, counters_.checksum);
+  if (result == wire::DecodeResult::kWrongLength) drop(frame, DropReason::kLength, counters_.length);
   return result == wire::DecodeResult::kOk;
+}
+
+void DeviceBus::judge_orientation(const Frame& frame, const Quat& q) noexcept {
+  const double length2 = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
+  if (!(length2 >= 1 - kQuaternionSlack && length2 <= 1 + kQuaternionSlack))
+    drop(frame, DropReason::kOrientation, counters_.orientation);
 }
 
 // True if this sequence number is newer than all before.
@@ -70,11 +83,8 @@ void DeviceBus::accept(Vec3 position_m, Quat orientation) noexcept {
 
 void DeviceBus::take_status(const Frame& frame) noexcept {
   wire::Status status;
-  if (!decoded(wire::decode(payload(frame), node_, status))) return;
-  if (status.version != wire::kVersion) {
-    counters_.malformed += 1;
-    return;
-  }
+  if (!decoded(frame, wire::decode(payload(frame), node_, status))) return;
+  if (status.version != wire::kVersion) return drop(frame, DropReason::kVersion, counters_.version);
   if (!follow(status.sequence)) return;
   const std::uint32_t elapsed_us = status.time_us - sample_.device_time_us;
   const bool forward = has_time_ && elapsed_us > 0 && elapsed_us < (1u << 31);
@@ -83,17 +93,19 @@ void DeviceBus::take_status(const Frame& frame) noexcept {
   Vec3 position_m;
   Quat orientation;
   wire::get_pose(status, position_m, orientation);
+  judge_orientation(frame, orientation);
   accept(position_m, orientation);
   sample_.device_time_us = status.time_us;
   sample_.flags = status.flags;
   sample_.buttons = status.buttons;
   sample_.error_code = status.error;
   obeyed_ = status.command_sequence;
+  sample_.command_lag = (sent_ - obeyed_) & 0xFFFFu;
 }
 
 void DeviceBus::take_position(const Frame& frame) noexcept {
   wire::ClassicPosition position;
-  if (!decoded(wire::decode(payload(frame), node_, position))) return;
+  if (!decoded(frame, wire::decode(payload(frame), node_, position))) return;
   if (has_pending_) counters_.unpaired += 1;
   pending_ = position;
   has_pending_ = true;
@@ -101,29 +113,46 @@ void DeviceBus::take_position(const Frame& frame) noexcept {
 
 void DeviceBus::take_orientation(const Frame& frame) noexcept {
   wire::ClassicOrientation orientation;
-  if (!decoded(wire::decode(payload(frame), node_, orientation))) return;
-  if (!has_pending_ || pending_.sequence != orientation.sequence) {
+  if (!decoded(frame, wire::decode(payload(frame), node_, orientation))) return;
+  if (!has_pending_ || (pending_.sequence & wire::kClassicPairMask) != orientation.sequence) {
     counters_.unpaired += 1;
     return;
   }
   has_pending_ = false;
-  if (!follow(orientation.sequence)) return;
+  if (!follow(pending_.sequence)) return;
   Vec3 position_m;
   Quat rotation;
   wire::get_pose(pending_, orientation, position_m, rotation);
+  judge_orientation(frame, rotation);
   accept(position_m, rotation);
   sample_.flags = orientation.flags;
   sample_.buttons = orientation.buttons;
   sample_.error_code = 0;
+  take_echo(orientation.command_echo);
+}
+
+// Six bits tell a lag only while they move: one that stands still for 64 commands would look fresh again.
+void DeviceBus::take_echo(std::uint32_t echo) noexcept {
+  if (echo != obeyed_ || !has_echo_) {
+    sample_.command_lag = (sent_ - echo) & wire::kClassicEchoMask;
+  } else if (sample_.command_lag < 0xFFFFu) {
+    sample_.command_lag += (sent_ - sent_at_echo_) & 0xFFFFu;
+  }
+  obeyed_ = echo;
+  sent_at_echo_ = sent_;
+  has_echo_ = true;
 }
 
 void DeviceBus::take(const Frame& frame) noexcept {
   const std::uint32_t base_id = frame.id - static_cast<std::uint32_t>(node_);
   const bool classic = profile_ == WireProfile::kClassic;
-  if (!classic && base_id == wire::kStatusId && frame.fd) return take_status(frame);
-  if (classic && base_id == wire::kClassicPositionId && !frame.fd) return take_position(frame);
-  if (classic && base_id == wire::kClassicOrientationId && !frame.fd) return take_orientation(frame);
-  counters_.malformed += 1;
+  const bool first = base_id == (classic ? wire::kClassicPositionId : wire::kStatusId);
+  const bool second = classic && base_id == wire::kClassicOrientationId;
+  if (!first && !second) return drop(frame, DropReason::kIdentifier, counters_.identifier);
+  if (frame.fd == classic) return drop(frame, DropReason::kKind, counters_.kind);
+  if (!classic) return take_status(frame);
+  if (first) return take_position(frame);
+  take_orientation(frame);
 }
 
 std::uint32_t DeviceBus::faults() const noexcept {
@@ -131,7 +160,8 @@ std::uint32_t DeviceBus::faults() const noexcept {
   if (transport_.state() == TransportState::kBusOff) faults |= Fault::kBusOff;
   const bool reported = (sample_.flags & (DeviceFlag::kError | DeviceFlag::kStopButton)) != 0;
   const bool lost_reference = counters_.accepted > 0 && (sample_.flags & DeviceFlag::kCalibrated) == 0;
-  if (reported || lost_reference) faults |= Fault::kDeviceReported;
+  if (reported) faults |= Fault::kDeviceReported;
+  if (lost_reference) faults |= Fault::kNotCalibrated;
   return faults;
 }
 
@@ -141,6 +171,7 @@ void DeviceBus::receive(DeviceSample& sample) noexcept {
   sample_.gaps = 0;
   const int count = transport_.receive(frames);
   if (count == kMaxFramesPerReceive) counters_.backlog += 1;
+  counters_.frames += static_cast<std::uint64_t>(count);
   for (int i = 0; i < count; ++i) take(frames[i]);  // bound: kMaxFramesPerReceive
   sample_.fresh = sample_.received > 0;
   sample_.faults = faults();

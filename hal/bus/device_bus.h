@@ -15,18 +15,26 @@ enum class WireProfile : int { kFd = 0, kClassic = 1 };
 
 // Only ever count up. `lost` counts sequence numbers that never came (or came after a newer one).
 struct BusCounters {
+  std::uint64_t frames = 0;        // handed out by the transport, whatever became of them
   std::uint64_t accepted = 0;      // status samples used or superseded by a newer one
   std::uint64_t lost = 0;          // missing in the sequence
   std::uint64_t duplicates = 0;    // same sequence number again: dropped
   std::uint64_t reordered = 0;     // older than the newest: dropped
   std::uint64_t restarts = 0;      // sequence jumped too far to be loss: the device restarted
   std::uint64_t checksum = 0;      // checksum wrong: dropped
-  std::uint64_t malformed = 0;     // wrong length, version or unknown identifier: dropped
+  std::uint64_t identifier = 0;    // not one of this node's status messages: dropped
+  std::uint64_t kind = 0;          // right identifier, but a classic frame for FD or the other way round: dropped
+  std::uint64_t length = 0;        // wrong length: dropped
+  std::uint64_t version = 0;       // another protocol version: dropped
+  std::uint64_t orientation = 0;   // four numbers that are no rotation: passed on, the core refuses them
   std::uint64_t unpaired = 0;      // classic profile: half of a sample whose other half never came
   std::uint64_t clock = 0;         // device clock stood still or ran backwards between samples
   std::uint64_t backlog = 0;       // receive queue not emptied in one tick
   std::uint64_t send_dropped = 0;  // commands not handed to the bus
 };
+
+// Why a frame was not used; kNone: none was.
+enum class DropReason : int { kNone = 0, kIdentifier, kKind, kLength, kChecksum, kVersion, kOrientation };
 
 // Follows a wrapping sequence number. A step forward of up to half the window is loss; a step back of up to a quarter
 // is reordering, unless kRestartAfter such numbers come one after the other: a late burst is short, a sender that
@@ -58,8 +66,15 @@ class DeviceBus {
   void receive(DeviceSample& sample) noexcept;
   bool transmit(const DeviceCommand& command) noexcept;
   const BusCounters& counters() const noexcept { return counters_; }
-  // Newest command the device says it obeys (FD profile), and the newest one sent: their difference is the delay of the
-  // whole way there and back in ticks.
+  const TransportCounters& transport_counters() const noexcept { return transport_.counters(); }
+  // The first frame that was not used, and why: what a person needs to see to mend it.
+  const Frame& first_bad() const noexcept { return first_bad_; }
+  DropReason first_reason() const noexcept { return first_reason_; }
+  const DeviceSample& newest() const noexcept { return sample_; }  // last one accepted
+  WireProfile profile() const noexcept { return profile_; }
+  int node() const noexcept { return node_; }
+  // Newest command the device says it obeys (classic profile: its low bits), and the newest one sent: their difference
+  // is the delay of the whole way there and back in ticks.
   std::uint32_t obeyed_sequence() const noexcept { return obeyed_; }
   std::uint32_t sent_sequence() const noexcept { return sent_; }
 
@@ -68,7 +83,10 @@ class DeviceBus {
   void take_status(const Frame& frame) noexcept;
   void take_position(const Frame& frame) noexcept;
   void take_orientation(const Frame& frame) noexcept;
-  bool decoded(wire::DecodeResult result) noexcept;
+  void take_echo(std::uint32_t echo) noexcept;
+  bool decoded(const Frame& frame, wire::DecodeResult result) noexcept;
+  void drop(const Frame& frame, DropReason reason, std::uint64_t& counter) noexcept;
+  void judge_orientation(const Frame& frame, const Quat& orientation) noexcept;
   bool follow(std::uint32_t sequence) noexcept;
   void accept(Vec3 position_m, Quat orientation) noexcept;
   std::uint32_t faults() const noexcept;
@@ -79,10 +97,14 @@ class DeviceBus {
   SequenceTracker sequence_;
   DeviceSample sample_;  // newest accepted
   BusCounters counters_;
+  Frame first_bad_;
+  DropReason first_reason_ = DropReason::kNone;
   wire::ClassicPosition pending_;  // first half of a classic sample
   bool has_pending_ = false;
   bool has_time_ = false;
   std::uint32_t sent_ = 0, obeyed_ = 0;
+  std::uint32_t sent_at_echo_ = 0;  // classic profile: newest sent when the last echo came
+  bool has_echo_ = false;
 };
 
 static_assert(Device<DeviceBus>);

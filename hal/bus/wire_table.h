@@ -6,7 +6,9 @@
 
 namespace palpate::wire {
 
-inline constexpr std::uint8_t kVersion = 1;
+// 2: after power-up and after its watchdog a node stays at zero force until it is enabled anew; the classic profile
+// echoes the command it obeys.
+inline constexpr std::uint8_t kVersion = 2;
 inline constexpr int kMaxNode = 15;  // node numbers 1..15 are added to the base identifiers
 
 // X(message, base identifier, bytes, needs FD, sender, meaning). The lower the identifier the higher the priority on
@@ -59,10 +61,10 @@ inline constexpr int kMaxNode = 15;  // node numbers 1..15 are added to the base
   X(quaternion[1], QuaternionX, 184, 16, true, 3.0517578125e-05, "", "handle to device frame")            \
   X(quaternion[2], QuaternionY, 200, 16, true, 3.0517578125e-05, "", "handle to device frame")            \
   X(quaternion[3], QuaternionZ, 216, 16, true, 3.0517578125e-05, "", "handle to device frame")            \
-  X(version, ProtocolVersion, 232, 8, false, 1, "", "1")
+  X(version, ProtocolVersion, 232, 8, false, 1, "", "2")
 
 #define PALPATE_WIRE_ClassicPosition(X)                                       \
-  X(sequence, Sequence, 0, 8, false, 1, "", "same in both halves")            \
+  X(sequence, Sequence, 0, 8, false, 1, "", "+1 per status")                  \
   X(position[0], PositionX, 8, 16, true, 1e-05, "m", "handle, device frame")  \
   X(position[1], PositionY, 24, 16, true, 1e-05, "m", "handle, device frame") \
   X(position[2], PositionZ, 40, 16, true, 1e-05, "m", "handle, device frame")
@@ -70,9 +72,10 @@ inline constexpr int kMaxNode = 15;  // node numbers 1..15 are added to the base
 // Orientation by its three smallest quaternion components (each within +-1/sqrt 2): the largest one, made positive, is
 // what completes them to unit length.
 #define PALPATE_WIRE_ClassicOrientation(X)                                                              \
-  X(sequence, Sequence, 0, 8, false, 1, "", "same in both halves")                                      \
-  X(flags, Flags, 8, 6, false, 1, "", "1 calibrated 2 enabled 4 stop 8 error 16 watchdog 32 saturated") \
-  X(buttons, Buttons, 14, 4, false, 1, "", "one bit per button")                                        \
+  X(sequence, Sequence, 0, 4, false, 1, "", "low bits of the first half's")                             \
+  X(flags, Flags, 4, 6, false, 1, "", "1 calibrated 2 enabled 4 stop 8 error 16 watchdog 32 saturated") \
+  X(buttons, Buttons, 10, 2, false, 1, "", "one bit per button")                                        \
+  X(command_echo, CommandEcho, 12, 6, false, 1, "", "low bits of the newest command obeyed")            \
   X(largest, LargestComponent, 18, 2, false, 1, "", "component left out: 0 w 1 x 2 y 3 z")              \
   X(component[0], ComponentA, 20, 12, true, 0.000346, "", "first component kept, in the order w x y z") \
   X(component[1], ComponentB, 32, 12, true, 0.000346, "", "second component kept")                      \

@@ -23,12 +23,14 @@ inline constexpr std::uint32_t kCalibrated = 1u << 0;  // positions are absolute
 inline constexpr std::uint32_t kEnabled = 1u << 1;     // drives are powered and obey forces
 inline constexpr std::uint32_t kStopButton = 1u << 2;  // its emergency stop is pressed
 inline constexpr std::uint32_t kError = 1u << 3;       // see error_code
-inline constexpr std::uint32_t kWatchdog = 1u << 4;    // commands stopped coming: it renders zero force
+inline constexpr std::uint32_t kWatchdog = 1u << 4;    // commands stopped coming: zero force until enabled anew
 inline constexpr std::uint32_t kSaturated = 1u << 5;   // the last command was cut to its force limit
 }  // namespace DeviceFlag
 
 namespace CommandFlag {
-inline constexpr std::uint32_t kEnable = 1u << 0;  // power the drives; without it the device renders zero force
+// Power the drives; without it the device renders zero force. After power-up and after its watchdog a device stays at
+// zero until this goes from 0 to 1.
+inline constexpr std::uint32_t kEnable = 1u << 0;
 }  // namespace CommandFlag
 
 struct DeviceSample {
@@ -38,11 +40,12 @@ struct DeviceSample {
   std::uint32_t sequence = 0;        // as sent; wraps with the profile's width
   std::uint32_t flags = 0;           // DeviceFlag
   std::uint32_t buttons = 0;
-  std::uint32_t error_code = 0;  // the device's own
-  std::uint32_t faults = 0;      // Fault bits found on the way: bus-off, error reported by the device
-  std::uint32_t received = 0;    // valid samples that arrived since the last call; only the newest is kept
-  std::uint32_t gaps = 0;        // sequence numbers missing among them
-  bool fresh = false;            // received > 0
+  std::uint32_t command_lag = 0;  // commands sent since the newest one it says it obeys; 0 where it does not say
+  std::uint32_t error_code = 0;   // the device's own
+  std::uint32_t faults = 0;       // Fault bits found on the way: bus-off, error reported by the device
+  std::uint32_t received = 0;     // valid samples that arrived since the last call; only the newest is kept
+  std::uint32_t gaps = 0;         // sequence numbers missing among them
+  bool fresh = false;             // received > 0
 };
 
 struct DeviceCommand {

@@ -20,6 +20,9 @@ void DeviceNode::obey(std::uint32_t sequence, const DeviceCommand& command, std:
   }
   counters_.lost += missing;
   counters_.commands += 1;
+  const bool enable = (command.flags & CommandFlag::kEnable) != 0;
+  if (enable && !enabled_) latched_ = false;
+  enabled_ = enable;
   command_ = command;
   last_command_ns_ = now_ns;
   expired_ = false;
@@ -55,10 +58,10 @@ void DeviceNode::take(const Frame& frame, std::int64_t now_ns) noexcept {
 
 std::uint32_t DeviceNode::flags() const noexcept {
   std::uint32_t flags = DeviceFlag::kCalibrated;
-  if ((command_.flags & CommandFlag::kEnable) != 0) flags |= DeviceFlag::kEnabled;
+  if (enabled_ && !latched_) flags |= DeviceFlag::kEnabled;
   if (stop_pressed_) flags |= DeviceFlag::kStopButton;
   if (error_ != 0) flags |= DeviceFlag::kError;
-  if (expired_) flags |= DeviceFlag::kWatchdog;
+  if (latched_) flags |= DeviceFlag::kWatchdog;
   if (plant_.saturated()) flags |= DeviceFlag::kSaturated;
   return flags;
 }
@@ -81,9 +84,11 @@ void DeviceNode::send_status() noexcept {
   } else {
     wire::ClassicPosition p;
     wire::ClassicOrientation o;
-    p.sequence = o.sequence = status_sequence_ & 0xFFu;
+    p.sequence = status_sequence_ & 0xFFu;
+    o.sequence = p.sequence & wire::kClassicPairMask;
     o.flags = flags() & 0x3Fu;
-    o.buttons = buttons();
+    o.buttons = buttons() & wire::kClassicButtonMask;
+    o.command_echo = sequence_.last() & wire::kClassicEchoMask;
     wire::set_pose(p, o, position_m, orientation);
     count = make_status_frames(options_.node, p, o, frames);
   }
@@ -96,11 +101,39 @@ void DeviceNode::set_powered(bool powered) noexcept {
     status_sequence_ = 0;
     started_s_ = plant_.time_s();
     sequence_ = SequenceTracker(options_.profile == WireProfile::kFd ? 16 : 8);
-    command_ = {};
+    command_ = rendered_ = {};
     has_pending_ = false;
-    expired_ = true;
+    expired_ = latched_ = enabled_ = true;
   }
   powered_ = powered;
+}
+
+namespace {
+
+Vec3 moved_towards(Vec3 from, Vec3 to, double most) noexcept {
+  const Vec3 step = to - from;
+  const double length = norm(step);
+  return length <= most ? to : from + (most / length) * step;
+}
+
+}  // namespace
+
+// What the motors are told: the newest command, or nothing, approached by at most the slew limit.
+void DeviceNode::render() noexcept {
+  const PlantOptions& plant = plant_.options();
+  if (stop_pressed_ || error_ != 0) {
+    rendered_ = {};
+    return plant_.step(rendered_);
+  }
+  const DeviceCommand wanted = latched_ || !enabled_ ? DeviceCommand{} : command_;
+  const double share = options_.slew_share_per_ms * plant.period_s * 1e3;
+  const bool finite = is_finite(wanted.force_N) && is_finite(wanted.torque_Nm);
+  const Wrench target = finite ? Wrench{wanted.force_N, wanted.torque_Nm} : Wrench{};
+  rendered_.force_N = moved_towards(rendered_.force_N, target.force_N, share * plant.force_max_N);
+  rendered_.torque_Nm = moved_towards(rendered_.torque_Nm, target.torque_Nm, share * plant.torque_max_Nm);
+  const bool moving = !(rendered_.force_N == Vec3{} && rendered_.torque_Nm == Vec3{});
+  rendered_.flags = moving ? CommandFlag::kEnable : wanted.flags;
+  plant_.step(rendered_);
 }
 
 void DeviceNode::step(std::int64_t now_ns) noexcept {
@@ -109,12 +142,11 @@ void DeviceNode::step(std::int64_t now_ns) noexcept {
   if (!powered_) return plant_.step({});                    // the hand still moves the handle
   for (int i = 0; i < count; ++i) take(frames[i], now_ns);  // bound: kMaxFramesPerReceive
   if (!expired_ && now_ns - last_command_ns_ > options_.watchdog_ns) {
-    expired_ = true;
+    expired_ = latched_ = enabled_ = true;
     counters_.watchdog += 1;
   }
   if (expired_) command_ = {};
-  const bool halted = stop_pressed_ || error_ != 0;
-  plant_.step(halted ? DeviceCommand{} : command_);
+  render();
   if (!silent_) {
     send_status();
   } else {

@@ -14,7 +14,10 @@ namespace palpate {
 struct NodeOptions {
   WireProfile profile = WireProfile::kFd;
   int node = 1;
-  std::int64_t watchdog_ns = 20'000'000;  // without a valid new command: zero force until one comes
+  std::int64_t watchdog_ns = 20'000'000;  // without a valid new command: zero force until enabled anew (0 -> 1)
+  // Change of force and torque in a millisecond, as a share of the motors' limit: what a lost command, a late one or
+  // the watchdog does to the hand. An emergency stop and an error cut at once.
+  double slew_share_per_ms = 0.1;
 };
 
 struct NodeCounters {
@@ -45,11 +48,13 @@ class DeviceNode {
   DevicePlant& plant() noexcept { return plant_; }
   const NodeCounters& counters() const noexcept { return counters_; }
   const DeviceCommand& command() const noexcept { return command_; }  // being obeyed
+  bool latched() const noexcept { return latched_; }                  // zero force until enabled anew
   bool connected() const noexcept { return transport_.state() == TransportState::kUp; }
 
  private:
   void take(const Frame& frame, std::int64_t now_ns) noexcept;
   void obey(std::uint32_t sequence, const DeviceCommand& command, std::int64_t now_ns) noexcept;
+  void render() noexcept;
   void send_status() noexcept;
   std::uint32_t flags() const noexcept;
   std::uint32_t buttons() const noexcept { return plant_.trigger() ? kButtonClose : 0u; }
@@ -63,6 +68,9 @@ class DeviceNode {
   wire::ClassicForce pending_;
   bool has_pending_ = false;
   bool expired_ = true;  // no valid command (yet, or within the watchdog time)
+  bool latched_ = true;  // since power-up or the watchdog, enable has not gone from 0 to 1
+  bool enabled_ = true;  // by the newest command; true while latched anew, so that a 0 must come first
+  DeviceCommand rendered_;
   std::int64_t last_command_ns_ = 0;
   std::uint32_t status_sequence_ = 0;
   std::uint8_t error_ = 0;

@@ -59,6 +59,12 @@ void FaultPlayer::begin(const FaultLine& line) {
       node_.set_silent(true);
       speak_tick_ = after(line.value);
       return;
+    case DeviceFault::kMiss:
+      return sender_.miss(count);
+    case DeviceFault::kGarble:
+      return sender_.garble(count);
+    case DeviceFault::kDeaf:
+      return sender_.miss(static_cast<int>(std::llround(line.value / period_s_)));
     case DeviceFault::kStop:
       node_.press_stop(true);
       release_tick_ = after(line.value);

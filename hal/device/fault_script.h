@@ -21,6 +21,9 @@ namespace palpate {
   X(kBusOff, "bus-off", 0, 0, 0, "an error frame says that the controller's chip left the bus")              \
   X(kUnplug, "unplug", 0.1, 1e-3, 3600, "the transport is closed, and opened again after S seconds")         \
   X(kSilence, "silence", 0.1, 1e-3, 3600, "the device works but sends nothing for S seconds")                \
+  X(kMiss, "miss", 1, 1, 60000, "commands of N ticks never reach it")                                        \
+  X(kGarble, "garble", 1, 1, 60000, "one bit is flipped in each command it receives for N ticks")            \
+  X(kDeaf, "deaf", 0.1, 1e-3, 3600, "it works and sends, but no command reaches it for S seconds")           \
   X(kStop, "stop", 0.1, 1e-3, 3600, "its emergency stop is pressed for S seconds")
 
 enum class DeviceFault : int {

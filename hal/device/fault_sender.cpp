@@ -14,6 +14,25 @@ void FaultSender::release() noexcept {
   held_count_ = 0;
 }
 
+void FaultSender::flip_a_bit(Frame& frame) noexcept {
+  if (frame.length == 0) return;
+  const int bit = corrupted_++ * 13 % (8 * frame.length);  // 13 and 8 L have no common factor: every bit in turn
+  frame.data[bit / 8] = static_cast<std::uint8_t>(frame.data[bit / 8] ^ (1u << (bit % 8)));
+}
+
+int FaultSender::receive(std::span<Frame> frames) noexcept {
+  const int count = inner_.receive(frames);
+  if (miss_ > 0) {
+    miss_ -= 1;
+    return 0;
+  }
+  if (garble_ > 0) {
+    garble_ -= 1;
+    for (int i = 0; i < count; ++i) flip_a_bit(frames[static_cast<std::size_t>(i)]);  // bound: kMaxFramesPerReceive
+  }
+  return count;
+}
+
 int FaultSender::send(std::span<const Frame> frames) noexcept {
   constexpr std::size_t kMostFrames = 2;  // of one sample
   Frame sample[kMostFrames];
@@ -26,10 +45,7 @@ int FaultSender::send(std::span<const Frame> frames) noexcept {
   }
   if (corrupt_ > 0) {
     corrupt_ -= 1;
-    for (Frame& frame : std::span(sample, count)) {
-      const int bit = corrupted_++ * 13 % (8 * frame.length);  // 13 and 8 L have no common factor: every bit in turn
-      frame.data[bit / 8] = static_cast<std::uint8_t>(frame.data[bit / 8] ^ (1u << (bit % 8)));
-    }
+    for (Frame& frame : std::span(sample, count)) flip_a_bit(frame);
   }
   if (delay_ > 0) {
     delay_ -= 1;

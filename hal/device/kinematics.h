@@ -10,8 +10,9 @@
 namespace palpate {
 
 // world = position_w + rotation * (scale * device). `scale` > 1 magnifies motion: the hand moves 1 cm, the tool
-// `scale` cm. Forces are not scaled, so the stiffness the hand feels is the scene's times `scale`: the device's own
-// stiffness limit applies to that product.
+// `scale` cm. A turn is passed on as the device sent it, not normalised: the core refuses what is no rotation. Forces
+// are not scaled, so the stiffness the hand feels is the scene's times `scale`: the device's own stiffness limit
+// applies to that product.
 struct CartesianKinematics {
   Vec3 position_w;      // of the device's origin
   Quat orientation_w;   // device frame to world, unit
@@ -27,8 +28,7 @@ inline bool valid(const CartesianKinematics& k) noexcept {
 }
 
 inline Pose pose_in_world(const CartesianKinematics& k, const DeviceSample& sample) noexcept {
-  return {k.position_w + rotate(k.orientation_w, k.scale * sample.position_m),
-          normalised(k.orientation_w * sample.orientation)};
+  return {k.position_w + rotate(k.orientation_w, k.scale * sample.position_m), k.orientation_w * sample.orientation};
 }
 inline Pose pose_in_device(const CartesianKinematics& k, const Pose& pose_w) noexcept {
   const Quat back = conjugate(k.orientation_w);

@@ -15,6 +15,7 @@
 #include "hal/device/kinematics.h"
 #include "hal/loop/clock.h"
 #include "hal/loop/deadline.h"
+#include "hal/loop/link_watch.h"
 #include "rt_core/record.h"
 #include "rt_core/tick.h"
 
@@ -31,8 +32,17 @@ inline DeadlineLimits deadline_limits(const ModelParams& params) noexcept {
   return limits;
 }
 
+// The node's watchdog in ticks, within what the classic echo's 6 bits can tell; deaf for the limit of silence: a fault.
+inline LinkLimits link_limits(const ModelParams& params) noexcept {
+  LinkLimits limits;
+  limits.lag_ticks = static_cast<std::uint32_t>(clamp_to(kNodeWatchdog_s / params.period_s, 4, 40));
+  limits.fault_ticks = static_cast<std::uint32_t>(params.silence_fault_ticks);
+  return limits;
+}
+
 struct LoopOptions {
   DeadlineLimits deadline;
+  LinkLimits link;
   std::uint64_t ticks = 0;                   // controller ticks before an orderly stop; 0: until stopped
   std::uint32_t start_timeout_ticks = 2000;  // without any sample at start
   std::uint32_t silence_fault_ticks = 20;    // without a fresh sample in motion: Fault::kDeviceSilent
@@ -54,6 +64,9 @@ struct LoopSummary {
   std::uint64_t gaps = 0;           // status sequence numbers missing
   std::uint64_t send_failures = 0;  // commands the bus did not take
   std::int64_t worst_wake_ns = 0;   // largest wake-up latency
+  std::uint32_t worst_lag = 0;      // most commands sent beyond the newest one the device said it obeyed
+  std::uint64_t unheard_ticks = 0;  // ticks in which force was let go because the device did not hear
+  std::uint32_t link_drops = 0;     // times that began
   std::uint32_t faults = 0;         // every latched fault seen
 };
 
@@ -106,6 +119,7 @@ class Loop {
         kinematics_(kinematics),
         options_(options),
         stop_(stop),
+        link_(options.link),
         slots_(options.deadline, clock.now_ns() + options.deadline.period_ns) {}
 
   LoopSummary run() noexcept {
@@ -176,13 +190,16 @@ class Loop {
     timing.deadline_ns = slots_.deadline_ns();
     timing.wake_latency_ns = brief(woke_ns_ - timing.deadline_ns);
     if (receive) device_.receive(sample_);
+    link_.look(sample_);
     const std::int64_t received_ns = clock_.now_ns();
     make_input(stopping);
     stamps_ = {&clock_, &timing, received_ns};
     for (std::int32_t& stage_ns : timing.stage_ns) stage_ns = 0;
     controller_.step(input_, output_, StageProbe{&Loop::mark, &stamps_});
     const std::int64_t computed_ns = clock_.now_ns();
-    send(to_command(kinematics_, output_, CommandFlag::kEnable));
+    const bool armed = output_.mode != Mode::kIdle && output_.mode != Mode::kFault;
+    const bool enabled = link_.enable(armed, output_.device_w == Wrench{});
+    send(to_command(kinematics_, output_, enabled ? CommandFlag::kEnable : 0u));
     const std::int64_t sent_ns = clock_.now_ns();
     timing.receive_ns = brief(received_ns - woke_ns_);
     timing.compute_ns = brief(computed_ns - received_ns);
@@ -207,9 +224,12 @@ class Loop {
     input_.stale_ticks = stale_;
     input_.overrun_ticks = slots_.missed();
     input_.commands = host_.poll() | (stopping ? Command::kStop : 0u);
+    if (!link_.proven()) input_.commands &= ~Command::kArm;  // nobody there to render it
+    if (link_.unheard()) input_.commands |= Command::kUnheard;
     if constexpr (requires { host_.joints(); }) input_.joints = host_.joints();
     input_.device_fault = sample_.faults;
     if (stale_ >= options_.silence_fault_ticks) input_.device_fault |= Fault::kDeviceSilent;
+    if (link_.fault()) input_.device_fault |= Fault::kDeviceDeaf;
     if (slots_.late_too_often()) input_.device_fault |= Fault::kOverrun;
     if (slots_.stalled()) input_.device_fault |= Fault::kStalled;
     input_.drive = Drive::kDevice;
@@ -221,6 +241,9 @@ class Loop {
     summary_.worst_stale = stale_ > summary_.worst_stale ? stale_ : summary_.worst_stale;
     summary_.gaps += sample_.gaps;
     summary_.faults |= output_.fault;
+    summary_.worst_lag = link_.lag_ticks() > summary_.worst_lag ? link_.lag_ticks() : summary_.worst_lag;
+    summary_.unheard_ticks += link_.unheard();
+    summary_.link_drops = link_.drops();
     if (timing.wake_latency_ns > summary_.worst_wake_ns) summary_.worst_wake_ns = timing.wake_latency_ns;
   }
 
@@ -260,6 +283,7 @@ class Loop {
   CartesianKinematics kinematics_;
   LoopOptions options_;
   const std::atomic<bool>& stop_;
+  LinkWatch link_;
   DeadlineTracker slots_;
   DeviceSample sample_;
   Input input_;

@@ -34,9 +34,11 @@ Wrench limited(const Model& model, Wrench wrench, Scratch& scratch) PALPATE_RT {
   return wrench;
 }
 
-// A fault limiter, set far above what contact does: a slow rate limit inside the loop would destabilise it.
+// A fault limiter, set above what contact does (a slow rate limit inside the loop would destabilise it): the device's
+// rate, and in no tick more than kOutputStepShare of its limit.
 Wrench rate_limited(const Model& model, const Wrench& last, const Wrench& wanted, Scratch& scratch) PALPATE_RT {
-  const double step_N = model.params.force_rate_max_N_per_s * model.params.period_s;
+  const double step_N =
+      min_of(model.params.force_rate_max_N_per_s * model.params.period_s, kOutputStepShare * model.params.force_max_N);
   Vec3 force_step = wanted.force_N - last.force_N;
   Vec3 torque_step = wanted.torque_Nm - last.torque_Nm;
   // Torque may change by the same fraction of its own limit as force does.
@@ -48,10 +50,18 @@ Wrench rate_limited(const Model& model, const Wrench& last, const Wrench& wanted
   return {last.force_N + force_step, last.torque_Nm + torque_step};
 }
 
-std::uint32_t late_ticks_of(const State& state, const Input& input) PALPATE_RT {
+Findings findings(const State& state, const Input& input, std::uint32_t faults) PALPATE_RT {
+  Findings found;
+  found.faults = faults;
+  found.late_ticks = input.stale_ticks > input.overrun_ticks ? input.stale_ticks : input.overrun_ticks;
+  if (input.overrun_ticks > 0 && input.stale_ticks == 0) found.late_fault = Fault::kStalled;
   const auto rejected = static_cast<std::uint32_t>(state.rejected_ticks);
-  const std::uint32_t late = input.stale_ticks > input.overrun_ticks ? input.stale_ticks : input.overrun_ticks;
-  return late > rejected ? late : rejected;
+  if (rejected > found.late_ticks) {
+    found.late_ticks = rejected;
+    found.late_fault = Fault::kSamplesRejected;
+  }
+  found.pressed = norm(state.safety.last_good_w.force_N) > kArmForceMax_N;
+  return found;
 }
 
 }  // namespace
@@ -74,13 +84,17 @@ void make_safe(const Model& model, State& state, Scratch& scratch, const Input& 
   }
   safety.last_good_w = limited(model, wrench, scratch);
 
-  if (driven) {  // no device, no hand: nothing to ramp
+  if (input.drive != Drive::kDevice) {  // no device, no hand: nothing to ramp
     safety.fault |= faults;
     safety.mode = safety.fault == 0 ? Mode::kForce : Mode::kFault;
     safety.ramp = safety.fault == 0 ? 1 : 0;
     safety.last_device_w = {safety.ramp * safety.last_good_w.force_N, safety.ramp * safety.last_good_w.torque_Nm};
   } else {
-    advance_mode(model, input, faults, late_ticks_of(state, input), safety);
+    const Findings found = findings(state, input, faults);
+    advance_mode(model, input, found, safety);
+    if (safety.mode == Mode::kIdle && found.pressed && (input.commands & Command::kArm) != 0)
+      scratch.status |= Status::kStartsInside;
+    if ((input.commands & Command::kUnheard) != 0) scratch.status |= Status::kCommandsUnheard;
     const Wrench scaled{safety.ramp * safety.last_good_w.force_N, safety.ramp * safety.last_good_w.torque_Nm};
     safety.last_device_w = rate_limited(model, safety.last_device_w, scaled, scratch);
     if (safety.ramp < 1 && safety.mode != Mode::kIdle) scratch.status |= Status::kRamping;

@@ -12,14 +12,15 @@ double step_of(double duration_s, const Model& model) PALPATE_RT {
   return duration_s > model.params.period_s ? model.params.period_s / duration_s : 1.0;
 }
 
-Mode mode_when_late(const Model& model, std::uint32_t late_ticks) PALPATE_RT {
+Mode mode_when_late(const Model& model, const Input& input, std::uint32_t late_ticks) PALPATE_RT {
+  if ((input.commands & Command::kUnheard) != 0) return Mode::kRamp;
   if (late_ticks == 0) return Mode::kForce;
   if (late_ticks <= static_cast<std::uint32_t>(model.params.silence_hold_ticks)) return Mode::kHold;
   if (late_ticks <= static_cast<std::uint32_t>(model.params.silence_passive_ticks)) return Mode::kPassive;
   return Mode::kRamp;
 }
 
-void leave_rest(const Input& input, std::uint32_t late_ticks, SafetyState& safety) PALPATE_RT {
+void leave_rest(const Input& input, const Findings& found, SafetyState& safety) PALPATE_RT {
   safety.ramp = 0;
   if (safety.mode == Mode::kFault) {
     if (!edge(input, safety, Command::kReset) || input.device_fault != 0) return;
@@ -28,7 +29,8 @@ void leave_rest(const Input& input, std::uint32_t late_ticks, SafetyState& safet
     return;
   }
   safety.stopping = 0;
-  const bool may_start = late_ticks == 0 && (input.commands & Command::kStop) == 0;
+  const bool may_start =
+      found.late_ticks == 0 && !found.pressed && (input.commands & (Command::kStop | Command::kUnheard)) == 0;
   if (edge(input, safety, Command::kArm) && may_start) safety.mode = Mode::kForce;
 }
 
@@ -52,24 +54,24 @@ void update_gain(const Model& model, SafetyState& safety) PALPATE_RT {
 
 }  // namespace
 
-void advance_mode(const Model& model, const Input& input, std::uint32_t new_faults, std::uint32_t late_ticks,
-                  SafetyState& safety) PALPATE_RT {
-  std::uint32_t faults = new_faults | input.device_fault;
+void advance_mode(const Model& model, const Input& input, const Findings& found, SafetyState& safety) PALPATE_RT {
+  std::uint32_t faults = found.faults | input.device_fault;
   const bool at_rest = safety.mode == Mode::kIdle || safety.mode == Mode::kFault;
-  if (!at_rest && late_ticks >= static_cast<std::uint32_t>(model.params.silence_fault_ticks)) {
-    faults |= input.overrun_ticks > 0 && input.stale_ticks == 0 ? Fault::kStalled : Fault::kDeviceSilent;
-  }
-  // At rest nothing is rendered, so a device that is merely silent (not started yet) is no fault; everything else is.
-  if (safety.mode == Mode::kIdle) faults &= ~(Fault::kDeviceSilent | Fault::kOverrun | Fault::kStalled);
+  if (!at_rest && found.late_ticks >= static_cast<std::uint32_t>(model.params.silence_fault_ticks))
+    faults |= found.late_fault;
+  // At rest nothing is rendered, so a device that is merely silent or deaf (not started yet) is no fault; everything
+  // else is.
+  if (safety.mode == Mode::kIdle)
+    faults &= ~(Fault::kDeviceSilent | Fault::kOverrun | Fault::kStalled | Fault::kDeviceDeaf);
   safety.fault |= faults;
 
   if (safety.fault != 0 && safety.mode != Mode::kFault) {
     safety.mode = safety.ramp > 0 ? Mode::kRamp : Mode::kFault;
   } else if (at_rest) {
-    leave_rest(input, late_ticks, safety);
+    leave_rest(input, found, safety);
   } else {
     if ((input.commands & Command::kStop) != 0) safety.stopping = 1;
-    safety.mode = safety.stopping != 0 ? Mode::kRamp : mode_when_late(model, late_ticks);
+    safety.mode = safety.stopping != 0 ? Mode::kRamp : mode_when_late(model, input, found.late_ticks);
   }
 
   update_gain(model, safety);

@@ -60,8 +60,6 @@ Model held_by_hand(const Model& model, double hand_N_per_m) {
   Model held = model;
   held.params.coupling_N_per_m = hand_N_per_m;
   held.params.coupling_Nm_per_rad = 1e4;  // the stiffest there is: orientation as given
-  held.params.speed_max_m_per_s = kHuge;  // poses may jump
-  held.params.ramp_in_s = 0;
   return held;
 }
 
@@ -82,7 +80,7 @@ void press(const Model& model, std::span<const TimedPose> poses, const PressDriv
     row = {};
     row.time_s = pose.time_s;
     Input input;
-    input.drive = held_in_tick ? Drive::kDevice : Drive::kTool;
+    input.drive = held_in_tick ? Drive::kHeld : Drive::kTool;
     input.pose_w = pose.tool_w;
     input.joints = pose.joints;
     if (drive.hand_N_per_m > 0 && !held_in_tick && sequence > 0) {
@@ -90,7 +88,6 @@ void press(const Model& model, std::span<const TimedPose> poses, const PressDriv
       const Vec3 pull = drive.hand_N_per_m * (pose.tool_w.position_m - from) + output.contact_w.force_N;
       input.pose_w.position_m = from + solve_with_hand(state.contact_stiffness, drive.hand_N_per_m, pull);
     }
-    input.commands = sequence == 0 ? Command::kArm : 0;
     const auto begin = std::chrono::steady_clock::now();
     if (counter != nullptr) counter->start();
     tick(held, state, *scratch, input, output);

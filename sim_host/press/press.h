@@ -47,7 +47,7 @@ struct PressDrive {
 
 // Resets `state`, then renders one tick per pose with Drive::kTool: the virtual coupling is bypassed, so
 // output.contact_w is the wrench of the object on the tool held at that pose. (A nodal body's tool on a hand: with
-// Drive::kDevice, the hand's spring in place of the coupling.) `counter` may be null.
+// Drive::kHeld, the hand's spring in place of the coupling.) `counter` may be null.
 void press(const Model& model, std::span<const TimedPose> poses, const PressDrive& drive, State& state,
            InstructionCounter* counter, const PressListener& listen);
 

@@ -45,9 +45,11 @@ int CandumpLog::status_frames(const TickRecord& record, Frame (&frames)[2]) cons
   }
   wire::ClassicPosition position;
   wire::ClassicOrientation orientation;
-  position.sequence = orientation.sequence = static_cast<std::uint32_t>(record.sequence & 0xFFu);
+  position.sequence = static_cast<std::uint32_t>(record.sequence & 0xFFu);
+  orientation.sequence = position.sequence & wire::kClassicPairMask;
+  orientation.command_echo = low16(record.sequence - 1) & wire::kClassicEchoMask;
   orientation.flags = flags;
-  orientation.buttons = record.input.buttons;
+  orientation.buttons = record.input.buttons & wire::kClassicButtonMask;
   wire::set_pose(position, orientation, pose.position_m, pose.orientation);
   return make_status_frames(options_.node, position, orientation, frames);
 }

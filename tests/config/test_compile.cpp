@@ -135,6 +135,7 @@ silence_fault_ticks = 60
 late_ticks_max = 7
 stall_max_ms = 36
 speed_max_m_per_s = 2
+turn_max_rad_per_s = 12
 )");
   const Opened image(compile_scene(scene).bytes);
   ASSERT_EQ(image.result.error, ImageError::kNone) << image.result.field;
@@ -173,6 +174,7 @@ speed_max_m_per_s = 2
   EXPECT_DOUBLE_EQ(p.ramp_in_s, 0.2);
   EXPECT_DOUBLE_EQ(p.ramp_out_s, 0.1);
   EXPECT_DOUBLE_EQ(p.speed_max_m_per_s, 2);
+  EXPECT_DOUBLE_EQ(p.turn_max_rad_per_s, 12);
   EXPECT_EQ(image.model.sizes.n_rbf, 10);
   EXPECT_EQ(image.model.sizes.n_patch, image.model.sizes.n_vertex);
 }

@@ -14,11 +14,13 @@ struct Machine {
   Model model;
   SafetyState safety;
   Input input;
+  std::uint32_t late_fault = Fault::kDeviceSilent;
+  bool pressed = false;
 
   Machine() { model.params = tiny_params(); }
   void step(std::uint32_t late = 0, std::uint32_t new_faults = 0) {
     input.stale_ticks = late;
-    advance_mode(model, input, new_faults, late, safety);
+    advance_mode(model, input, {new_faults, late, late_fault, pressed}, safety);
   }
   void arm() {
     input.commands = Command::kArm;
@@ -93,8 +95,8 @@ TEST(ModeMachine, MissedDeadlinesLatchTheirOwnFault) {
   Machine m;
   m.arm();
   m.run(300);
-  m.input.overrun_ticks = 25;
-  advance_mode(m.model, m.input, 0, 25, m.safety);
+  m.late_fault = Fault::kStalled;
+  m.step(25);
   EXPECT_EQ(m.safety.fault, Fault::kStalled);
   EXPECT_EQ(m.safety.mode, Mode::kRamp);
 }
@@ -149,6 +151,40 @@ TEST(ModeMachine, StopRampsToIdleFromForceAndHold) {
   }
 }
 
+TEST(ModeMachine, ADeviceThatDoesNotHearRampsOutAndBackIn) {
+  Machine m;
+  m.arm();
+  m.run(300);
+  m.input.commands = Command::kUnheard;
+  m.run(10);
+  EXPECT_EQ(m.safety.mode, Mode::kRamp);
+  EXPECT_NEAR(m.safety.ramp, 0.5, 1e-12);
+  m.run(20);
+  EXPECT_EQ(m.safety.mode, Mode::kRamp) << "waiting to be heard again is neither rest nor a fault";
+  EXPECT_EQ(m.safety.ramp, 0);
+  m.input.commands = 0;
+  m.step();
+  EXPECT_EQ(m.safety.mode, Mode::kForce);
+  EXPECT_NEAR(m.safety.ramp, 1.0 / 200, 1e-12);
+}
+
+TEST(ModeMachine, DoesNotArmUnheardOrPressed) {
+  Machine m;
+  m.input.commands = Command::kArm | Command::kUnheard;
+  m.step();
+  EXPECT_EQ(m.safety.mode, Mode::kIdle);
+  m.input.commands = 0;
+  m.step();
+  m.pressed = true;
+  m.arm();
+  EXPECT_EQ(m.safety.mode, Mode::kIdle);
+  m.pressed = false;
+  m.step();
+  EXPECT_EQ(m.safety.mode, Mode::kIdle) << "a refused edge is gone";
+  m.arm();
+  EXPECT_EQ(m.safety.mode, Mode::kForce);
+}
+
 TEST(ModeMachine, SilenceWhileIdleIsNoFault) {
   Machine m;
   for (std::uint32_t late = 1; late < 100; ++late) m.step(late);
@@ -166,8 +202,9 @@ TEST(ModeMachine, PropertiesHoldForRandomSequences) {
     std::uint32_t late = 0;
     for (int i = 0; i < 500; ++i) {
       const SafetyState before = m.safety;
-      m.input.commands = random() % 10 == 0 ? static_cast<std::uint32_t>(random() % 8) : 0;
-      m.input.device_fault = random() % 100 == 0 ? 1u << (random() % 10) : 0;
+      m.input.commands = random() % 10 == 0 ? static_cast<std::uint32_t>(random() % 32) : 0;
+      m.input.device_fault = random() % 100 == 0 ? 1u << (random() % 14) : 0;
+      m.pressed = random() % 4 == 0;
       late = random() % 6 == 0 ? late + 1 : (random() % 3 == 0 ? late + 1 : 0);
       m.step(late);
       armed_edge |= (m.input.commands & Command::kArm) != 0;

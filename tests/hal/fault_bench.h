@@ -20,14 +20,14 @@
 
 namespace palpate::test {
 
-// The hand presses the ball 5 mm beyond touch into the middle of a face and slides a little, from 0.1 s on.
+// The hand reaches 15 mm beyond touch into the middle of a face (3 N) and slides a little, from 0.1 s on.
 inline HandPath pressing_hand() {
   const double face_m = 0.03 / std::sqrt(3.0);
   const Vec3 outward = (-1 / std::sqrt(3.0)) * Vec3{1, 1, 1};
   const auto at = [&](double gap_m) { return (face_m + 0.01 + gap_m) * outward; };
   const Vec3 along{0.002, -0.002, 0};
   return HandPath(
-      {{0, {at(0.004), {}}}, {0.1, {at(0.004), {}}}, {0.3, {at(-0.005), {}}}, {1.2, {at(-0.005) + along, {}}}});
+      {{0, {at(0.004), {}}}, {0.1, {at(0.004), {}}}, {0.3, {at(-0.015), {}}}, {1.2, {at(-0.015) + along, {}}}});
 }
 
 // The device lives on its own clock: every receive() of the controller first lets it do the periods that have passed.
@@ -47,6 +47,7 @@ class WiredDevice {
     while (due_ns_ <= clock_.now_ns()) {
       player_->advance();
       node_->step(due_ns_);
+      motor_N_.push_back(node_->plant().motor().force_N);
       due_ns_ += player_->period_ns();
     }
     bus_->receive(sample);
@@ -58,6 +59,7 @@ class WiredDevice {
   DeviceNode& node() { return *node_; }
   const BusCounters& counters() const { return bus_->counters(); }
   const DeviceCommand& last_sent() const { return last_sent_; }
+  const std::vector<Vec3>& motor_N() const { return motor_N_; }
 
  private:
   const VirtualClock& clock_;
@@ -69,6 +71,7 @@ class WiredDevice {
   std::unique_ptr<FaultPlayer> player_;
   std::unique_ptr<DeviceBus> bus_;
   DeviceCommand last_sent_;
+  std::vector<Vec3> motor_N_;
   std::int64_t due_ns_ = 1'000'000;  // its tick n falls into record n
 };
 
@@ -131,11 +134,13 @@ struct FaultRun {
   BusCounters counters;
   DeviceCommand last_sent;
   Wrench last_motor;
+  std::vector<Vec3> motor_N;  // rendered in each period of the device
 };
 
-inline FaultRun run_with_faults(const std::string& script, std::uint64_t ticks = 1500,
-                                WireProfile profile = WireProfile::kFd, double rate_max_N_per_s = 2e4,
-                                const Meddle& meddle = {}) {
+// The real tick and loop on `device`, whose time `clock` is.
+template <class D>
+FaultRun run_on(D& device, VirtualClock& clock, std::uint64_t ticks, double rate_max_N_per_s = 2e4,
+                const Meddle& meddle = {}) {
   ImageBytes image = tiny_image();
   image.params().force_rate_max_N_per_s = rate_max_N_per_s;
   image.seal();
@@ -145,8 +150,6 @@ inline FaultRun run_with_faults(const std::string& script, std::uint64_t ticks =
   const auto scratch = make_scratch(model);
   reset(*state);
   ModelController core(model, *state, *scratch);
-  VirtualClock clock;
-  WiredDevice device(script, profile, clock);
   RecordList recorder;
   BenchHost host;
   host.writer.set(Command::kArm, false);
@@ -161,12 +164,22 @@ inline FaultRun run_with_faults(const std::string& script, std::uint64_t ticks =
   FaultRun run;
   run.limits = model.params;
   run.summary = loop.run();
+  run.records = std::move(recorder.records);
+  return run;
+}
+
+inline FaultRun run_with_faults(const std::string& script, std::uint64_t ticks = 1500,
+                                WireProfile profile = WireProfile::kFd, double rate_max_N_per_s = 2e4,
+                                const Meddle& meddle = {}) {
+  VirtualClock clock;
+  WiredDevice device(script, profile, clock);
+  FaultRun run = run_on(device, clock, ticks, rate_max_N_per_s, meddle);
   DeviceSample sample;
   clock.advance(1'000'000);
   device.receive(sample);  // the device's last period: it takes what the loop sent last
-  run.records = std::move(recorder.records);
   run.counters = device.counters();
   run.last_sent = device.last_sent();
+  run.motor_N = device.motor_N();
   run.last_motor = device.node().plant().motor();
   return run;
 }

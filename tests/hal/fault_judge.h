@@ -17,7 +17,7 @@ inline std::string at_fault(const std::string& fault) { return "0.8 " + fault; }
 // What holds whatever happens.
 inline void expect_orderly(const FaultRun& run, std::uint64_t missed_slots = 0) {
   const ModelParams& limits = run.limits;
-  const double step_N = limits.force_rate_max_N_per_s * limits.period_s;
+  const double step_N = min_of(limits.force_rate_max_N_per_s * limits.period_s, kOutputStepShare * limits.force_max_N);
   ASSERT_EQ(run.records.size(), run.summary.ticks);
   for (std::size_t i = 0; i < run.records.size(); ++i) {
     const Output& output = run.records[i].output;

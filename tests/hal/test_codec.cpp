@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <limits>
 #include <random>
 #include <sstream>
 #include <string>
@@ -50,7 +51,7 @@ TEST(Codec, ChecksumsGiveTheirPublishedCheckValues) {
 TEST(Codec, StatusBytesAreWhereTheDocumentSays) {
   const Bytes p = encoded<Status, kStatusBytes>(sample_status());
   const Bytes head = {0x34, 0x12, 0xCD, 0xAB, 0x03, 0x00, 0x81, 0x07, 0xEF, 0xBE, 0xAD, 0xDE, 0xFF, 0xFF, 0xFF,
-                      0x56, 0x34, 0x12, 0x00, 0x00, 0x80, 0xFF, 0x7F, 0x00, 0x80, 0x01, 0x00, 0xFE, 0xFF, 0x01};
+                      0x56, 0x34, 0x12, 0x00, 0x00, 0x80, 0xFF, 0x7F, 0x00, 0x80, 0x01, 0x00, 0xFE, 0xFF, 0x02};
   EXPECT_EQ(Bytes(p.begin(), p.end() - 2), head);
   Bytes covered = {0x81, 0x01};  // identifier 0x181, low byte first
   covered.insert(covered.end(), head.begin(), head.end());
@@ -73,7 +74,7 @@ TEST(Codec, RoundTripsEveryMessage) {
   ClassicTorque torque_back;
   EXPECT_EQ(decode(encoded<ClassicTorque, 8>(torque), 1, torque_back), DecodeResult::kOk);
   EXPECT_EQ(torque_back, torque);
-  const ClassicOrientation orientation{200, 33, 15, 3, {-2048, 2047, -1}};
+  const ClassicOrientation orientation{14, 33, 3, 61, 3, {-2048, 2047, -1}};
   ClassicOrientation orientation_back;
   EXPECT_EQ(decode(encoded<ClassicOrientation, 8>(orientation), 1, orientation_back), DecodeResult::kOk);
   EXPECT_EQ(orientation_back, orientation);
@@ -109,7 +110,7 @@ TEST(Codec, EverySingleBitErrorIsDetected) {
   expect_every_bit_guarded<ClassicForce, 8>({3, {1, 2, 3}});
   expect_every_bit_guarded<ClassicTorque, 8>({3, 1, {1, 2, 3}});
   expect_every_bit_guarded<ClassicPosition, 8>({3, {1, 2, 3}});
-  expect_every_bit_guarded<ClassicOrientation, 8>({3, 1, 0, 2, {1, 2, 3}});
+  expect_every_bit_guarded<ClassicOrientation, 8>({3, 1, 0, 7, 2, {1, 2, 3}});
 }
 
 TEST(Codec, AFrameOfAnotherNodeOrMessageIsRefused) {
@@ -140,6 +141,41 @@ TEST(Codec, RandomBytesAreAcceptedNoMoreOftenThanChance) {
   EXPECT_LE(narrow, 781 + 6 * 28);
 }
 
+// Planted once as (45, 0, 30) N sent as (32.8, 0, 30): each axis cut by itself turns the force by 8.9 degrees.
+TEST(Codec, AWrenchBeyondTheRangeKeepsItsDirection) {
+  Command command;
+  Vec3 force_N, torque_Nm;
+  set_wrench(command, {45, 0, 30}, {0.5, -50, 10});
+  get_wrench(command, force_N, torque_Nm);
+  EXPECT_NEAR(force_N.x, 32.767, 1e-9);
+  EXPECT_NEAR(force_N.z, 32.767 * 30 / 45, 1e-3);
+  EXPECT_NEAR(torque_Nm.y, -3.2767, 1e-9);
+  EXPECT_NEAR(torque_Nm.z, 3.2767 / 5, 1e-4);
+  ClassicForce force;
+  ClassicTorque torque;
+  set_wrench(force, torque, {-400, 4, 0}, {0, 0, 8.192});
+  get_wrench(force, torque, force_N, torque_Nm);
+  EXPECT_NEAR(force_N.y / force_N.x, -0.01, 1e-4);
+  EXPECT_NEAR(torque_Nm.z, 8191 * 0.0005, 1e-9);
+  set_wrench(command, {std::numeric_limits<double>::infinity(), 1, 0}, {});
+  EXPECT_EQ(command.force[0], 0);
+}
+
+// What is no rotation is not made one on the way: the reader judges it.
+TEST(Codec, AQuaternionIsNotNormalisedOnTheWay) {
+  Status status;
+  Vec3 position_m;
+  Quat q;
+  get_pose(status, position_m, q);
+  EXPECT_EQ(q, (Quat{0, 0, 0, 0}));
+  ClassicPosition position;
+  ClassicOrientation orientation;
+  orientation.component[0] = orientation.component[1] = orientation.component[2] = 2047;  // 1.5 together
+  get_pose(position, orientation, position_m, q);
+  EXPECT_EQ(q.w, 0);
+  EXPECT_NEAR(q.x * q.x + q.y * q.y + q.z * q.z, 1.505, 1e-3);
+}
+
 Quat random_rotation(std::mt19937& random) {
   std::normal_distribution<double> normal;
   return normalised({normal(random), normal(random), normal(random), normal(random)});
@@ -156,6 +192,8 @@ TEST(Codec, PosesSurviveWithinHalfACount) {
     Vec3 p_back;
     Quat q_back;
     get_pose(status, p_back, q_back);
+    EXPECT_NEAR(q_back.w * q_back.w + q_back.x * q_back.x + q_back.y * q_back.y + q_back.z * q_back.z, 1, 1e-4);
+    q_back = normalised(q_back);
     EXPECT_NEAR(p_back.x, p.x, 0.5001e-7);
     EXPECT_NEAR(p_back.z, p.z, 0.5001e-7);
     EXPECT_LT(norm(small_rotation_vector(q_back * conjugate(q))), 1e-4);  // 4 half counts of 2^-15, doubled
@@ -184,7 +222,7 @@ TEST(Codec, WrenchesSurviveSaturateAndNeverCarryNan) {
   Vec3 f, t;
   get_wrench(force, torque, f, t);
   EXPECT_DOUBLE_EQ(f.z, 3.0);
-  EXPECT_DOUBLE_EQ(t.y, -0.2);
+  EXPECT_NEAR(t.y, -0.2 * 8191 * 0.0005 / 99, 0.00025);  // cut as a whole
   EXPECT_DOUBLE_EQ(t.z, 8191 * 0.0005);
 }
 

@@ -1,6 +1,7 @@
 // Loopback, device bus, node and fault decorator: every scripted fault ends in a counted effect and never in a wrong
 // sample or force.
 #include <gtest/gtest.h>
+#include <linux/can.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -33,9 +34,10 @@ struct Rig {
     node.step(now_ns += kPeriod_ns);
     DeviceSample sample;
     bus.receive(sample);
-    bus.transmit({force_N, {}, CommandFlag::kEnable});
+    bus.transmit({force_N, {}, sent++ < 2 ? 0u : CommandFlag::kEnable});  // an edge, without which no force
     return sample;
   }
+  int sent = 0;
   std::string error;
   std::pair<std::unique_ptr<Transport>, std::unique_ptr<Transport>> pair;
   FaultTransport faulty;
@@ -60,8 +62,9 @@ TEST_P(BothProfiles, SamplesAndCommandsCrossBothWays) {
   EXPECT_EQ(rig.bus.counters().accepted, 5u);
   EXPECT_EQ(rig.node.counters().commands, 4u);
   EXPECT_EQ(rig.bus.counters().lost + rig.node.counters().lost + rig.node.counters().bad, 0u);
+  EXPECT_EQ(rig.bus.sent_sequence() - rig.bus.obeyed_sequence(), 1u);
+  EXPECT_EQ(sample.command_lag, 0u) << "when it came, nothing newer had been sent";
   if (GetParam() == WireProfile::kFd) {
-    EXPECT_EQ(rig.bus.sent_sequence() - rig.bus.obeyed_sequence(), 1u);
     EXPECT_EQ(sample.device_time_us, 5000u);
   }
 }
@@ -134,8 +137,8 @@ TEST(Faults, ClassicHalvesThatDoNotMatchAreNotCombined) {
   auto [host, device] = open_loopback_pair(error);
   DeviceBus bus(*host, WireProfile::kClassic);
   Frame a[2], b[2];
-  make_status_frames(1, wire::ClassicPosition{1, {}}, wire::ClassicOrientation{1, 1, 0, 0, {}}, a);
-  make_status_frames(1, wire::ClassicPosition{2, {}}, wire::ClassicOrientation{2, 1, 0, 0, {}}, b);
+  make_status_frames(1, wire::ClassicPosition{1, {}}, wire::ClassicOrientation{1, 1, 0, 0, 0, {}}, a);
+  make_status_frames(1, wire::ClassicPosition{2, {}}, wire::ClassicOrientation{2, 1, 0, 0, 0, {}}, b);
   const Frame mixed[2] = {a[0], b[1]};
   device->send(mixed);
   DeviceSample sample;
@@ -162,7 +165,7 @@ TEST(Faults, AFullQueueDropsTheCommandAndIsCounted) {
   EXPECT_EQ(rig.node.counters().lost, 2u);
 }
 
-TEST(Node, WatchdogDropsTheForceAndRecovers) {
+TEST(Node, WatchdogDropsTheForceAndLatches) {
   Rig rig(WireProfile::kFd, {{10, 30, TransportFault::kLoseSent}});
   for (int i = 0; i < 12; ++i) rig.tick({1, 0, 0});
   EXPECT_EQ(rig.node.plant().motor().force_N.x, 1.0);
@@ -171,9 +174,45 @@ TEST(Node, WatchdogDropsTheForceAndRecovers) {
   EXPECT_EQ(rig.node.counters().watchdog, 1u);
   EXPECT_EQ(rig.node.plant().motor().force_N, Vec3{});
   EXPECT_EQ(sample.flags & DeviceFlag::kWatchdog, DeviceFlag::kWatchdog);
-  for (int i = 38; i < 50; ++i) sample = rig.tick({1, 0, 0});
+  for (int i = 38; i < 60; ++i) sample = rig.tick({1, 0, 0});
+  EXPECT_EQ(rig.node.plant().motor().force_N, Vec3{}) << "commands alone do not bring it back";
+  EXPECT_EQ(sample.flags & (DeviceFlag::kWatchdog | DeviceFlag::kEnabled), DeviceFlag::kWatchdog);
+  EXPECT_EQ(rig.node.counters().watchdog, 1u);
+  rig.sent = 0;  // two commands without enable, then with it
+  for (int i = 0; i < 6; ++i) sample = rig.tick({1, 0, 0});
   EXPECT_EQ(rig.node.plant().motor().force_N.x, 1.0);
-  EXPECT_EQ(sample.flags & DeviceFlag::kWatchdog, 0u);
+  EXPECT_EQ(sample.flags & (DeviceFlag::kWatchdog | DeviceFlag::kEnabled), DeviceFlag::kEnabled);
+}
+
+// A node that has just got power renders nothing for a controller that has been enabling all along.
+TEST(Node, AfterPowerUpNeedsAnEnableEdge) {
+  Rig rig;
+  rig.sent = 2;
+  DeviceSample sample;
+  for (int i = 0; i < 10; ++i) sample = rig.tick({1, 0, 0});
+  EXPECT_EQ(rig.node.plant().motor().force_N, Vec3{});
+  EXPECT_EQ(sample.flags & DeviceFlag::kWatchdog, DeviceFlag::kWatchdog);
+  rig.node.set_powered(false);
+  rig.tick();
+  rig.node.set_powered(true);
+  for (int i = 0; i < 10; ++i) rig.tick({1, 0, 0});
+  EXPECT_EQ(rig.node.plant().motor().force_N, Vec3{});
+}
+
+// Lost and late commands, the watchdog: the hand gets a slope of a tenth of the motors' limit a millisecond, no step.
+TEST(Node, ChangesItsForceNoFasterThanItsSlewLimit) {
+  Rig rig(WireProfile::kFd, {{40, 10, TransportFault::kLoseSent}, {60, 40, TransportFault::kLoseSent}});
+  double last_N = 0, largest_N = 0, top_N = 0;
+  for (int i = 0; i < 120; ++i) {
+    rig.tick({i < 45 ? 8.0 : -8.0, 0, 0});
+    const double now_N = rig.node.plant().motor().force_N.x;
+    largest_N = max_of(largest_N, abs_of(now_N - last_N));
+    top_N = max_of(top_N, now_N);
+    last_N = now_N;
+  }
+  EXPECT_NEAR(top_N, 8, 1e-9);
+  EXPECT_NEAR(largest_N, 0.85, 1e-9);
+  EXPECT_EQ(last_N, 0) << "the watchdog tripped and nothing enabled it anew";
 }
 
 TEST(Node, EmergencyStopAndErrorCutTheForceAndReachTheController) {
@@ -221,14 +260,99 @@ TEST(DeviceBus, AnotherProtocolVersionIsRefused) {
   auto [host, device] = open_loopback_pair(error);
   DeviceBus bus(*host, WireProfile::kFd);
   wire::Status status;
-  status.version = 2;
+  status.version = 1;
   Frame frames[2];
   make_status_frames(1, status, frames);
   device->send({frames, 1});
   DeviceSample sample;
   bus.receive(sample);
   EXPECT_FALSE(sample.fresh);
-  EXPECT_EQ(bus.counters().malformed, 1u);
+  EXPECT_EQ(bus.counters().version, 1u);
+}
+
+// A reference lost in motion: positions no longer mean a place. Planted once as no fault at all.
+TEST(DeviceBus, ALostCalibrationIsAFaultOfItsOwn) {
+  std::string error;
+  auto [host, device] = open_loopback_pair(error);
+  DeviceBus bus(*host, WireProfile::kFd);
+  DeviceSample sample;
+  bus.receive(sample);
+  EXPECT_EQ(sample.faults, 0u) << "nothing came yet, so nothing is missing";
+  for (const std::uint32_t flags : {DeviceFlag::kCalibrated, 0u, DeviceFlag::kError, DeviceFlag::kCalibrated}) {
+    wire::Status status;
+    status.sequence = bus.newest().sequence + 1;
+    status.flags = flags;
+    Frame frames[2];
+    make_status_frames(1, status, frames);
+    device->send({frames, 1});
+    bus.receive(sample);
+    ASSERT_TRUE(sample.fresh);
+    const std::uint32_t lost = flags == DeviceFlag::kCalibrated ? 0u : Fault::kNotCalibrated;
+    EXPECT_EQ(sample.faults, lost | (flags == DeviceFlag::kError ? Fault::kDeviceReported : 0u)) << flags;
+  }
+}
+
+// Each way a frame can be useless is counted by itself, and the first one is kept for the person who must mend it.
+TEST(DeviceBus, EveryUselessFrameIsCountedByItsCause) {
+  std::string error;
+  auto [host, device] = open_loopback_pair(error);
+  DeviceBus bus(*host, WireProfile::kFd);
+  wire::Status status;
+  status.quaternion[0] = 16384;  // |q|^2 = 0.25
+  Frame good[2], frame;
+  make_status_frames(1, status, good);
+  const auto send = [&](Frame bad) {
+    device->send({&bad, 1});
+    DeviceSample sample;
+    bus.receive(sample);
+    return sample.fresh;
+  };
+  frame = good[0];
+  frame.data[5] ^= 1;
+  EXPECT_FALSE(send(frame));
+  frame = good[0];
+  frame.id += 1;
+  EXPECT_FALSE(send(frame));
+  frame = good[0];
+  frame.length = 24;
+  EXPECT_FALSE(send(frame));
+  frame = good[0];
+  frame.fd = false;
+  frame.length = 8;
+  EXPECT_FALSE(send(frame));
+  EXPECT_TRUE(send(good[0]));
+  const BusCounters& c = bus.counters();
+  EXPECT_EQ(c.frames, 5u);
+  EXPECT_EQ(c.checksum, 1u);
+  EXPECT_EQ(c.identifier, 1u);
+  EXPECT_EQ(c.length, 1u);
+  EXPECT_EQ(c.kind, 1u);
+  EXPECT_EQ(c.orientation, 1u);
+  EXPECT_EQ(c.accepted, 1u);
+  EXPECT_EQ(bus.first_reason(), DropReason::kChecksum);
+  EXPECT_EQ(bus.first_bad().id, 0x181u);
+  EXPECT_EQ(bus.first_bad().data[5], good[0].data[5] ^ 1);
+}
+
+// Extended and remote frames carry other identifiers with the same low bits; they are nobody's samples.
+TEST(Loopback, ExtendedAndRemoteFramesAreCountedNotUsed) {
+  int fd[2];
+  ASSERT_EQ(::socketpair(AF_UNIX, SOCK_SEQPACKET, 0, fd), 0);
+  std::string error;
+  const auto transport = adopt_loopback(fd[0], error);
+  ASSERT_NE(transport, nullptr) << error;
+  for (const std::uint32_t flag : {0u, CAN_EFF_FLAG, CAN_RTR_FLAG}) {
+    canfd_frame raw{};
+    raw.can_id = 0x181u | flag;
+    raw.len = 8;
+    EXPECT_EQ(::send(fd[1], &raw, CAN_MTU, 0), static_cast<ssize_t>(CAN_MTU));
+    EXPECT_EQ(::send(fd[1], &raw, CANFD_MTU, 0), static_cast<ssize_t>(CANFD_MTU));
+  }
+  Frame frames[8];
+  EXPECT_EQ(transport->receive(frames), 2);
+  EXPECT_EQ(transport->counters().malformed, 4u);
+  EXPECT_EQ(transport->state(), TransportState::kUp);
+  ::close(fd[1]);
 }
 
 TEST(Loopback, ForeignDatagramsAreCountedNotUsed) {

@@ -51,7 +51,8 @@ Found read(const std::string& path, const ModelParams& limits, std::string& wron
 }
 
 std::string judge(const Found& found, const ModelParams& limits, const std::string& expected) {
-  const double step_N = limits.force_rate_max_N_per_s * limits.period_s;
+  const double step_N =
+      std::min(limits.force_rate_max_N_per_s * limits.period_s, kOutputStepShare * limits.force_max_N);
   const auto ramp = static_cast<std::uint64_t>(limits.ramp_out_s / limits.period_s + 0.5);
   const std::string name = found.faults == 0 ? "none" : bit_names(fault_bit_texts(), found.faults);
   constexpr double kFelt_N = 0.5;  // a run whose hand felt nothing proves nothing
@@ -73,7 +74,8 @@ int run(char** argument) {
   if (wrong.empty()) wrong = judge(found, limits, argument[3]);
   std::printf("%s %llu ticks, at most %.3f N, largest step %.4f N (allowed %.1f)",
               wrong.empty() ? "kept:" : "BROKEN:", static_cast<unsigned long long>(found.ticks), found.force_N,
-              found.step_N, limits.force_rate_max_N_per_s * limits.period_s);
+              found.step_N,
+              std::min(limits.force_rate_max_N_per_s * limits.period_s, kOutputStepShare * limits.force_max_N));
   if (found.faults != 0) {
     const std::uint64_t after = found.zero_again > found.latched ? found.zero_again - found.latched : 0;
     std::printf(", %s latched at tick %llu, zero force %llu ticks later", argument[3],

@@ -57,6 +57,7 @@ class NodalScene {
     p.force_rate_max_N_per_s = 1e7;
     p.ramp_in_s = 0;
     p.speed_max_m_per_s = 100;
+    p.turn_max_rad_per_s = 30;
     Tool tool = make_tool(pieces);
     image.piece = tool.piece;
     image.tool_point = tool.point;

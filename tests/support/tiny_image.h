@@ -68,6 +68,7 @@ inline ModelParams tiny_params() {
   p.ramp_in_s = 0.2;
   p.ramp_out_s = 0.02;
   p.speed_max_m_per_s = 2;
+  p.turn_max_rad_per_s = 30;
   return p;
 }
 
@@ -114,7 +115,7 @@ inline ImageBytes tiny_image(bool nodal = false) {
   }
   // Each triangle leaves out one corner; across edge (v[k], v[k+1]) lies the triangle that leaves out v[k+2].
   const Triangle triangles[4] = {
-      {{1, 2, 3}, {3, 1, 2}}, {{0, 3, 2}, {2, 0, 3}}, {{0, 1, 3}, {3, 0, 1}}, {{0, 2, 1}, {1, 0, 2}}};
+      {{1, 3, 2}, {2, 1, 3}}, {{0, 2, 3}, {3, 0, 2}}, {{0, 3, 1}, {1, 0, 3}}, {{0, 1, 2}, {2, 0, 1}}};
   for (int i = 0; i < 4; ++i) image.array<Triangle>(kTriangle)[i] = triangles[i];
   BvhNode& node = *image.array<BvhNode>(kBvh);
   node = BvhNode{};
