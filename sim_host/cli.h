@@ -35,6 +35,7 @@ void add_latency_command(CLI::App& app, int& exit_code);
 void add_picture_command(CLI::App& app, int& exit_code);
 void add_grasp_command(CLI::App& app, int& exit_code);
 void add_doctor_command(CLI::App& app, int& exit_code);
+void add_device_test_command(CLI::App& app, int& exit_code);
 
 // --close, --joint and --joints, for commands that drive articulated tools. `options` must outlive the parsing.
 void add_joint_options(CLI::App& command, JointOptions& options);

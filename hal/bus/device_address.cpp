@@ -77,13 +77,14 @@ std::optional<DeviceAddress> parse_device_address(const std::string& text, std::
 std::unique_ptr<Transport> open_transport(const DeviceAddress& address, DeviceSide side, int timeout_ms,
                                           std::string& error) {
   if (address.kind == TransportKind::kLoopback)
-    return side == DeviceSide::kController ? accept_loopback(address.name, timeout_ms, error)
-                                           : connect_loopback(address.name, timeout_ms, error);
+    return side != DeviceSide::kDevice ? accept_loopback(address.name, timeout_ms, error)
+                                       : connect_loopback(address.name, timeout_ms, error);
   if (address.kind == TransportKind::kUsb)
-    return open_usb_hid(address.name, side == DeviceSide::kController ? UsbSide::kController : UsbSide::kDevice, error);
-  const WireIds ids = side == DeviceSide::kController ? status_ids(address.profile, address.node)
-                                                      : command_ids(address.profile, address.node);
-  const std::span<const std::uint32_t> wanted(ids.id, static_cast<std::size_t>(ids.count));
+    return open_usb_hid(address.name, side != DeviceSide::kDevice ? UsbSide::kController : UsbSide::kDevice, error);
+  const WireIds ids = side == DeviceSide::kDevice ? command_ids(address.profile, address.node)
+                                                  : status_ids(address.profile, address.node);
+  const auto count = static_cast<std::size_t>(side == DeviceSide::kObserver ? 0 : ids.count);
+  const std::span<const std::uint32_t> wanted(ids.id, count);
   return open_socketcan({address.name, address.profile == WireProfile::kFd, wanted}, error);
 }
 

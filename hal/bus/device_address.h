@@ -23,7 +23,8 @@ struct DeviceAddress {
 // is allowed; otherwise `line` says in one line what was chosen and why.
 std::optional<DeviceAddress> parse_device_address(const std::string& text, std::string& line, std::string& error);
 
-enum class DeviceSide : int { kController = 0, kDevice = 1 };
+// kObserver: as the controller, but on CAN every frame of the bus is received, to say what came instead of a sample.
+enum class DeviceSide : int { kController = 0, kDevice = 1, kObserver = 2 };
 
 // Opens it: CAN with exact filters for that side; on the loopback the controller listens and the device connects, each
 // for up to timeout_ms. Null and `error` on failure.

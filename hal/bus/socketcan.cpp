@@ -69,9 +69,10 @@ bool set_options(int fd, const SocketCanOptions& options) {
     filters.push_back({id, CAN_EFF_FLAG | CAN_RTR_FLAG | CAN_SFF_MASK});
   const can_err_mask_t errors = CAN_ERR_MASK & ~CAN_ERR_BUSERROR;
   const int on = 1, off = 0;
-  return ::setsockopt(fd, SOL_CAN_RAW, CAN_RAW_FILTER, filters.data(),
-                      static_cast<socklen_t>(filters.size() * sizeof(can_filter))) == 0 &&
-         ::setsockopt(fd, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &errors, sizeof errors) == 0 &&
+  const bool filtered =
+      filters.empty() || ::setsockopt(fd, SOL_CAN_RAW, CAN_RAW_FILTER, filters.data(),
+                                      static_cast<socklen_t>(filters.size() * sizeof(can_filter))) == 0;
+  return filtered && ::setsockopt(fd, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &errors, sizeof errors) == 0 &&
          ::setsockopt(fd, SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, &off, sizeof off) == 0 &&
          (!options.fd || ::setsockopt(fd, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &on, sizeof on) == 0) &&
          ::setsockopt(fd, SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof on) == 0;

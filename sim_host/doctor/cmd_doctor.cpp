@@ -44,6 +44,8 @@ void add_doctor_command(CLI::App& app, int& exit_code) {
     std::vector<DoctorItem> items = examine_machine(sources);
     const std::vector<DoctorItem> device = examine_device(sources, options->device);
     items.insert(items.end(), device.begin(), device.end());
+    const std::vector<DoctorItem> heard = listen_to_device(options->device);
+    items.insert(items.end(), heard.begin(), heard.end());
     fmt::print("{}", doctor_table(items));
     print_summary(items);
     exit_code = kExitOk;

@@ -30,6 +30,9 @@ struct DoctorSources {
 std::vector<DoctorItem> examine_machine(const DoctorSources& sources);
 // The device's bus. `device` is an address as `palpate run --device` takes it (can:IFACE, usb:/dev/hidrawN, loopback).
 std::vector<DoctorItem> examine_device(const DoctorSources& sources, const std::string& device);
+// What the device itself sends, listened to for a second without a word to it. The simulated one of a run of its own
+// ("loopback" without a name) has nothing to listen to: no items.
+std::vector<DoctorItem> listen_to_device(const std::string& device);
 // A table for the terminal, one item a line, remedies indented below what failed.
 std::string doctor_table(const std::vector<DoctorItem>& items);
 // Names of the items that fail, separated by commas; empty when none does.

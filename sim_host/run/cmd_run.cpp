@@ -126,6 +126,8 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command->add_option("--priority", options->priority, "SCHED_FIFO priority of the real-time thread; 0: none")
       ->capture_default_str()
       ->check(CLI::Range(0, 98));
+  command->add_flag("--allow-no-rt", options->allow_no_rt,
+                    "drive a device on can: or usb: although real-time rights were refused");
   command->add_flag("--quiet", options->quiet, "no live status line, no hint about the machine");
   command->add_flag("--live", settings->live, "a table of the times of every stage, refreshed each second");
   command->add_option("--worst", settings->worst, "how many of the worst ticks to list at the end, with their parts")

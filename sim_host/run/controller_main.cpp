@@ -12,6 +12,7 @@
 
 #include "hal/bus/bus_budget.h"
 #include "hal/bus/device_address.h"
+#include "hal/bus/link_report.h"
 #include "hal/bus/loopback.h"
 #include "hal/loop/lockstep.h"
 #include "hal/loop/loop.h"
@@ -43,6 +44,8 @@ constexpr char kHelp[] =
     "  --duration S        stop after S seconds; default: when told to\n"
     "  --cpu N             pin to this CPU; default: any\n"
     "  --priority P        SCHED_FIFO priority 1..98, 0: ordinary scheduling; default 80\n"
+    "  --require-rt        refuse to run without scheduler, memory lock and CPU as asked; default on can: and usb:\n"
+    "  --allow-no-rt       drive a real device without them all the same\n"
     "  --device-turn-fd N, --host-turn-fd N   inherited sockets: virtual time in lock step with them; default: real "
     "time\n"
     "Exit codes: 0 done, 1 a fault was latched, 2 bad arguments or image, 3 device, host or memory unavailable,\n"
@@ -57,6 +60,7 @@ struct Arguments {
   std::string image, device = "auto", crash_file;
   int device_fd = -1, control_fd = -1, cpu = -1, priority = 80;
   int device_turn_fd = -1, host_turn_fd = -1;
+  bool require_rt = false, allow_no_rt = false;
   double duration_s = 0;
   bool virtual_time() const { return device_turn_fd >= 0 || host_turn_fd >= 0; }
 };
@@ -76,13 +80,12 @@ double number(const char* option, const char* text, double lowest, double highes
 
 Arguments parse(int argc, char** argv) {
   Arguments arguments;
-  const option options[] = {{"image", 1, nullptr, 'i'},        {"device", 1, nullptr, 'd'},
-                            {"device-fd", 1, nullptr, 'f'},    {"control-fd", 1, nullptr, 'c'},
-                            {"duration", 1, nullptr, 's'},     {"cpu", 1, nullptr, 'u'},
-                            {"priority", 1, nullptr, 'p'},     {"help", 0, nullptr, 'h'},
-                            {"version", 0, nullptr, 'v'},      {"device-turn-fd", 1, nullptr, 'D'},
-                            {"host-turn-fd", 1, nullptr, 'H'}, {"crash-file", 1, nullptr, 'x'},
-                            {nullptr, 0, nullptr, 0}};
+  const option options[] = {
+      {"image", 1, nullptr, 'i'},          {"device", 1, nullptr, 'd'},       {"device-fd", 1, nullptr, 'f'},
+      {"control-fd", 1, nullptr, 'c'},     {"duration", 1, nullptr, 's'},     {"cpu", 1, nullptr, 'u'},
+      {"priority", 1, nullptr, 'p'},       {"help", 0, nullptr, 'h'},         {"version", 0, nullptr, 'v'},
+      {"device-turn-fd", 1, nullptr, 'D'}, {"host-turn-fd", 1, nullptr, 'H'}, {"crash-file", 1, nullptr, 'x'},
+      {"require-rt", 0, nullptr, 'q'},     {"allow-no-rt", 0, nullptr, 'a'},  {nullptr, 0, nullptr, 0}};
   const auto integer = [](const char* name, double low, double high) {
     return static_cast<int>(number(name, optarg, low, high));
   };
@@ -97,6 +100,8 @@ Arguments parse(int argc, char** argv) {
     if (c == 'p') arguments.priority = integer("--priority", 0, 98);
     if (c == 'D') arguments.device_turn_fd = integer("--device-turn-fd", 0, 1 << 20);
     if (c == 'H') arguments.host_turn_fd = integer("--host-turn-fd", 0, 1 << 20);
+    if (c == 'q') arguments.require_rt = true;
+    if (c == 'a') arguments.allow_no_rt = true;
     if (c == 'h') throw Failure{kOk, kHelp};
     if (c == 'v') throw Failure{kOk, std::string(kBuildId) + "\n"};
     if (c == '?') throw Failure{kUsage, "see palpate-rt --help"};
@@ -187,6 +192,7 @@ LoopOptions loop_options(const Model& model, const Arguments& arguments) {
   options.ticks = static_cast<std::uint64_t>(arguments.duration_s / period_s);
   options.start_timeout_ticks = static_cast<std::uint32_t>(kStartTimeout_s / period_s);
   options.silence_fault_ticks = static_cast<std::uint32_t>(model.params.silence_fault_ticks);
+  options.link = link_limits(model.params);
   // Long enough for the ramp, with room for ticks that come late.
   options.stop_ticks = static_cast<std::uint32_t>(3.0 * model.params.ramp_out_s / period_s) + 20;
   return options;
@@ -232,10 +238,21 @@ RtOptions rt_options(const Arguments& arguments) {
   return options;
 }
 
+// What was refused of that which a loop that drives motors cannot do without.
+std::string missing_rights(const RtSetup& setup, const Arguments& arguments) {
+  std::string missing = arguments.priority == 0 ? "scheduler (--priority 0)" : "";
+  for (const RtVerdict& verdict : setup.verdicts()) {
+    const bool needed = verdict.item == "scheduler" || verdict.item == "memory lock" || verdict.item == "affinity";
+    if (needed && !verdict.ok) missing += (missing.empty() ? "" : ", ") + verdict.item;
+  }
+  return missing;
+}
+
 // The real-time thread: set-up, system-call filter, loop. Prints only before the filter is in place.
 template <Clock C>
 LoopSummary run_loop(const Arguments& arguments, const Model& model, Core& core, HostConnection& host, DeviceBus& bus,
                      C& clock, const std::atomic<bool>& interrupted, LoopUsage& usage) {
+  std::string missing;
   std::atomic<bool> stop{false};
   const auto* mailbox = static_cast<const MailboxRegion*>(host.mailbox.data());
   HostPort port(mailbox, static_cast<std::uint32_t>(kHostSilence_s / model.params.period_s), interrupted, stop);
@@ -248,6 +265,8 @@ LoopSummary run_loop(const Arguments& arguments, const Model& model, Core& core,
   LoopSummary summary;
   std::thread thread([&] {
     const RtSetup setup(rt_options(arguments));
+    if (arguments.require_rt) missing = missing_rights(setup, arguments);
+    if (!missing.empty()) return crash.loop_ended();
     std::string reason = "built with a sanitizer, whose own library maps memory at any time";
     const bool filtered = !kSanitized && install_syscall_filter(reason);
     std::fprintf(stderr, "%s%s\n",
@@ -275,6 +294,12 @@ LoopSummary run_loop(const Arguments& arguments, const Model& model, Core& core,
   if (!host_died && (port.faults() & Fault::kHostSilent) != 0) {
     crash.write(*static_cast<const TelemetryRegion*>(host.telemetry.data()), model, false);
   }
+  if (!missing.empty()) {
+    throw Failure{kUnavailable, "refused: " + missing +
+                                    "; a real device is not driven without real-time rights. Copy "
+                                    "hal/system/palpate-limits.conf to /etc/security/limits.d, see palpate doctor; "
+                                    "--allow-no-rt drives it all the same"};
+  }
   return summary;
 }
 
@@ -293,6 +318,18 @@ LoopSummary run_in_virtual_time(const Arguments& arguments, const Model& model, 
   return summary;
 }
 
+// Always how far commands lagged; what arrived and what to do where something was wrong with it.
+void print_link(const LoopSummary& summary, const DeviceBus& bus, TransportState state) {
+  std::fprintf(stderr, "link: commands at most %u behind, let go %u times (%llu ticks)\n", summary.worst_lag,
+               summary.link_drops, static_cast<unsigned long long>(summary.unheard_ticks));
+  const LinkReport report = report_link(bus, state);
+  constexpr std::uint32_t kOfTheLink = Fault::kDeviceSilent | Fault::kDeviceReported | Fault::kDeviceDeaf |
+                                       Fault::kNotCalibrated | Fault::kSamplesRejected | Fault::kBusOff;
+  if ((summary.faults & kOfTheLink) == 0 && report.good) return;
+  std::fprintf(stderr, "device: %s%s%s\n", report.found.c_str(), report.remedy.empty() ? "" : "\n        -> ",
+               report.remedy.c_str());
+}
+
 void print_usage(const LoopUsage& usage) {
   std::fprintf(stderr, "loop thread: %ld minor and %ld major page faults, %ld waits, %ld preemptions, ",
                usage.thread.minor_faults, usage.thread.major_faults, usage.thread.waits, usage.thread.preemptions);
@@ -301,7 +338,7 @@ void print_usage(const LoopUsage& usage) {
 }
 
 int run(int argc, char** argv) {
-  const Arguments arguments = parse(argc, argv);
+  Arguments arguments = parse(argc, argv);
   const std::atomic<bool>& interrupted = install_stop_signals();
   PrivateFile image;
   const Model model = load_image(arguments.image, image);
@@ -312,17 +349,21 @@ int run(int argc, char** argv) {
   DeviceLock lock;
   const std::unique_ptr<Transport> transport = connect_device(arguments, model.params.period_s, address, lock);
   DeviceBus bus(*transport, address.profile, address.node);
+  const bool real = address.kind != TransportKind::kLoopback;
+  arguments.require_rt = (arguments.require_rt || real) && !arguments.allow_no_rt && !arguments.virtual_time();
   LoopUsage usage;
   MonotonicClock clock;
   const LoopSummary summary = arguments.virtual_time()
                                   ? run_in_virtual_time(arguments, model, core, host, bus, interrupted, usage)
                                   : run_loop(arguments, model, core, host, bus, clock, interrupted, usage);
   if (summary.end == LoopEnd::kSilentAtStart) {
-    throw Failure{kSilentAtStart, "the device sent nothing at start: check power, cable, bus and node number"};
+    const LinkReport report = report_link(bus, transport->state());
+    throw Failure{kSilentAtStart, "no sample at start: " + report.found + "; " + report.remedy};
   }
   std::fprintf(stderr, "controller: %llu ticks, %llu missed, %llu without a fresh sample, faults 0x%x\n",
                static_cast<unsigned long long>(summary.ticks), static_cast<unsigned long long>(summary.missed_slots),
                static_cast<unsigned long long>(summary.stale_ticks), summary.faults);
+  print_link(summary, bus, transport->state());
   print_usage(usage);
   return summary.faults != 0 ? kFaulted : kOk;
 }

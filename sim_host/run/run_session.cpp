@@ -70,6 +70,7 @@ std::vector<std::string> controller_arguments(const RunOptions& options, const s
                                      device,    "--priority", std::to_string(options.priority)};
   if (!options.record.empty()) arguments.insert(arguments.end(), {"--crash-file", crash_path(options.record)});
   if (options.cpu >= 0) arguments.insert(arguments.end(), {"--cpu", std::to_string(options.cpu)});
+  if (options.allow_no_rt) arguments.emplace_back("--allow-no-rt");
   if (device_inherited) {
     arguments.insert(arguments.end(), {"--device-fd", std::to_string(ControllerLink::kDeviceDescriptor)});
   }

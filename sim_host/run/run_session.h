@@ -29,6 +29,7 @@ struct RunOptions {
   std::string image;               // where to write the image of a .toml scene; empty: beside the recording
   int cpu = -1;                    // of the real-time thread; -1: any
   int priority = 80;               // SCHED_FIFO; 0: ordinary scheduling
+  bool allow_no_rt = false;        // drive a real device although real-time rights were refused
   bool quiet = false;              // no live status line
   bool arm = true;                 // false: never armed, hence zero force throughout; every stage computes all the same
   bool repeat_path = false;        // the simulated hand repeats the scene's own motion for the whole duration

@@ -1,0 +1,61 @@
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <memory>
+#include <stdexcept>
+
+#include "hal/bus/device_address.h"
+#include "hal/loop/clock.h"
+#include "sim_host/cli.h"
+#include "sim_host/doctor/device_test.h"
+
+namespace palpate {
+
+namespace {
+
+int run_device_test(const std::string& device) {
+  std::string line, error;
+  const std::optional<DeviceAddress> address = parse_device_address(device, line, error);
+  if (!address) throw std::runtime_error(error);
+  fmt::print("{}\n", line);
+  constexpr int kTimeout_ms = 10'000;
+  const std::unique_ptr<Transport> transport = open_transport(*address, DeviceSide::kController, kTimeout_ms, error);
+  if (!transport) {
+    fmt::print(stderr, "palpate: {}\n", error);
+    return kExitUnavailable;
+  }
+  MonotonicClock clock;
+  constexpr std::int64_t kPeriod_ns = 1'000'000;
+  std::int64_t deadline_ns = clock.now_ns();
+  DeviceTest test(*transport, address->profile, address->node,
+                  [&] { clock.wait_until(deadline_ns = std::max(deadline_ns + kPeriod_ns, clock.now_ns())); });
+  const std::vector<DoctorItem> rows = test.run();
+  fmt::print("{}", doctor_table(rows));
+  const auto failed =
+      std::count_if(rows.begin(), rows.end(), [](const DoctorItem& row) { return row.verdict == Verdict::kFail; });
+  fmt::print("{} rules: {} broken. No command carried a force.\n", rows.size(), failed);
+  return failed == 0 ? kExitOk : kExitFailed;
+}
+
+}  // namespace
+
+void add_device_test_command(CLI::App& app, int& exit_code) {
+  auto device = std::make_shared<std::string>();
+  CLI::App* command = app.add_subcommand(
+      "device-test", "Grade a device's firmware by the wire protocol's rules, with zero force throughout");
+  command->add_option("ADDRESS", *device, "can:IFACE, usb:/dev/hidrawN or loopback:NAME, with ,classic and ,node=N")
+      ->required();
+  command->footer(
+      "It takes the controller's place for 2 s: nothing else may drive the device meanwhile. Commands are lost, late,\n"
+      "repeated, spoilt and withheld; each row says what the device made of it and, where a rule of\n"
+      "docs/wire_protocol.md is broken, what its firmware should do. Exits with 1 when a rule is broken, 3 when the\n"
+      "device cannot be opened. On a machine that stands still for milliseconds a row can fail by itself: repeat it.\n"
+      "Examples:\n"
+      "  palpate device-test can:can0\n"
+      "  palpate device-test can:can0,classic,node=3\n"
+      "  palpate-device --device loopback:x & palpate device-test loopback:x");
+  command->callback([device, &exit_code] { exit_code = run_device_test(*device); });
+}
+
+}  // namespace palpate

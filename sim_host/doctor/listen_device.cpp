@@ -1,0 +1,29 @@
+#include <memory>
+
+#include "hal/bus/device_address.h"
+#include "hal/bus/link_report.h"
+#include "hal/loop/clock.h"
+#include "sim_host/doctor/doctor.h"
+
+namespace palpate {
+
+std::vector<DoctorItem> listen_to_device(const std::string& device) {
+  std::string line, error;
+  const std::optional<DeviceAddress> address = parse_device_address(device, line, error);
+  if (!address || (address->kind == TransportKind::kLoopback && address->name == DeviceAddress{}.name)) return {};
+  constexpr int kTimeout_ms = 2000;
+  const std::unique_ptr<Transport> transport = open_transport(*address, DeviceSide::kObserver, kTimeout_ms, error);
+  if (!transport) return {{"device answers", Verdict::kFail, error, "palpate device-test says more once it opens"}};
+  DeviceBus bus(*transport, address->profile, address->node);
+  DeviceSample sample;
+  MonotonicClock clock;
+  constexpr int kPeriods = 1000;
+  for (int i = 0; i < kPeriods; ++i) {
+    clock.wait_until(clock.now_ns() + 1'000'000);
+    bus.receive(sample);
+  }
+  const LinkReport report = report_link(bus, transport->state());
+  return {{"device answers", report.good ? Verdict::kPass : Verdict::kFail, report.found, report.remedy}};
+}
+
+}  // namespace palpate
