@@ -75,7 +75,7 @@ std::vector<Frame> frames_of(std::span<const std::uint8_t> input) {
 }
 
 bool sane(const DeviceSample& sample) {
-  return is_finite(sample.position_m) && is_finite(sample.velocity_m_per_s) && is_finite(sample.orientation.w) &&
+  return is_finite(sample.position_m) && is_finite(sample.orientation.w) &&
          is_finite(sample.orientation.x) && is_finite(sample.orientation.y) && is_finite(sample.orientation.z) &&
          norm(sample.position_m) < 2;
 }
