@@ -1,6 +1,6 @@
 #include "rt_core/contact/contact.h"
 
-#include "rt_core/stages.h"
+#include "rt_core/tick.h"
 #include "rt_core/tool/articulate.h"
 
 namespace palpate {

@@ -7,7 +7,7 @@
 #include "rt_core/contact/friction.h"
 #include "rt_core/contact/region_solve.h"
 #include "rt_core/state.h"
-#include "rt_core/tool/carrier.h"
+#include "rt_core/tool/articulate.h"
 
 namespace palpate {
 

@@ -1,6 +1,6 @@
 #include "rt_core/contact/regions.h"
 
-#include "rt_core/tool/carrier.h"
+#include "rt_core/tool/articulate.h"
 
 namespace palpate {
 

@@ -72,4 +72,16 @@ using StillTouching = bool (*)(const Model& model, State& state, Scratch& scratc
 // Writes state.region (identity part), state.point.region, contact.region. Status: kRegionsDropped.
 void group_points(const Model& model, State& state, Scratch& scratch, StillTouching still_touching) PALPATE_RT;
 
+// Rows of points and tips: tool points on the rest surface, as a god-object's proxies (touch.cpp).
+
+// Closest rest-surface point of every tool point that can have reached it. Writes state.point (but region),
+// scratch.contact, contact_count, foot. Bound: n_tool_point hierarchy queries. Status: kContactsDropped,
+// kTraversalTruncated, kFootHeld.
+void collide(const Model& model, State& state, Scratch& scratch) PALPATE_RT;
+
+// Whether the piece last at this region may still touch the surface there: tool points only sample the piece, so a flat
+// face can touch between them. An overlap test of the piece against the surface triangle it last touched; inconclusive
+// counts as touching, since "could not decide" must never be read as "no contact". Status: kOverlapInconclusive.
+bool still_touching(const Model& model, State& state, Scratch& scratch, const Region& region) PALPATE_RT;
+
 }  // namespace palpate

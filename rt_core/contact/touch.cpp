@@ -1,9 +1,9 @@
-#include "rt_core/contact/touch.h"
+#include "rt_core/contact/regions.h"
 
 #include "rt_core/surface/closest_point.h"
 #include "rt_core/surface/overlap.h"
 #include "rt_core/surface/smooth_foot.h"
-#include "rt_core/tool/carrier.h"
+#include "rt_core/tool/articulate.h"
 
 namespace palpate {
 

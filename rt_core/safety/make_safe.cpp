@@ -1,7 +1,7 @@
 // The last stage of every tick, in every mode, for every model:
 //   wrench of the virtual coupling -> finite? -> magnitude -> mode gain -> rate.
 #include "rt_core/safety/mode_machine.h"
-#include "rt_core/stages.h"
+#include "rt_core/tick.h"
 #include "rt_core/tool/virtual_coupling.h"
 
 namespace palpate {

@@ -1,4 +1,4 @@
-#include "rt_core/stages.h"
+#include "rt_core/tick.h"
 #include "rt_core/tool/virtual_coupling.h"
 
 namespace palpate {

@@ -1,7 +1,7 @@
 #include "rt_core/skeleton/beam_table.h"
 
 #include "rt_core/cholesky.h"
-#include "rt_core/skeleton/ratio_scales.h"
+#include "rt_core/skeleton/skeleton.h"
 
 namespace palpate {
 namespace {

@@ -1,7 +1,6 @@
 #include "rt_core/skeleton/skeleton.h"
 
 #include "rt_core/cholesky.h"
-#include "rt_core/skeleton/ratio_scales.h"
 
 namespace palpate {
 namespace {

@@ -1,8 +1,7 @@
 #include "rt_core/tool/articulate.h"
 
 #include "rt_core/math.h"
-#include "rt_core/stages.h"
-#include "rt_core/tool/carrier.h"
+#include "rt_core/tick.h"
 
 namespace palpate {
 

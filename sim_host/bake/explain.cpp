@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "rt_core/state.h"
-#include "rt_core/tool/carrier.h"
+#include "rt_core/tool/articulate.h"
 #include "sim_host/bake/data_readers.h"
 #include "sim_host/status_text.h"
 

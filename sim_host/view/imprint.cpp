@@ -5,7 +5,7 @@
 
 #include "config/hand/hand_model.h"
 #include "rt_core/contact/regions.h"
-#include "rt_core/tool/carrier.h"
+#include "rt_core/tool/articulate.h"
 
 namespace palpate {
 

@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "config/hand/hand_model.h"
-#include "rt_core/tool/carrier.h"
+#include "rt_core/tool/articulate.h"
 #include "sim_host/view/anchors.h"
 #include "sim_host/view/plot.h"
 #include "sim_host/view/png_file.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "config/hand/hand_model.h"
-#include "rt_core/tool/carrier.h"
+#include "rt_core/tool/articulate.h"
 #include "sim_host/view/hand_mesh.h"
 #include "sim_host/view/picture.h"
 

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "rt_core/contact/regions.h"
-#include "rt_core/tool/carrier.h"
+#include "rt_core/tool/articulate.h"
 #include "sim_host/view/anchors.h"
 #include "sim_host/view/displacement_angle.h"
 

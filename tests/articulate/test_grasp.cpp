@@ -9,7 +9,7 @@
 #include <set>
 
 #include "config/hand/hand_model.h"
-#include "rt_core/tool/carrier.h"
+#include "rt_core/tool/articulate.h"
 #include "sim_host/bake/scene_model.h"
 #include "sim_host/press/grasp_run.h"
 #include "sim_host/record/state_dump.h"

@@ -5,7 +5,7 @@
 
 #include "config/scene/config_error.h"
 #include "rt_core/image_check.h"
-#include "rt_core/tool/carrier.h"
+#include "rt_core/tool/articulate.h"
 #include "tests/support/baked_scene.h"
 
 namespace palpate::test {

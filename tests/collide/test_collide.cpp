@@ -5,7 +5,7 @@
 #include <limits>
 #include <memory>
 
-#include "rt_core/contact/touch.h"
+#include "rt_core/contact/regions.h"
 #include "rt_core/surface/closest_point.h"
 #include "tests/collide/pieces.h"
 #include "tests/support/roomy.h"

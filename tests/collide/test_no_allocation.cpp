@@ -6,7 +6,6 @@
 #include <memory>
 
 #include "rt_core/contact/regions.h"
-#include "rt_core/contact/touch.h"
 #include "rt_core/surface/overlap.h"
 #include "sim_host/run/heap_count.h"
 #include "tests/collide/pieces.h"

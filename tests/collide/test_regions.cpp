@@ -7,7 +7,6 @@
 #include <set>
 
 #include "rt_core/contact/regions.h"
-#include "rt_core/contact/touch.h"
 #include "tests/collide/pieces.h"
 #include "tests/support/roomy.h"
 

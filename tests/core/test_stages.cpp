@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "rt_core/tick.h"
+#include "sim_host/tick_memory.h"
 #include "tests/support/tiny_image.h"
 
 namespace palpate::test {
@@ -62,8 +63,8 @@ TEST(Stages, TheProbeIsToldOfEachOnceInOrder) {
   ImageBytes image = tiny_image();
   Model model;
   ASSERT_EQ(open_image(image.bytes(), model).error, ImageError::kNone);
-  const auto state = std::make_unique<State>();
-  const auto scratch = std::make_unique<Scratch>();
+  const StatePtr state = make_state(model);
+  const ScratchPtr scratch = make_scratch(model);
   Output output;
   std::int32_t seen = 0;
   tick(model, *state, *scratch, {}, output, {note, &seen});

@@ -44,7 +44,7 @@ TEST(WorstTicks, TableHasTheParts) {
   add(worst, tick_of(13, 10'000, 30'000));
   const std::string text = worst_ticks_text(worst, 1);
   EXPECT_NE(text.find("12     140.0     100.0       0.0      40.0"), std::string::npos) << text;
-  EXPECT_NE(text.find("force 20.0"), std::string::npos) << text;
+  EXPECT_NE(text.find("solve 20.0"), std::string::npos) << text;
   EXPECT_EQ(text.find(" 13 "), std::string::npos) << text;
   EXPECT_EQ(worst_ticks_text(worst, 0), "");
 }

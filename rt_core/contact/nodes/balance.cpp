@@ -1,5 +1,5 @@
 #include "rt_core/contact/nodes/nodes.h"
-#include "rt_core/tool/carrier.h"
+#include "rt_core/tool/articulate.h"
 
 namespace palpate {
 

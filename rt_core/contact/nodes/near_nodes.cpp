@@ -1,6 +1,6 @@
 #include "rt_core/contact/nodes/nodes.h"
 #include "rt_core/contact/nodes/region_motion.h"
-#include "rt_core/tool/carrier.h"
+#include "rt_core/tool/articulate.h"
 #include "rt_core/tool/piece_gap.h"
 
 namespace palpate {

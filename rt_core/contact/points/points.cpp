@@ -4,7 +4,6 @@
 #include "rt_core/contact/contact.h"
 #include "rt_core/contact/points/point_laws.h"
 #include "rt_core/contact/regions.h"
-#include "rt_core/contact/touch.h"
 #include "rt_core/skeleton/transfer.h"
 
 namespace palpate {

@@ -4,7 +4,6 @@
 #include "rt_core/contact/region_load.h"
 #include "rt_core/contact/regions.h"
 #include "rt_core/contact/tips/travel.h"
-#include "rt_core/contact/touch.h"
 
 namespace palpate {
 
