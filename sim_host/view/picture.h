@@ -35,7 +35,7 @@ void save_picture(const std::string& path, const Model& model, const State& stat
 
 // Colour map of displacement, t in 0..1: light sand to dark violet, lightness falling evenly.
 Colour displacement_colour(double t);
-// Surface of a tool piece in the world; `carrier_w` as carrier_w() has it.
+// Surface of a tool piece in the world; `carrier_w` as rt_core/tool/articulate.h has it.
 RenderMesh piece_mesh(const Model& model, const ToolPiece& piece, const Pose& carrier_w);
 // The same for a part of the hand, as people draw it.
 RenderMesh hand_render_mesh(const ToolPiece& piece, const Pose& carrier_w, bool left);
