@@ -19,6 +19,13 @@ void add_text(Hasher& hasher, const char* text) noexcept {
   for (; *text != '\0'; ++text) hasher.add(static_cast<std::uint32_t>(*text));
 }
 
+// What the numbers of a choice stand for is part of the layout.
+template <class T>
+void add_words(Hasher& hasher) noexcept {
+  if constexpr (Choice<T>)
+    for (const char* word : ChoiceOf<T>::kWord) add_text(hasher, word);
+}
+
 void add_bytes(Hasher& hasher, std::span<const std::byte> bytes) noexcept {
   std::size_t i = 0;
   for (; i + 8 <= bytes.size(); i += 8) {
@@ -61,7 +68,9 @@ std::span<const T> view(std::span<const std::byte> bytes, std::uint64_t offset, 
 std::uint64_t image_layout_hash() noexcept {
   Hasher hasher;
   hasher.add(static_cast<std::uint64_t>(kArraysOffset));
-#define PALPATE_FIELD(type, name, unit, lowest, highest, meaning) add_text(hasher, #type " " #name " " unit);
+#define PALPATE_FIELD(type, name, unit, lowest, highest, meaning) \
+  add_text(hasher, #type " " #name " " unit);                     \
+  add_words<type>(hasher);
   PALPATE_MODEL_PARAMS(PALPATE_FIELD)
 #undef PALPATE_FIELD
 #define PALPATE_FIELD(type, name, count, frame, meaning)  \
@@ -166,6 +175,8 @@ const char* describe(ImageError error) noexcept {
       return "an index points outside the array it refers to, or a structure is broken";
     case ImageError::kNotFinite:
       return "a number is not finite";
+    case ImageError::kCombination:
+      return "two things of the scene do not go together";
   }
   return "unknown error";
 }

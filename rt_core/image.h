@@ -40,6 +40,7 @@ enum class ImageError : std::int32_t {
   kParamRange,
   kCrossReference,
   kNotFinite,
+  kCombination,
 };
 
 struct ImageResult {

@@ -1,6 +1,7 @@
 #include "rt_core/image_check.h"
 
 #include "rt_core/contact/tips/response_check.h"
+#include "rt_core/tool/piece_rules.h"
 
 namespace palpate {
 
@@ -102,14 +103,13 @@ ImageResult check_skeleton(const Model& model) noexcept {
     if (a.fixed != 0 && a.fixed != 1) return broken("anchor.fixed", i);
   }
   const int64_t n_anchor = model.sizes.n_anchor;
-  const int64_t tail = model.params.rbf_tail == 1 ? 4 : 1;
+  const int64_t tail = model.params.rbf_tail == RbfTail::kLinear ? 4 : 1;
   if (model.sizes.n_rbf != (n_anchor == 0 ? 0 : n_anchor + tail)) return broken("n_rbf", 0);
   if (model.sizes.n_rbf2 != model.sizes.n_rbf * model.sizes.n_rbf) return broken("n_rbf2", 0);
   for (std::size_t i = 0; i < model.rbf_inverse.size(); ++i)
     if (!is_finite(model.rbf_inverse[i])) return not_finite("rbf_inverse", i);
   if (model.sizes.n_patch != 0 && model.sizes.n_patch != model.sizes.n_vertex) return broken("n_patch", 0);
-  if (static_cast<ShapeLaw>(model.params.shape_law) == ShapeLaw::kDisplacementAngle && n_anchor > 0 &&
-      model.sizes.n_patch == 0)
+  if (model.params.shape_law == ShapeLaw::kDisplacementAngle && n_anchor > 0 && model.sizes.n_patch == 0)
     return broken("n_patch", 0);
   for (std::size_t i = 0; i < model.patch.size(); ++i)
     for (int k = 0; k < 3; ++k) {
@@ -125,7 +125,7 @@ bool holds_all_pairs(const Model& model, int64_t size, bool needed) noexcept {
 }
 
 ImageResult check_beams(const Model& model) noexcept {
-  const auto law = static_cast<SkeletonLaw>(model.params.skeleton_law);
+  const auto law = model.params.skeleton_law;
   const bool circular = law == SkeletonLaw::kCircular, paper = law == SkeletonLaw::kCircularPaper;
   if (!holds_all_pairs(model, model.sizes.n_beam_stiffness, circular)) return broken("n_beam_stiffness", 0);
   if (!holds_all_pairs(model, model.sizes.n_beam_ratio, paper)) return broken("n_beam_ratio", 0);
@@ -156,14 +156,14 @@ ImageResult check_piece(const Model& model, std::size_t i) noexcept {
   if (!(p.margin_m >= 0 && p.margin_m < kHuge)) return not_finite("piece.margin_m", i);
   if (!(p.bounding_radius_m > 0 && p.bounding_radius_m < kHuge)) return not_finite("piece.bounding_radius_m", i);
   if (!(p.neighbourhood_m >= 0 && p.neighbourhood_m < kHuge)) return not_finite("piece.neighbourhood_m", i);
-  if (p.shape < 0 || p.shape > static_cast<int32_t>(PieceShape::kHull)) return broken("piece.shape", i);
+  if (!is_choice(p.shape)) return broken("piece.shape", i);
   const int64_t last_point = int64_t{p.first_point} + p.point_count;
   if (p.first_point < 0 || p.point_count < 0 || last_point > model.sizes.n_tool_point)
     return broken("piece.first_point", i);
   const int64_t last_hull = int64_t{p.first_hull} + p.hull_count;
   if (p.first_hull < 0 || p.hull_count < 0 || last_hull > model.sizes.n_hull) return broken("piece.first_hull", i);
-  if (p.shape == static_cast<int32_t>(PieceShape::kHull) && p.hull_count < 1) return broken("piece.hull_count", i);
-  if (model.params.articulation != 0 && p.joint != -1 && !in_range(p.joint, model.joint.size()))
+  if (p.shape == PieceShape::kHull && p.hull_count < 1) return broken("piece.hull_count", i);
+  if (model.params.articulation != Articulation::kRigid && p.joint != -1 && !in_range(p.joint, model.joint.size()))
     return broken("piece.joint", i);
   for (int64_t k = p.first_point; k < last_point; ++k)
     if (model.tool_point[static_cast<std::size_t>(k)].piece != static_cast<int32_t>(i))
@@ -198,13 +198,13 @@ ImageResult check_joint(const Joint& joint, std::size_t i) noexcept {
   if (!(joint.speed_max > 0 && joint.speed_max <= kHuge)) return not_finite("joint.speed_max", i);
   if (joint.sign != 1 && joint.sign != -1) return broken("joint.sign", i);
   if (joint.parent < -1 || joint.parent >= static_cast<int64_t>(i)) return broken("joint.parent", i);
-  if (joint.kind != 0 && joint.kind != 1) return broken("joint.kind", i);
+  if (!is_choice(joint.kind)) return broken("joint.kind", i);
   if (joint.finger < 0 || joint.finger >= kMaxFingers) return broken("joint.finger", i);
   return {};
 }
 
 ImageResult check_articulation(const Model& model) noexcept {
-  if ((model.params.articulation != 0) != (model.sizes.n_joint > 0)) return broken("n_joint", 0);
+  if ((model.params.articulation != Articulation::kRigid) != (model.sizes.n_joint > 0)) return broken("n_joint", 0);
   for (std::size_t i = 0; i < model.joint.size(); ++i)
     if (const ImageResult result = check_joint(model.joint[i], i); result.error != ImageError::kNone) return result;
   for (std::size_t i = 0; i < model.grasp_w.size(); ++i)
@@ -234,7 +234,7 @@ ImageResult check_nodal_vertices(const Model& model) noexcept {
 // A response scene holds none of the nodal arrays; a nodal one all of them, in one precision.
 ImageResult check_nodal(const Model& model) noexcept {
   const ModelSizes& n = model.sizes;
-  if (static_cast<Backend>(model.params.backend) != Backend::kNodal) {
+  if (model.params.backend != Backend::kNodal) {
     if (n.n_nodal != 0) return broken("n_nodal", 0);
     if (n.n_compliance_f32 != 0) return broken("n_compliance_f32", 0);
     if (n.n_compliance_f64 != 0) return broken("n_compliance_f64", 0);
@@ -270,6 +270,7 @@ ImageResult check_arrays(const Model& model) noexcept {
   if (const ImageResult result = check_beams(model); result.error != ImageError::kNone) return result;
   if (const ImageResult result = check_tool(model); result.error != ImageError::kNone) return result;
   if (const ImageResult result = check_articulation(model); result.error != ImageError::kNone) return result;
+  if (const ImageResult result = check_method(model); result.error != ImageError::kNone) return result;
   if (const ImageResult result = check_nodal(model); result.error != ImageError::kNone) return result;
   return check_response(model);
 }

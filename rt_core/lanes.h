@@ -71,7 +71,7 @@ inline void transpose(Double4 (&row)[4]) PALPATE_RT {
 inline double sum(const Double4& v) PALPATE_RT { return (v[0] + v[1]) + (v[2] + v[3]); }
 
 inline Double4 square_root(const Double4& v) PALPATE_RT {
-#if defined(__clang__)
+#if defined(__clang__) && __clang_major__ >= 16  // older clang has gcc's builtin alone
   return __builtin_elementwise_sqrt(v);
 #elif defined(__AVX__)
   return __builtin_ia32_sqrtpd256(v);

@@ -6,72 +6,78 @@
 #include <span>
 
 #include "rt_core/base.h"
+#include "rt_core/laws.h"
 #include "rt_core/limits.h"
 #include "rt_core/vec.h"
 
 namespace palpate {
 
-enum class ContactWeight : std::int32_t { kWinkler = 0, kArea = 1, kPaper = 2 };  // A_i/A_ref · A_i/ΣA · 1/n
-enum class FrictionLaw : std::int32_t {
-  kNone = 0,
-  kReturnMap = 1,
-  kPaper = 2,
-  kMindlin = 3,
-  kCoulomb = 4,
-  kPresliding = 5,
-  kPreslidingPaper = 6
-};
-// What carries the normal force: cubic springs at the tool points, one scalar law per tool tip, or curves tabulated
-// over the surface.
-enum class ResponseLaw : std::int32_t { kPoints = 0, kTip = 1, kTable = 2 };
-enum class TangentialLaw : std::int32_t { kSeparable = 0, kRadial = 1 };
-enum class SkeletonLaw : std::int32_t { kNone = 0, kStiffness = 1, kPaper = 2, kCircular = 3, kCircularPaper = 4 };
-enum class ShapeLaw : std::int32_t { kRbf = 0, kDisplacementAngle = 1 };
-enum class NeighbourhoodLaw : std::int32_t { kNone = 0, kLog = 1, kLogC1 = 2, kPunch = 3 };
-enum class CouplingLaw : std::int32_t { kNone = 0, kCoupled = 1, kTemporal = 2 };
-enum class Articulation : std::int32_t { kRigid = 0, kGripper = 1, kHand = 2 };
-// Who measures contact and makes force. Response: tool points on the rest surface, one law per region. Nodal: surface
-// nodes of a finite-element body against the tool's pieces (rt_core/contact/nodes).
-enum class Backend : std::int32_t { kResponse = 0, kNodal = 1 };
-enum class NodalSolver : std::int32_t { kPivoting = 0, kGaussSeidel = 1 };
-// Where the tool's gap and normal are taken: at the node carried by the body's far field, or at rest.
-enum class NodalCarry : std::int32_t { kFarField = 0, kRest = 1, kTurned = 2 };
-
-// X(type, name, unit, lowest, highest, meaning). All are finite; the loader checks every range.
-#define PALPATE_MODEL_PARAMS(X)                                                                               \
-  X(std::int32_t, contact_weight, "-", 0, 2, "how sample forces are weighted (ContactWeight)")                \
-  X(std::int32_t, friction_law, "-", 0, 6, "FrictionLaw")                                                     \
-  X(std::int32_t, tangential_law, "-", 0, 1, "TangentialLaw")                                                 \
-  X(std::int32_t, skeleton_law, "-", 0, 4, "SkeletonLaw")                                                     \
-  X(std::int32_t, shape_law, "-", 0, 1, "ShapeLaw: how anchor displacements spread over the surface")         \
-  X(std::int32_t, neighbourhood_law, "-", 0, 3, "NeighbourhoodLaw: dent around a contact")                    \
-  X(std::int32_t, coupling_law, "-", 0, 2, "CouplingLaw: how regions influence one another")                  \
-  X(std::int32_t, rbf_tail, "-", 0, 1, "0 constant tail, 1 linear tail of the surface interpolation")         \
-  X(std::int32_t, silence_hold_ticks, "ticks", 1, 5, "ticks the last sample is held")                         \
-  X(std::int32_t, silence_passive_ticks, "ticks", 1, 20, "ticks after which force ramps to zero")             \
-  X(std::int32_t, silence_fault_ticks, "ticks", 2, 1000, "ticks of silence that latch a fault")               \
-  X(std::int32_t, backend, "-", 0, 1, "Backend: who measures contact and makes force")                        \
-  X(std::int32_t, nodal_solver, "-", 0, 1, "NodalSolver")                                                     \
-  X(std::int32_t, nodal_sweeps, "-", 0, 100, "Gauss-Seidel sweeps of the normal problem")                     \
-  X(std::int32_t, friction_sweeps, "-", 0, 20, "Gauss-Seidel sweeps of the problem with friction")            \
-  X(std::int32_t, articulation, "-", 0, 2, "Articulation: whether pieces of the tool move by joints")         \
-  X(std::int32_t, late_ticks_max, "ticks", 2, 1000, "ticks in a row that each missed deadlines: a fault")     \
-  X(std::int32_t, nodal_carry, "-", 0, 2, "NodalCarry: where gaps and normals are taken")                     \
-  X(std::int32_t, response_law, "-", 0, 2, "ResponseLaw: what carries the normal force")                      \
-  X(std::int32_t, response_root, "-", 0, 1, "1: the knots of the tables are roots of depths")                 \
-  X(double, period_s, "s", 1e-5, 1e-1, "tick period")                                                         \
-  X(double, k1_N_per_m, "N/m", 0, 1e9, "linear coefficient of the contact law, per unit weight")              \
-  X(double, k3_N_per_m3, "N/m3", 0, 1e15, "cubic coefficient of the contact law, per unit weight")            \
-  X(double, max_depth_m, "m", 1e-6, 1, "depth beyond which the law continues by its tangent")                 \
-  X(double, friction_k_N, "N^(1-beta)", 0, 1e6, "K of the static limit K F^beta")                             \
-  X(double, friction_beta, "-", 0.5, 1, "exponent of the static limit")                                       \
-  X(double, friction_mu_dynamic, "-", 0, 10, "sliding coefficient")                                           \
-  X(double, cluster_distance_m, "m", 1e-6, 1, "contact points nearer than this are one region")               \
-  X(double, youngs_modulus_Pa, "Pa", 1, 1e13, "E")                                                            \
-  X(double, poisson_ratio, "-", -0.999, 0.5, "nu")                                                            \
-  X(double, far_field_radius_m, "m", 1e-6, 1, "core radius of the far-field kernel between regions")          \
-  X(double, neighbourhood_radius_m, "m", 1e-6, 1, "R of the local dent")                                      \
-  X(double, surface_size_m, "m", 1e-6, 100, "largest extent of the body; scale of tolerances")                \
+// X(type, name, unit, lowest, highest, meaning), in groups. All are finite; the loader checks every range; that of a
+// choice is its table (rt_core/choice.h).
+#define PALPATE_CHOICE_PARAM(X, Enum, name, meaning) X(Enum, name, "-", Enum{}, last_choice<Enum>(), meaning)
+// The tick, and which method finds contact.
+#define PALPATE_METHOD_PARAMS(X)                                                      \
+  X(double, period_s, "s", 1e-5, 1e-1, "tick period")                                 \
+  PALPATE_CHOICE_PARAM(X, Backend, backend, "who measures contact and makes force")   \
+  PALPATE_CHOICE_PARAM(X, ResponseLaw, response_law, "what carries the normal force") \
+  PALPATE_CHOICE_PARAM(X, Articulation, articulation, "whether pieces of the tool move by joints")
+// The body.
+#define PALPATE_BODY_PARAMS(X)                                                                 \
+  X(double, youngs_modulus_Pa, "Pa", 1, 1e13, "E")                                             \
+  X(double, poisson_ratio, "-", -0.999, 0.5, "nu")                                             \
+  X(double, body_mass_kg, "kg", 0, 1e9, "mass of the body: what a palm has to hold")           \
+  X(double, body_centre_x_m, "m", -1e3, 1e3, "centre of the body's volume, world")             \
+  X(double, body_centre_y_m, "m", -1e3, 1e3, "the same, y")                                    \
+  X(double, body_centre_z_m, "m", -1e3, 1e3, "the same, z")                                    \
+  X(double, surface_size_m, "m", 1e-6, 100, "largest extent of the body; scale of tolerances") \
+  X(double, smooth_slack_m, "m", 0, 4e-4, "how far the smooth surface stands off its facets, at most")
+// Tool points with springs.
+#define PALPATE_POINT_PARAMS(X)                                                                    \
+  PALPATE_CHOICE_PARAM(X, ContactWeight, contact_weight, "how sample forces are weighted")         \
+  X(double, k1_N_per_m, "N/m", 0, 1e9, "linear coefficient of the contact law, per unit weight")   \
+  X(double, k3_N_per_m3, "N/m3", 0, 1e15, "cubic coefficient of the contact law, per unit weight") \
+  X(double, max_depth_m, "m", 1e-6, 1, "depth beyond which the law continues by its tangent")
+// Whole tips and tables.
+#define PALPATE_TIP_PARAMS(X) \
+  X(std::int32_t, response_root, "-", 0, 1, "1: the knots of the tables are roots of depths")
+// Nodes of a finite-element body.
+#define PALPATE_NODE_PARAMS(X)                                                                        \
+  PALPATE_CHOICE_PARAM(X, NodalSolver, nodal_solver, "who finds the normal forces")                   \
+  PALPATE_CHOICE_PARAM(X, NodalCarry, nodal_carry, "where gaps and normals are taken")                \
+  X(std::int32_t, nodal_sweeps, "-", 0, 100, "Gauss-Seidel sweeps of the normal problem")             \
+  X(std::int32_t, friction_sweeps, "-", 0, 20, "Gauss-Seidel sweeps of the problem with friction")    \
+  X(double, contact_margin_m, "m", 0, 1, "nodes with a smaller gap take part in the contact problem") \
+  X(double, regularisation, "-", 0, 0.1, "share added to the diagonal of the contact problem")        \
+  X(double, wall_N_per_m, "N/m", 0, 1e9, "stiffness of the body's held nodes")                        \
+  X(double, strain_limit, "-", 0, 10, "largest strain for which the linear body is trusted")          \
+  X(double, proxy_speed_max_m_per_s, "m/s", 0, 100, "fastest motion of the tool in contact")
+// Friction.
+#define PALPATE_FRICTION_PARAMS(X)                                                                    \
+  PALPATE_CHOICE_PARAM(X, FrictionLaw, friction_law, "limit and motion of friction")                  \
+  PALPATE_CHOICE_PARAM(X, TangentialLaw, tangential_law,                                              \
+                       "sticking force from each depth component by itself, or from the whole depth") \
+  X(double, friction_k_N, "N^(1-beta)", 0, 1e6, "K of the static limit K F^beta")                     \
+  X(double, friction_beta, "-", 0.5, 1, "exponent of the static limit")                               \
+  X(double, friction_mu_dynamic, "-", 0, 10, "sliding coefficient")                                   \
+  X(double, friction_slip_m, "m", 0, 1, "presliding_paper: stretch at which the contact slides")
+// Regions, and how they influence one another.
+#define PALPATE_REGION_PARAMS(X)                                                                \
+  PALPATE_CHOICE_PARAM(X, CouplingLaw, coupling_law, "how regions influence one another")       \
+  X(double, cluster_distance_m, "m", 1e-6, 1, "contact points nearer than this are one region") \
+  X(double, far_field_radius_m, "m", 1e-6, 1, "core radius of the far-field kernel between regions")
+// The shape as drawn, and beams.
+#define PALPATE_SKELETON_PARAMS(X)                                                                 \
+  PALPATE_CHOICE_PARAM(X, SkeletonLaw, skeleton_law, "beams from contact regions to anchors")      \
+  PALPATE_CHOICE_PARAM(X, ShapeLaw, shape_law, "how anchor displacements spread over the surface") \
+  PALPATE_CHOICE_PARAM(X, RbfTail, rbf_tail, "polynomial of the surface interpolation")            \
+  PALPATE_CHOICE_PARAM(X, NeighbourhoodLaw, neighbourhood_law, "dent around a contact")            \
+  X(double, neighbourhood_radius_m, "m", 1e-6, 1, "R of the local dent")
+// Articulated tools.
+#define PALPATE_JOINT_PARAMS(X)                                                        \
+  X(double, closing_rate_per_s, "1/s", 0, 1e3, "fastest change of a closing fraction") \
+  X(double, stop_force_N, "N", 0, 1e6, "a joint stops where it would press a part harder than this")
+// Coupling to the device, and safety.
+#define PALPATE_DEVICE_PARAMS(X)                                                                              \
   X(double, coupling_N_per_m, "N/m", 1, 1e6, "translational stiffness of the virtual coupling")               \
   X(double, coupling_Nm_per_rad, "N*m/rad", 1e-6, 1e4, "rotational stiffness of the virtual coupling")        \
   X(double, force_max_N, "N", 0, kWireForceMax_N, "magnitude limit of the rendered force")                    \
@@ -79,28 +85,48 @@ enum class NodalCarry : std::int32_t { kFarField = 0, kRest = 1, kTurned = 2 };
   X(double, force_rate_max_N_per_s, "N/s", 1, 1e7, "fault limiter of the force change")                       \
   X(double, ramp_in_s, "s", 0, 10, "force ramp after arming")                                                 \
   X(double, ramp_out_s, "s", 1e-3, 1, "force ramp to zero after a fault")                                     \
-  X(double, stall_max_s, "s", 1e-3, 1, "deadlines missed at one go for so long: a fault")                     \
   X(double, speed_max_m_per_s, "m/s", 0.01, 100, "a device sample that implies a faster motion is rejected")  \
   X(double, turn_max_rad_per_s, "rad/s", 0.1, 1000, "a device sample that implies a faster turn is rejected") \
-  X(double, contact_margin_m, "m", 0, 1, "nodes with a smaller gap take part in the contact problem")         \
-  X(double, regularisation, "-", 0, 0.1, "share added to the diagonal of the contact problem")                \
-  X(double, wall_N_per_m, "N/m", 0, 1e9, "stiffness of the body's held nodes")                                \
-  X(double, proxy_speed_max_m_per_s, "m/s", 0, 100, "fastest motion of the tool in contact")                  \
-  X(double, strain_limit, "-", 0, 10, "largest strain for which the linear body is trusted")                  \
-  X(double, closing_rate_per_s, "1/s", 0, 1e3, "fastest change of a closing fraction")                        \
-  X(double, stop_force_N, "N", 0, 1e6, "a joint stops where it would press a part harder than this")          \
-  X(double, body_mass_kg, "kg", 0, 1e9, "mass of the body: what a palm has to hold")                          \
-  X(double, body_centre_x_m, "m", -1e3, 1e3, "centre of the body's volume, world")                            \
-  X(double, body_centre_y_m, "m", -1e3, 1e3, "the same, y")                                                   \
-  X(double, body_centre_z_m, "m", -1e3, 1e3, "the same, z")                                                   \
-  X(double, friction_slip_m, "m", 0, 1, "presliding_paper: stretch at which the contact slides")              \
-  X(double, smooth_slack_m, "m", 0, 4e-4, "how far the smooth surface stands off its facets, at most")
+  X(std::int32_t, silence_hold_ticks, "ticks", 1, 5, "ticks the last sample is held")                         \
+  X(std::int32_t, silence_passive_ticks, "ticks", 1, 20, "ticks after which force ramps to zero")             \
+  X(std::int32_t, silence_fault_ticks, "ticks", 2, 1000, "ticks of silence that latch a fault")               \
+  X(std::int32_t, late_ticks_max, "ticks", 2, 1000, "ticks in a row that each missed deadlines: a fault")     \
+  X(double, stall_max_s, "s", 1e-3, 1, "deadlines missed at one go for so long: a fault")
+
+// G(title, parameters): the groups, for dumps and documents.
+#define PALPATE_PARAM_GROUPS(G)                                           \
+  G("the tick, and which method finds contact", PALPATE_METHOD_PARAMS)    \
+  G("the body", PALPATE_BODY_PARAMS)                                      \
+  G("tool points with springs", PALPATE_POINT_PARAMS)                     \
+  G("whole tips and tables", PALPATE_TIP_PARAMS)                          \
+  G("nodes of a finite-element body", PALPATE_NODE_PARAMS)                \
+  G("friction", PALPATE_FRICTION_PARAMS)                                  \
+  G("regions, and how they influence one another", PALPATE_REGION_PARAMS) \
+  G("the shape as drawn, and beams", PALPATE_SKELETON_PARAMS)             \
+  G("articulated tools", PALPATE_JOINT_PARAMS)                            \
+  G("coupling to the device, and safety", PALPATE_DEVICE_PARAMS)
+#define PALPATE_MODEL_PARAMS(X) \
+  PALPATE_METHOD_PARAMS(X)      \
+  PALPATE_BODY_PARAMS(X)        \
+  PALPATE_POINT_PARAMS(X)       \
+  PALPATE_TIP_PARAMS(X)         \
+  PALPATE_NODE_PARAMS(X)        \
+  PALPATE_FRICTION_PARAMS(X)    \
+  PALPATE_REGION_PARAMS(X)      \
+  PALPATE_SKELETON_PARAMS(X)    \
+  PALPATE_JOINT_PARAMS(X)       \
+  PALPATE_DEVICE_PARAMS(X)
 
 struct ModelParams {
 #define PALPATE_FIELD(type, name, unit, lowest, highest, meaning) type name;
   PALPATE_MODEL_PARAMS(PALPATE_FIELD)
 #undef PALPATE_FIELD
 };
+
+inline Method method_of(const ModelParams& params) PALPATE_RT {
+  if (params.backend == Backend::kNodal) return Method::kNodes;
+  return params.response_law == ResponseLaw::kPoints ? Method::kPoints : Method::kTips;
+}
 
 // Element types of the image arrays. All trivially copyable, without padding.
 struct Triangle {
@@ -127,16 +153,14 @@ struct BvhNode {
   std::int32_t child[4];  // count 0: inner node (>= 0) or empty (-1); count > 0: leaf, first triangle = ~child
   std::int32_t count[4];  // triangles in a leaf (1..4; they are contiguous), 0 for inner nodes and empty slots
 };
-enum class PieceShape : std::int32_t { kSphere = 0, kCapsule = 1, kCylinder = 2, kCone = 3, kBox = 4, kHull = 5 };
-enum class JointKind : std::int32_t { kTurn = 0, kSlide = 1 };
 // Convex piece of the tool: a core shape (tool frame) rounded by a margin, as in "sphere = point + radius".
 struct ToolPiece {
   Pose pose_tool;           // piece frame in the tool frame; axis of revolution = piece z
   double half_extent_m[3];  // core: capsule (-, -, half length); cylinder, cone (radius, radius, half length); box half
                             // sides
   double margin_m;          // rounding radius added to the core
-  double bounding_radius_m;               // of core and margin, about pose_tool.position_m
-  std::int32_t shape;                     // PieceShape
+  double bounding_radius_m;  // of core and margin, about pose_tool.position_m
+  PieceShape shape;
   std::int32_t first_point, point_count;  // its tool points
   std::int32_t first_hull, hull_count;    // its hull vertices (kHull only)
   std::int32_t part;                      // label for telemetry: finger part, mallet head...
@@ -158,8 +182,8 @@ struct Joint {
   double speed_max;        // rad/s or m/s
   double sign;             // +1 or -1
   std::int32_t parent;     // a lower joint, or -1: the tool frame
-  std::int32_t kind;       // JointKind
-  std::int32_t finger;     // whose closing fraction drives it
+  JointKind kind;
+  std::int32_t finger;  // whose closing fraction drives it
   std::int32_t reserved;
 };
 // Point of a piece's core: the centre of a small sphere of radius margin_m that carries a share of the contact.

@@ -5,6 +5,7 @@
 
 #include "config/bake/bvh_build.h"
 #include "config/bake/fem_body.h"
+#include "config/bake/image_rules.h"
 #include "config/bake/rbf_system.h"
 #include "config/bake/tool_points.h"
 #include "config/body/anchors.h"
@@ -14,15 +15,11 @@
 #include "config/hand/preshape.h"
 #include "config/scene/config_error.h"
 #include "config/scene/schema.h"
+#include "rt_core/tool/piece_rules.h"
 
 namespace palpate {
 
 namespace {
-
-// Whether pieces press with whole tips instead of many tool points.
-bool has_tips(const SceneDesc& scene) {
-  return scene.contact.law == ContactLaw::kTool || scene.contact.law == ContactLaw::kTable;
-}
 
 // One bake: fills `image` and `report` step by step; later steps use what earlier ones wrote.
 class Compiler {
@@ -33,12 +30,13 @@ class Compiler {
     check_scene(scene_);
     report_.name = image_.name = scene_.name;
     add_laws();
+    add_tool();
+    refuse(scene_, check_method(model_of(image_)));  // before the long computations
     if (is_nodal()) {
       add_finite_elements();
     } else {
       add_surface();
     }
-    add_tool();
     add_articulation();
     add_distances();
     bake_response(scene_, image_, report_.response, report_.warnings);
@@ -46,6 +44,7 @@ class Compiler {
     add_skeleton();
     report_.array = array_bytes(image_);
     CompileResult result{write_image(image_), std::move(report_)};
+    check_bytes(scene_, result.bytes);
     result.report.image_bytes = result.bytes.size();
     return result;
   }
@@ -61,14 +60,15 @@ class Compiler {
   // Contact on finite elements: what the response back-end would use is left out.
   void add_nodal_laws() {
     ModelParams& p = image_.params;
-    p.backend = static_cast<std::int32_t>(Backend::kNodal);
-    p.skeleton_law = static_cast<std::int32_t>(SkeletonLaw::kNone);
-    p.neighbourhood_law = static_cast<std::int32_t>(NeighbourhoodLaw::kNone);
-    p.coupling_law = static_cast<std::int32_t>(CouplingLaw::kNone);
-    p.nodal_solver = static_cast<std::int32_t>(scene_.nodal.solver);
+    p.backend = Backend::kNodal;
+    p.response_law = ResponseLaw::kPoints;
+    p.skeleton_law = SkeletonLaw::kNone;
+    p.neighbourhood_law = NeighbourhoodLaw::kNone;
+    p.coupling_law = CouplingLaw::kNone;
+    p.nodal_solver = scene_.nodal.solver;
     p.nodal_sweeps = scene_.nodal.sweeps;
     p.friction_sweeps = scene_.nodal.friction_sweeps;
-    p.nodal_carry = static_cast<std::int32_t>(scene_.nodal.carry);
+    p.nodal_carry = scene_.nodal.carry;
     p.wall_N_per_m = scene_.nodal.wall_N_per_m;
     p.strain_limit = scene_.nodal.strain_limit;
     p.proxy_speed_max_m_per_s = scene_.nodal.proxy_speed_max_m_per_s;
@@ -111,13 +111,13 @@ class Compiler {
 
   void add_laws() {
     ModelParams& p = image_.params;
-    p.contact_weight = static_cast<std::int32_t>(scene_.contact.weight);
-    p.friction_law = static_cast<std::int32_t>(scene_.friction.law);
-    p.tangential_law = static_cast<std::int32_t>(scene_.friction.tangential);
-    p.skeleton_law = static_cast<std::int32_t>(scene_.skeleton.law);
-    p.shape_law = static_cast<std::int32_t>(scene_.shape.interpolation);
-    p.neighbourhood_law = static_cast<std::int32_t>(scene_.shape.neighbourhood);
-    p.coupling_law = static_cast<std::int32_t>(scene_.coupling.law);
+    p.contact_weight = scene_.contact.weight;
+    p.friction_law = scene_.friction.law;
+    p.tangential_law = scene_.friction.tangential;
+    p.skeleton_law = scene_.skeleton.law;
+    p.shape_law = scene_.shape.interpolation;
+    p.neighbourhood_law = scene_.shape.neighbourhood;
+    p.coupling_law = scene_.coupling.law;
     p.rbf_tail = scene_.shape.tail;
     p.youngs_modulus_Pa = scene_.material.youngs_modulus_Pa;
     p.poisson_ratio = effective_poisson_ratio(scene_.material);
@@ -137,6 +137,8 @@ class Compiler {
     p.friction_beta = report_.friction.beta;
     p.friction_slip_m = scene_.friction.slip_m;
     p.friction_mu_dynamic = report_.friction.mu_dynamic;
+    if (scene_.contact.law == ContactLaw::kTool) p.response_law = ResponseLaw::kTip;
+    if (scene_.contact.law == ContactLaw::kTable) p.response_law = ResponseLaw::kTable;
     if (is_nodal()) add_nodal_laws();
   }
 
@@ -199,7 +201,8 @@ class Compiler {
     for (std::size_t i = 0; i < tool.piece.size(); ++i) {
       const std::string label = "tool.piece[" + std::to_string(i) + "]";
       const ToolPiece& piece = tool.piece[i];
-      if (piece.point_count == 0 || is_nodal() || has_tips(scene_)) continue;  // nodal: the exact pieces touch
+      if (piece.point_count == 0 || is_nodal() || is_tip_law(scene_.contact.law))
+        continue;  // nodal: the exact pieces touch
       if (piece.margin_m < scene_.contact.max_depth_m)
         warn(label + ": its margin of " + number_text(1e3 * piece.margin_m) +
              " mm is below contact.max_depth_mm; deeper than the margin the direction of contact can jump");
@@ -213,7 +216,7 @@ class Compiler {
   }
 
   void add_articulation() {
-    image_.params.articulation = static_cast<std::int32_t>(scene_.articulation);
+    image_.params.articulation = scene_.articulation;
     image_.params.body_mass_kg = report_.mass_kg;
     const Vec3 centre = volume_centre_m(mesh_);
     image_.params.body_centre_x_m = centre.x;
@@ -280,7 +283,7 @@ class Compiler {
       joint.speed_max = joint.open / scene_.gripper.closing_s;
       joint.sign = 1;
       joint.parent = -1;
-      joint.kind = static_cast<std::int32_t>(JointKind::kSlide);
+      joint.kind = JointKind::kSlide;
       image_.joint.push_back(joint);
     }
   }
@@ -317,7 +320,7 @@ class Compiler {
     ModelParams& p = image_.params;
     const double spacing = point_spacing_m();
     p.cluster_distance_m = !is_auto(scene_.contact.cluster_distance_m) ? scene_.contact.cluster_distance_m
-                           : has_tips(scene_)                          ? tip_distance_m()
+                           : is_tip_law(scene_.contact.law)            ? tip_distance_m()
                            : is_nodal()                                ? clamp_to(cluster_distance_m_, 1e-6, 1.0)
                            : spacing > 0                               ? clamp_to(2 * spacing, 1e-6, 1.0)
                                                                        : 0.010;

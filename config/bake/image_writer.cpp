@@ -13,21 +13,17 @@
 
 namespace palpate {
 
-namespace {
-
 ModelSizes sizes_of(const ImageContents& contents) {
   ModelSizes sizes{};
   const auto n = [](const auto& v) { return static_cast<std::int64_t>(v.size()); };
   sizes.n_anchor = n(contents.anchor);
-  const std::int64_t tail = contents.params.rbf_tail == 1 ? 4 : 1;
+  const std::int64_t tail = contents.params.rbf_tail == RbfTail::kLinear ? 4 : 1;
   sizes.n_rbf = contents.rbf_inverse.empty() ? 0 : sizes.n_anchor + tail;
 #define PALPATE_FIELD(type, name, count, frame, meaning) sizes.count = n(contents.name);
   PALPATE_MODEL_ARRAYS(PALPATE_FIELD)
 #undef PALPATE_FIELD
   return sizes;
 }
-
-}  // namespace
 
 std::vector<ArrayBytes> array_bytes(const ImageContents& contents) {
   std::vector<ArrayBytes> sizes;
@@ -54,7 +50,11 @@ std::vector<std::byte> write_image(const ImageContents& contents) {
 #undef PALPATE_FIELD
   const ImageSections sections = image_sections();
   std::memcpy(bytes.data() + sections.sizes, &sizes, sizeof sizes);
-  std::memcpy(bytes.data() + sections.params, &contents.params, sizeof contents.params);
+  // Field by field: what lies between them stays zero.
+#define PALPATE_FIELD(type, name, unit, lowest, highest, meaning) \
+  std::memcpy(bytes.data() + sections.params + offsetof(ModelParams, name), &contents.params.name, sizeof(type));
+  PALPATE_MODEL_PARAMS(PALPATE_FIELD)
+#undef PALPATE_FIELD
 
   ImageHeader header{};
   header.magic = kImageMagic;

@@ -18,6 +18,9 @@ struct ImageContents {
 #undef PALPATE_FIELD
 };
 
+// Sizes of the arrays as they stand.
+ModelSizes sizes_of(const ImageContents& contents);
+
 // Size of one array of the image.
 struct ArrayBytes {
   const char* name;

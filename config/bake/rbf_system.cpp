@@ -101,7 +101,7 @@ void undo_scaling(const Frame& frame, bool linear, std::size_t count, const Matr
 
 }  // namespace
 
-bool invert_rbf_system(std::span<const Vec3> anchors, int tail, std::span<double> inverse) noexcept {
+bool invert_rbf_system(std::span<const Vec3> anchors, RbfTail tail, std::span<double> inverse) noexcept {
   const std::size_t count = anchors.size();
   const std::size_t n = count + static_cast<std::size_t>(rbf_tail_size(tail));
   if (count == 0 || count > static_cast<std::size_t>(kMaxAnchors) || inverse.size() < n * n) return false;
@@ -109,9 +109,9 @@ bool invert_rbf_system(std::span<const Vec3> anchors, int tail, std::span<double
   if (!bounding_frame(anchors, frame)) return false;
   Matrix system{};
   Matrix scaled{};
-  fill_system(anchors, frame, tail == 1, system);
+  fill_system(anchors, frame, tail == RbfTail::kLinear, system);
   if (!invert(system, scaled, n)) return false;
-  undo_scaling(frame, tail == 1, count, scaled, inverse);
+  undo_scaling(frame, tail == RbfTail::kLinear, count, scaled, inverse);
   return true;
 }
 

@@ -14,6 +14,6 @@ namespace palpate {
 // Returns false, leaving `inverse` unspecified, when there is no anchor or more than kMaxAnchors, when `inverse` is too
 // small, when a coordinate is not finite, or when the system is singular: two anchors closer than about 1e-9 of their
 // extent, or a linear tail whose anchors are (within about 1e-9 of their extent) coplanar. A constant tail then works.
-bool invert_rbf_system(std::span<const Vec3> anchors, int tail, std::span<double> inverse) noexcept;
+bool invert_rbf_system(std::span<const Vec3> anchors, RbfTail tail, std::span<double> inverse) noexcept;
 
 }  // namespace palpate

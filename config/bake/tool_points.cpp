@@ -221,7 +221,7 @@ Tool make_tool(const std::vector<PieceDesc>& pieces) {
     std::copy_n(core.half_extent_m, 3, piece.half_extent_m);
     piece.margin_m = core.margin_m;
     piece.bounding_radius_m = bounding_radius_m(core);
-    piece.shape = static_cast<std::int32_t>(core.shape);
+    piece.shape = core.shape;
     piece.first_point = static_cast<std::int32_t>(tool.point.size());
     piece.point_count = static_cast<std::int32_t>(position.size());
     piece.first_hull = static_cast<std::int32_t>(tool.hull_vertex_m.size());

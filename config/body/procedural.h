@@ -6,11 +6,13 @@
 #include <vector>
 
 #include "config/body/mesh.h"
+#include "rt_core/choice.h"
 
 namespace palpate {
 
 // Axis of revolution of bodies that may lie on their side.
-enum class BodyAxis : std::int32_t { kY = 0, kX = 1, kZ = 2 };
+#define PALPATE_BODY_AXES(X) X(kY, y) X(kX, x) X(kZ, z)
+PALPATE_CHOICE(BodyAxis, PALPATE_BODY_AXES);
 
 inline constexpr std::int32_t kFewestTriangles = 80;
 inline constexpr std::int32_t kMostTriangles = 4'000'000;

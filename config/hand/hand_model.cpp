@@ -22,7 +22,7 @@ Joint row(double sign, double a_m, double alpha, double lowest_deg, double highe
   joint.speed_max = speed;
   joint.sign = sign;
   joint.parent = parent;
-  joint.kind = static_cast<std::int32_t>(JointKind::kTurn);
+  joint.kind = JointKind::kTurn;
   joint.finger = finger;
   return joint;
 }

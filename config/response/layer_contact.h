@@ -3,11 +3,13 @@
 
 #include <vector>
 
+#include "rt_core/choice.h"
 #include "rt_core/vec.h"
 
 namespace palpate {
 
-enum class LayerBase : std::int32_t { kBonded = 0, kSlip = 1 };
+#define PALPATE_LAYER_BASES(X) X(kBonded, bonded) X(kSlip, slip)
+PALPATE_CHOICE(LayerBase, PALPATE_LAYER_BASES);
 
 // thickness_m <= 0: a half space.
 struct ElasticLayer {

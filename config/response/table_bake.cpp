@@ -178,7 +178,6 @@ void bake_presses(const SceneDesc& scene, ImageContents& image, ResponseReport& 
 
 void bake_table(const SceneDesc& scene, ImageContents& image, ResponseReport& report,
                 std::vector<std::string>& warnings) {
-  image.params.response_law = static_cast<std::int32_t>(ResponseLaw::kTable);
   if (scene.table.source == TableSource::kFem)
     bake_presses(scene, image, report);
   else

@@ -266,7 +266,7 @@ std::string describe_law(const TipDesc& tip, const TipLaw& law) {
 
 void bake_response(const SceneDesc& scene, ImageContents& image, ResponseReport& report,
                    std::vector<std::string>& warnings) {
-  const bool whole_tip = scene.contact.law == ContactLaw::kTool || scene.contact.law == ContactLaw::kTable;
+  const bool whole_tip = is_tip_law(scene.contact.law);
   if (!whole_tip && scene.contact.surface == ContactSurface::kFacets) return;
   image.corner_normal = corner_normals(scene.body, image.vertex_m, image.triangle);
   report.slack_m = largest_sag_m(image.corner_normal, image.vertex_m, image.triangle);
@@ -276,16 +276,10 @@ void bake_response(const SceneDesc& scene, ImageContents& image, ResponseReport&
                       number_text(1e3 * report.slack_m) + " mm; allowed 0.25 mm: use more triangles");
   image.params.smooth_slack_m = 1.5 * report.slack_m;
   if (!whole_tip) return;
-  for (const PieceDesc& piece : scene.piece)
-    if (piece.points > 1)
-      throw ConfigError(scene.source.where("tool.piece") +
-                        ": a piece has several points, but contact.law = \"tool\" and \"table\" are laws of one whole "
-                        "tip; set points = 1 (cylinder, capsule: touches an end; cone: plus_z)");
   if (scene.contact.law == ContactLaw::kTable) {
     bake_table(scene, image, report, warnings);
     return;
   }
-  image.params.response_law = static_cast<std::int32_t>(ResponseLaw::kTip);
   std::vector<TipDesc> tips;
   for (std::size_t i = 0; i < scene.piece.size(); ++i) {
     std::string line;

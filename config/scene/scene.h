@@ -10,6 +10,7 @@
 
 #include "config/body/procedural.h"
 #include "config/response/layer_contact.h"
+#include "config/scene/choices.h"
 #include "rt_core/model.h"
 
 namespace palpate {
@@ -18,20 +19,6 @@ namespace palpate {
 inline constexpr double kAuto = std::numeric_limits<double>::quiet_NaN();
 inline bool is_auto(double x) { return std::isnan(x); }
 
-enum class BodyShape : std::int32_t {
-  kEllipsoid,
-  kSphere,
-  kCylinder,
-  kBox,
-  kRevolution,
-  kHeart,
-  kMesh,
-  kHalfShell,
-  kRing,
-  kHollowCylinder,
-  kClip,
-  kTets
-};
 struct BodyDesc {
   BodyShape shape = BodyShape::kEllipsoid;
   Vec3 half_axes_m{0.040, 0.030, 0.025};
@@ -48,8 +35,6 @@ struct BodyDesc {
   std::int32_t triangles = 3000;
 };
 // Finite elements of a body (contact.backend = "nodal").
-enum class FemOrder : std::int32_t { kQuadratic, kLinear, kMixed };
-enum class FemPrecision : std::int32_t { kByError, kSingle, kDouble };
 struct FemDesc {
   FemOrder order = FemOrder::kQuadratic;
   FemPrecision precision = FemPrecision::kByError;
@@ -69,7 +54,6 @@ struct FixedDesc {
   double base_height_m = 0.002;
 };
 
-enum class AnchorSource : std::int32_t { kShape, kMesh };
 struct SkeletonDesc {
   SkeletonLaw law = SkeletonLaw::kStiffness;
   AnchorSource anchors = AnchorSource::kShape;
@@ -81,10 +65,6 @@ struct SkeletonDesc {
   double beam_allowance_m = 0.5e-3;
 };
 
-enum class ContactLaw : std::int32_t { kDuffing, kCubic, kHertz, kTool, kTable };
-// What a tool point touches. Laws of a whole tip (kTool, kTable) always have the smooth surface.
-enum class ContactSurface : std::int32_t { kFacets, kSmooth };
-enum class DuffingCoefficient : std::int32_t { kStatic, kPaper };
 struct ContactDesc {
   ContactLaw law = ContactLaw::kDuffing;
   ContactWeight weight = ContactWeight::kWinkler;
@@ -121,7 +101,6 @@ struct HertzDesc {
 };
 
 // contact.law = "tool": the response of each piece's own tip.
-enum class SphereLaw : std::int32_t { kExact, kParabola };
 struct TipLawDesc {
   double radius_m = kAuto;
   double half_angle_rad = kAuto;
@@ -143,7 +122,6 @@ struct PairDesc {
   double h_ab_m_per_N2 = 0, h_ba_m_per_N2 = 0;
 };
 // Where the curves of contact.law = "table" come from: a CSV of measured presses, or presses the baker makes.
-enum class TableSource : std::int32_t { kFile, kFem };
 struct TableDesc {
   TableSource source = TableSource::kFile;
   std::string file;
@@ -163,7 +141,7 @@ struct FrictionDesc {
 
 struct ShapeDesc {
   ShapeLaw interpolation = ShapeLaw::kRbf;
-  std::int32_t tail = 0;
+  RbfTail tail = RbfTail::kConstant;
   NeighbourhoodLaw neighbourhood = NeighbourhoodLaw::kPunch;
   double radius_m = 0.012;
 };
@@ -172,7 +150,6 @@ struct CouplingDesc {
   double radius_m = kAuto;
 };
 
-enum class TouchingEnd : std::int32_t { kAll, kPlusZ, kMinusZ };
 struct PieceDesc {
   PieceShape shape = PieceShape::kSphere;
   TouchingEnd touches = TouchingEnd::kAll;
@@ -189,8 +166,6 @@ struct PieceDesc {
 };
 
 // Which fingers a hand's grasp uses: thumb and index; with the middle finger; all.
-enum class GraspFingers : std::int32_t { kTwo, kThree, kFive };
-enum class HandSide : std::int32_t { kRight, kLeft };
 struct HandDesc {
   GraspFingers fingers = GraspFingers::kFive;
   HandSide side = HandSide::kRight;

@@ -178,13 +178,8 @@ void check_contact(const SceneDesc& scene) {
 
 // Laws of whole tips: what friction, coupling and the pieces must be.
 void check_tips(const SceneDesc& scene) {
-  if (scene.contact.law != ContactLaw::kTool && scene.contact.law != ContactLaw::kTable) return;
+  if (!is_tip_law(scene.contact.law)) return;
   check_effect(scene, "contact", {"surface"}, {}, "with laws of whole tips, which always have the smooth surface");
-  const FrictionLaw friction = scene.friction.law;
-  if (friction == FrictionLaw::kReturnMap || friction == FrictionLaw::kPaper)
-    fail(scene, "friction.law",
-         "this law stretches the springs of tool points, which contact.law = \"tool\" and \"table\" do not have; "
-         "allowed none, mindlin, presliding, presliding_paper");
   if (scene.coupling.law == CouplingLaw::kTemporal)
     fail(scene, "coupling.law", "\"temporal\" needs tool points with cubic springs; allowed none, coupled");
   for (std::size_t i = 0; i < scene.piece.size(); ++i) {
@@ -199,8 +194,6 @@ void check_tips(const SceneDesc& scene) {
     if ((piece.shape == PieceShape::kCylinder || piece.shape == PieceShape::kCapsule) &&
         piece.touches == TouchingEnd::kAll)
       fail(scene, label + ".touches", "this shape presses with one end; set touches = \"minus_z\" or \"plus_z\"");
-    if (piece.points > 1)
-      fail(scene, label + ".points", std::to_string(piece.points) + "; a tip has one point: allowed 0 or 1");
   }
   const auto pieces = static_cast<std::int32_t>(scene.piece.size());
   for (std::size_t i = 0; i < scene.pair.size(); ++i) {
@@ -214,10 +207,26 @@ void check_tips(const SceneDesc& scene) {
          std::to_string(scene.pair.size()) + " pairs; allowed up to " + std::to_string(kMaxTipPairs));
 }
 
+// The laws that the scene's method of contact takes: the column of their table.
+void check_friction_method(const SceneDesc& scene) {
+  const bool nodes = scene.contact.backend == Backend::kNodal, tips = !nodes && is_tip_law(scene.contact.law);
+  const unsigned method = nodes ? kOfNodes : tips ? kOfTips : kOfPoints;
+  if ((methods_of(scene.friction.law) & method) != 0) return;
+  std::string allowed;
+  for (std::int32_t i = 0; i < ChoiceOf<FrictionLaw>::kCount; ++i)
+    if ((methods_of(static_cast<FrictionLaw>(i)) & method) != 0)
+      allowed += (allowed.empty() ? "" : ", ") + std::string(ChoiceOf<FrictionLaw>::kWord[i]);
+  fail(scene, "friction.law",
+       "\"" + std::string(word_of(scene.friction.law)) + "\" is not for " +
+           (nodes  ? "contact.backend = \"nodal\""
+            : tips ? "contact.law = \"tool\" and \"table\", which have no springs of tool points"
+                   : "tool points, contact.backend = \"response\"") +
+           "; allowed " + allowed);
+}
+
 void check_friction(const SceneDesc& scene) {
-  const bool presliding =
-      scene.friction.law == FrictionLaw::kPresliding || scene.friction.law == FrictionLaw::kPreslidingPaper;
-  if (presliding)
+  check_friction_method(scene);
+  if (is_presliding(scene.friction.law))
     for (const char* key : {"beta", "mu_dynamic", "k", "tangential", "reference_force_N"})
       if (scene.source.has(std::string("friction.") + key))
         fail(scene, std::string("friction.") + key,
@@ -245,22 +254,18 @@ void check_order(const SceneDesc& scene) {
 // The nodal back-end has no tool-point law, no skeleton and no shape functions; the others no finite elements.
 void check_backend(const SceneDesc& scene) {
   const bool nodal = scene.contact.backend == Backend::kNodal;
-  const bool coulomb = scene.friction.law == FrictionLaw::kCoulomb;
   const auto no_table = [&](const char* name, const char* because) {
     if (scene.source.has(name)) fail(scene, name, std::string("has no effect ") + because + "; remove the table");
   };
   if (!nodal) {
     no_table("body.fem", "unless contact.backend = \"nodal\"");
     no_table("contact.nodal", "unless contact.backend = \"nodal\"");
-    if (coulomb) fail(scene, "friction.law", "\"coulomb\" needs contact.backend = \"nodal\"; use \"return_map\"");
     return;
   }
   for (const char* table : {"skeleton", "shape", "coupling", "contact.duffing", "contact.cubic", "contact.hertz"})
     no_table(table, "with contact.backend = \"nodal\"");
   check_effect(scene, "contact", {"law", "weight", "surface", "reference_area_mm2", "max_depth_mm"}, {},
                "with contact.backend = \"nodal\"");
-  if (scene.friction.law != FrictionLaw::kNone && !coulomb)
-    fail(scene, "friction.law", "is not available with contact.backend = \"nodal\"; use \"none\" or \"coulomb\"");
   check_effect(scene, "friction", {"tangential", "reference_force_N", "k", "beta", "mu_dynamic"}, {},
                "with law = \"coulomb\" or \"none\"");
   if (scene.material.poisson_ratio >= 0.5)
@@ -274,11 +279,6 @@ void check_backend(const SceneDesc& scene) {
   const bool own_mesh = scene.body.shape == BodyShape::kClip || scene.body.shape == BodyShape::kTets;
   if (own_mesh) check_effect(scene, "body.fem", {"edge_mm"}, {}, "with a body that brings its own mesh");
   if (scene.body.shape == BodyShape::kClip) no_table("body.fixed", "for a clip, whose foot is held");
-  for (std::size_t i = 0; i < scene.piece.size(); ++i)
-    if (scene.piece[i].shape == PieceShape::kHull)
-      fail(scene, "tool.piece[" + std::to_string(i) + "].shape",
-           "\"hull\" is not available with contact.backend = \"nodal\"; use spheres, capsules, cylinders, cones or "
-           "boxes");
 }
 
 // Which dimensions each piece shape needs.

@@ -211,13 +211,7 @@ class Reader {
   std::int32_t read_choice(const toml::node& value, const std::string& path, const KeySpec& key) const {
     if (!value.is_string()) fail_type(value, path, key);
     const std::string& text = **value.as_string();
-    std::vector<std::string> names(1);
-    for (const char* c = key.choices; *c != '\0'; ++c) {
-      if (*c == '|')
-        names.emplace_back();
-      else
-        names.back() += *c;
-    }
+    const std::vector<std::string> names(key.choices.begin(), key.choices.end());
     const auto found = std::ranges::find(names, text);
     if (found != names.end()) return static_cast<std::int32_t>(found - names.begin());
     const std::string guess = nearest(text, names);

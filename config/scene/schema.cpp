@@ -25,33 +25,34 @@ std::int32_t get(const void* table) {
 template <auto member>
 constexpr KeySpec number(const char* key, double lowest, double highest, double scale, const char* meaning,
                          bool required = false) {
-  return {key, KeyKind::kNumber, lowest, highest, scale, required, "", meaning, field<member>, nullptr, nullptr};
+  return {key, KeyKind::kNumber, lowest, highest, scale, required, {}, meaning, field<member>, nullptr, nullptr};
 }
 template <auto member>
 constexpr KeySpec number_or_auto(const char* key, double lowest, double highest, double scale, const char* meaning) {
-  return {key, KeyKind::kNumberOrAuto, lowest, highest, scale, false, "", meaning, field<member>, nullptr, nullptr};
+  return {key, KeyKind::kNumberOrAuto, lowest, highest, scale, false, {}, meaning, field<member>, nullptr, nullptr};
 }
 template <auto member>
 constexpr KeySpec integer(const char* key, double lowest, double highest, const char* meaning) {
-  return {key, KeyKind::kInteger, lowest, highest, 1, false, "", meaning, field<member>, nullptr, nullptr};
+  return {key, KeyKind::kInteger, lowest, highest, 1, false, {}, meaning, field<member>, nullptr, nullptr};
 }
 template <auto member>
 constexpr KeySpec boolean(const char* key, const char* meaning) {
-  return {key, KeyKind::kBool, 0, 1, 1, false, "", meaning, field<member>, nullptr, nullptr};
+  return {key, KeyKind::kBool, 0, 1, 1, false, {}, meaning, field<member>, nullptr, nullptr};
 }
 // For text, `highest` is the greatest length.
 template <auto member>
 constexpr KeySpec text(const char* key, double longest, const char* meaning, bool required = false) {
-  return {key, KeyKind::kText, 1, longest, 1, required, "", meaning, field<member>, nullptr, nullptr};
+  return {key, KeyKind::kText, 1, longest, 1, required, {}, meaning, field<member>, nullptr, nullptr};
 }
 template <auto member>
-constexpr KeySpec choice(const char* key, const char* choices, const char* meaning, bool required = false) {
-  return {key, KeyKind::kChoice, 0, 0, 1, required, choices, meaning, nullptr, set<member>, get<member>};
+constexpr KeySpec choice(const char* key, const char* meaning, bool required = false) {
+  return {key,     KeyKind::kChoice, 0,           0,          1, required, ChoiceOf<decltype(type_of(member))>::kWord,
+          meaning, nullptr,          set<member>, get<member>};
 }
 template <auto member>
 constexpr KeySpec list(KeyKind kind, const char* key, double lowest, double highest, double scale,
                        const char* meaning) {
-  return {key, kind, lowest, highest, scale, false, "", meaning, field<member>, nullptr, nullptr};
+  return {key, kind, lowest, highest, scale, false, {}, meaning, field<member>, nullptr, nullptr};
 }
 
 constexpr double kMilli = 1e-3;
@@ -67,11 +68,10 @@ const KeySpec kTop[] = {
 };
 
 const KeySpec kBody[] = {
-    choice<&BodyDesc::shape>(
-        "shape", "ellipsoid|sphere|cylinder|box|revolution|heart|mesh|half_shell|ring|hollow_cylinder|clip|tets",
-        "kind of body; clip: a pipe clip of 10 mm, open towards +y (Duriez et al. 2003); tets: a "
-        "tetrahedral mesh from a file",
-        true),
+    choice<&BodyDesc::shape>("shape",
+                             "kind of body; clip: a pipe clip of 10 mm, open towards +y (Duriez et al. 2003); tets: a "
+                             "tetrahedral mesh from a file",
+                             true),
     list<&BodyDesc::half_axes_m>(kVec3, "half_axes_mm", 1, 5000, kMilli,
                                  "ellipsoid, half_shell: half axes along x, y, z; a half shell stands on its rim"),
     number<&BodyDesc::radius_m>("radius_mm", 1, 5000, kMilli,
@@ -82,7 +82,7 @@ const KeySpec kBody[] = {
     number<&BodyDesc::wall_m>("wall_mm", 0.1, 5000, kMilli,
                               "half_shell, hollow_cylinder: wall; ring: thickness of its round section"),
     choice<&BodyDesc::axis>(
-        "axis", "y|x|z",
+        "axis",
         "cylinder: standing (y) or lying along x; ring, hollow_cylinder: lying flat or standing (y), or "
         "the axis along z"),
     list<&BodyDesc::profile>(KeyKind::kPairs, "profile_mm", -10000, 10000, kMilli,
@@ -96,7 +96,7 @@ const KeySpec kBody[] = {
                                   "all but mesh: about this many triangles; the tick's cost hardly depends on it"),
 };
 const KeySpec kFem[] = {
-    choice<&FemDesc::order>("order", "quadratic|linear|mixed",
+    choice<&FemDesc::order>("order",
                             "quadratic: 10-node tetrahedra; linear: 4-node ones, 12 to 22 % too stiff in bending; "
                             "mixed: quadratic in a zone, linear elsewhere, with transition elements between"),
     list<&FemDesc::zone_from_m>(kVec3, "zone_from_mm", -10000, 10000, kMilli,
@@ -109,7 +109,7 @@ const KeySpec kFem[] = {
                                      "box: an even number along x or z makes its mesh symmetric there; "
                                      "clip, tets: the mesh has its own"),
     integer<&FemDesc::level>("level", 1, 3, "clip: fineness of its mesh; 1 has 717 nodes"),
-    choice<&FemDesc::precision>("precision", "auto|single|double",
+    choice<&FemDesc::precision>("precision",
                                 "numbers of the compliance table; auto: single where its force error is below 1e-4"),
     integer<&FemDesc::strain_gauges>("strain_gauges", 0, kMaxStrainGauges, "points whose strain is watched every tick"),
 };
@@ -126,12 +126,12 @@ const KeySpec kFixed[] = {
                                       "everything of the body up to this height above its lowest point is clamped"),
 };
 const KeySpec kSkeleton[] = {
-    choice<&SkeletonDesc::law>("law", "none|stiffness|paper|circular|circular_paper",
+    choice<&SkeletonDesc::law>("law",
                                "beam skeleton: stiffness = sum of straight beams' stiffnesses; paper = the ratios of "
                                "Luo & Xiao 2006, eqs. 6-8; circular = circular beams where straight ones would leave "
                                "the body (objects with holes), sum of stiffnesses; circular_paper = the circular beams "
                                "and force ratios as printed in 2009 (docs/models_circular_beams.md)"),
-    choice<&SkeletonDesc::anchors>("anchors", "auto|mesh",
+    choice<&SkeletonDesc::anchors>("anchors",
                                    "auto: exact curvature-extremal points of the shape, from the mesh where the shape "
                                    "is a mesh or a heart; mesh: always from the mesh"),
     integer<&SkeletonDesc::anchors_min>("anchors_min", 0, kMaxAnchors, "add extreme points until there are this many"),
@@ -149,14 +149,14 @@ const KeySpec kSkeleton[] = {
                                             "circular: epsilon, added to the radius of curvature of the surface"),
 };
 const KeySpec kContact[] = {
-    choice<&ContactDesc::law>("law", "duffing|cubic|hertz|tool|table",
+    choice<&ContactDesc::law>("law",
                               "force per unit weight of each tool point, f = k1 D + k3 D^3: from Duffing parameters, "
                               "given directly, or fitted to Hertz' contact; or the response of the whole tip: of the "
                               "piece's own shape (tool), or curves of presses (table)"),
-    choice<&ContactDesc::weight>("weight", "winkler|area|paper",
+    choice<&ContactDesc::weight>("weight",
                                  "weight of a tool point: area / reference area (force continuous as points enter and "
                                  "leave), share of the area in contact, or 1/n"),
-    choice<&ContactDesc::surface>("surface", "facets|smooth",
+    choice<&ContactDesc::surface>("surface",
                                   "what a tool point touches: the triangles, whose edges are felt by a tool of few "
                                   "points; or the smooth surface they stand for, about 1,400 instructions more a "
                                   "point. laws tool and table: always smooth"),
@@ -169,18 +169,18 @@ const KeySpec kContact[] = {
                                                      "contact points nearer than this are one region; auto: twice the "
                                                      "spacing of the tool points; nodal: three edges"),
     choice<&ContactDesc::backend>(
-        "backend", "response|nodal",
+        "backend",
         "response: tool points with a force law each; nodal: finite elements against the tool's "
         "exact pieces (docs/models_contact_lcp.md)"),
 };
 const KeySpec kNodal[] = {
-    choice<&NodalDesc::solver>("solver", "pivoting|gauss_seidel",
+    choice<&NodalDesc::solver>("solver",
                                "normal forces: exact, by block principal pivoting; or approximate, by sweeps"),
     integer<&NodalDesc::sweeps>("sweeps", 1, 100, "gauss_seidel: sweeps per tick"),
     integer<&NodalDesc::friction_sweeps>("friction_sweeps", 1, 20,
                                          "sweeps per tick of the problem with friction; each costs about 30,000 "
                                          "instructions for 45 contacts"),
-    choice<&NodalDesc::carry>("carry", "far_field|rest|turned",
+    choice<&NodalDesc::carry>("carry",
                               "where gaps and normals are taken: on the surface carried by its far field, at rest, or "
                               "carried by the far field's finite rotation (clips: 4.6 % instead of 8.8 %)"),
     number_or_auto<&NodalDesc::margin_m>("margin_mm", 0.001, 100, kMilli,
@@ -196,7 +196,7 @@ const KeySpec kDuffing[] = {
     number<&DuffingDesc::omega0>("omega0", 0, 1e3, 1, "omega0 of Luo & Xiao 2006"),
     number<&DuffingDesc::beta0sq_eps>("beta0sq_eps", 0, 1e6, 1,
                                       "beta0^2 epsilon; k3 = coefficient m beta0^2 eps N/mm^3"),
-    choice<&DuffingDesc::coefficient>("coefficient", "static|paper",
+    choice<&DuffingDesc::coefficient>("coefficient",
                                       "static: 1, the equilibrium under a constant force; paper: 3/4, the mean over an "
                                       "oscillation (Luo & Xiao 2006, eq. 3)"),
 };
@@ -214,7 +214,7 @@ const KeySpec kTip[] = {
                                           "radius of sphere or flat punch; auto: the piece's"),
     number_or_auto<&TipLawDesc::half_angle_rad>("half_angle_deg", 1, 89, kDegree,
                                                 "cone: angle between axis and side; auto: the piece's"),
-    choice<&TipLawDesc::sphere>("sphere", "exact|parabola",
+    choice<&TipLawDesc::sphere>("sphere",
                                 "shape of the sphere: true, or the parabola of Hertz (1882) and of the paper"),
     number_or_auto<&TipLawDesc::body_radius_1_m>("body_radius_1_mm", -1e5, 1e5, kMilli,
                                                  "sphere: principal radius of the body where it is touched; 0 flat, "
@@ -224,7 +224,7 @@ const KeySpec kTip[] = {
 const KeySpec kLayer[] = {
     number<&LayerDesc::thickness_m>("thickness_mm", 0, 1e4, kMilli,
                                     "the body is a layer this thick on a rigid base; 0: as thick as it needs to be"),
-    choice<&LayerDesc::base>("base", "bonded|slip", "how the layer is held by its base"),
+    choice<&LayerDesc::base>("base", "how the layer is held by its base"),
 };
 const KeySpec kSeries[] = {
     number_or_auto<&SeriesDesc::c0_m_per_N>(
@@ -246,7 +246,7 @@ const KeySpec kPair[] = {
                                              "second order, the other way round; auto: likewise"),
 };
 const KeySpec kTable[] = {
-    choice<&TableDesc::source>("source", "file|fem",
+    choice<&TableDesc::source>("source",
                                "a CSV of measured presses, or presses by finite elements when the scene is baked "
                                "(standing cylinder, box, sphere, ellipsoid of revolution about y)"),
     text<&TableDesc::file>(
@@ -256,9 +256,8 @@ const KeySpec kTable[] = {
     boolean<&TableDesc::smooth>("smooth", "pool rows whose force falls instead of refusing them"),
 };
 const KeySpec kFriction[] = {
-    choice<&FrictionDesc::law>("law", "none|return_map|paper|mindlin|coulomb|presliding|presliding_paper",
-                               "friction law; coulomb: nodal only, with the coefficient mu_ref"),
-    choice<&FrictionDesc::tangential>("tangential", "separable|radial",
+    choice<&FrictionDesc::law>("law", "friction law; coulomb: nodal only, with the coefficient mu_ref"),
+    choice<&FrictionDesc::tangential>("tangential",
                                       "sticking force from each depth component by itself, or from the whole depth"),
     number_or_auto<&FrictionDesc::mu_ref>("mu_ref", 0, 100, 1,
                                           "static friction coefficient at the reference force, K = mu_ref F_ref^(1 - "
@@ -273,25 +272,23 @@ const KeySpec kFriction[] = {
                                   "presliding_paper: displacement at which the contact slides"),
 };
 const KeySpec kShape[] = {
-    choice<&ShapeDesc::interpolation>("interpolation", "rbf|displacement_angle",
-                                      "how anchor displacements spread over the surface"),
-    choice<&ShapeDesc::tail>("tail", "constant|linear", "polynomial of the rbf; linear needs 4 anchors not in a plane"),
-    choice<&ShapeDesc::neighbourhood>("neighbourhood", "none|log|log_c1|punch", "dent around a contact"),
+    choice<&ShapeDesc::interpolation>("interpolation", "how anchor displacements spread over the surface"),
+    choice<&ShapeDesc::tail>("tail", "polynomial of the rbf; linear needs 4 anchors not in a plane"),
+    choice<&ShapeDesc::neighbourhood>("neighbourhood", "dent around a contact"),
     number<&ShapeDesc::radius_m>("radius_mm", 0.001, 1000, kMilli,
                                  "radius R of the dent; a hand whose scene leaves it out takes that of each finger "
                                  "part from Cui & Xiao 2008, Table I"),
 };
 const KeySpec kCoupling[] = {
-    choice<&CouplingDesc::law>("law", "none|coupled|temporal",
+    choice<&CouplingDesc::law>("law",
                                "how contact regions influence one another: not; by a conservative far field; in the "
                                "order they appeared (Luo & Xiao 2006)"),
     number_or_auto<&CouplingDesc::radius_m>("radius_mm", 0.001, 1000, kMilli,
                                             "core radius of the far field; auto: sqrt(reference area / pi)"),
 };
 const KeySpec kPiece[] = {
-    choice<&PieceDesc::shape>("shape", "sphere|capsule|cylinder|cone|box|hull",
-                              "convex piece; its axis is its z axis; a cone's apex is at +z", true),
-    choice<&PieceDesc::touches>("touches", "all|plus_z|minus_z",
+    choice<&PieceDesc::shape>("shape", "convex piece; its axis is its z axis; a cone's apex is at +z", true),
+    choice<&PieceDesc::touches>("touches",
                                 "part that carries tool points: all of it, or only the end face (with its rounding) at "
                                 "the +z or -z end; spheres, boxes and hulls: all"),
     list<&PieceDesc::position_m>(kVec3, "position_mm", -1e4, 1e4, kMilli, "centre in the tool frame"),
@@ -316,12 +313,11 @@ const KeySpec kPiece[] = {
                               "is when closed. Pieces with the same value are one jaw"),
 };
 const KeySpec kHand[] = {
-    choice<&HandDesc::fingers>("fingers", "two|three|five",
+    choice<&HandDesc::fingers>("fingers",
                                "that take part: thumb and index; with the middle finger; all. The others stay "
                                "stretched out"),
     choice<&HandDesc::side>(
-        "side", "right|left",
-        "left: the mirror image of the right hand in y = 0 of its frame, so the thumb's side is -y"),
+        "side", "left: the mirror image of the right hand in y = 0 of its frame, so the thumb's side is -y"),
     list<&HandDesc::grasp_position_m>(kVec3, "grasp_mm", -1e4, 1e4, kMilli,
                                       "the palm's middle when the hand holds the body; the preshape is made for it"),
     list<&HandDesc::grasp_rotation_rad>(

@@ -17,7 +17,7 @@ struct KeySpec {
   double lowest, highest;  // in the key's own unit; of each component of vectors and lists
   double scale;            // key's unit to SI
   bool required;
-  const char* choices;  // "a|b|c" in the order of the enumeration (kChoice), otherwise ""
+  std::span<const char* const> choices;  // words in the order of the enumeration (kChoice), otherwise empty
   const char* meaning;
   void* (*field)(void* table);  // address of the member; unused for kChoice
   void (*set_choice)(void* table, std::int32_t value);

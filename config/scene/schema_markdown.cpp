@@ -43,26 +43,10 @@ std::string unit_text(const std::string& key) {
   return "";
 }
 
-std::string choices_text(const char* choices) {
+std::string choices_text(std::span<const char* const> choices) {
   std::string text = "one of ";
-  for (const char* c = choices; *c != '\0'; ++c) {
-    if (*c == '|')
-      text += ", ";
-    else
-      text += *c;
-  }
+  for (const char* word : choices) text += std::string(word == choices.front() ? "" : ", ") + word;
   return text;
-}
-
-std::string choice_name(const char* choices, std::int32_t index) {
-  std::string name;
-  for (const char* c = choices; *c != '\0'; ++c) {
-    if (*c == '|')
-      --index;
-    else if (index == 0)
-      name += *c;
-  }
-  return name;
 }
 
 std::string range_text(const KeySpec& key) {
@@ -102,7 +86,7 @@ std::string default_text(const KeySpec& key, void* table) {
       return value.empty() ? "-" : "\"" + value + "\"";
     }
     case KeyKind::kChoice:
-      return "\"" + choice_name(key.choices, key.get_choice(table)) + "\"";
+      return "\"" + std::string(key.choices[static_cast<std::size_t>(key.get_choice(table))]) + "\"";
     case KeyKind::kVec3:
       return vector_text(*static_cast<Vec3*>(key.field(table)), key.scale);
     case KeyKind::kPairs:

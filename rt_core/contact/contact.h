@@ -8,16 +8,7 @@
 
 namespace palpate {
 
-enum class Method : std::int32_t {
-  kPoints = 0,  // springs at the tool's points
-  kTips = 1,    // one law per whole tip
-  kNodes = 2    // nodes of a finite-element body
-};
-
-inline Method method_of(const Model& model) PALPATE_RT {
-  if (static_cast<Backend>(model.params.backend) == Backend::kNodal) return Method::kNodes;
-  return static_cast<ResponseLaw>(model.params.response_law) == ResponseLaw::kPoints ? Method::kPoints : Method::kTips;
-}
+inline Method method_of(const Model& model) PALPATE_RT { return method_of(model.params); }
 
 struct ContactMethod {
   // What touches, and where: the rows of this tick's problem. Reads the tool's and its pieces' poses.

@@ -163,8 +163,8 @@ Presliding preslide(Vec3 stretch, Vec3 step, Real slip_m) PALPATE_RT {
 
 FrictionParameters friction_parameters(const ModelParams& params) PALPATE_RT {
   FrictionParameters p;
-  p.law = static_cast<FrictionLaw>(params.friction_law);
-  p.tangential = static_cast<TangentialLaw>(params.tangential_law);
+  p.law = params.friction_law;
+  p.tangential = params.tangential_law;
   p.k_N = params.friction_k_N;
   p.beta = params.friction_beta;
   p.mu_dynamic = params.friction_mu_dynamic;
@@ -193,7 +193,7 @@ FrictionForce friction_step(const FrictionParameters& parameters, const Friction
   const bool first_touch = memory.mode == FrictionMode::kFree || !is_finite(memory.stretch_w);
   if (first_touch) memory = {{}, 0.0, FrictionMode::kStick};
   const Vec3 step = first_touch || !is_finite(load.step_w) ? Vec3{} : tangential_part(load.step_w, load.normal_w);
-  if (parameters.law >= FrictionLaw::kPresliding) return presliding_step(parameters, load, step, memory);
+  if (is_presliding(parameters.law)) return presliding_step(parameters, load, step, memory);
   const TangentialSpring spring = tangential_spring(parameters, load, memory);
   const Vec3 start = tangential_part(memory.stretch_w, load.normal_w);
   const Vec3 trial = start + step;

@@ -141,7 +141,7 @@ bool solve_beam_table(const Model& model, const SurfaceSpot& spot, Vec3 force_on
   clear(model, spot, skeleton);
   skeleton.degenerate = !(spot.found && is_finite(force_on_body_w) && skeleton.count > 0);
   if (skeleton.degenerate) return false;
-  return static_cast<SkeletonLaw>(model.params.skeleton_law) == SkeletonLaw::kCircularPaper
+  return model.params.skeleton_law == SkeletonLaw::kCircularPaper
              ? share_by_ratios(model, force_on_body_w, skeleton)
              : share_by_stiffness(model, force_on_body_w, skeleton);
 }

@@ -11,7 +11,8 @@
 namespace palpate {
 
 inline bool uses_beam_table(const Model& model) PALPATE_RT {
-  return model.params.skeleton_law >= static_cast<std::int32_t>(SkeletonLaw::kCircular);
+  return model.params.skeleton_law == SkeletonLaw::kCircular ||
+         model.params.skeleton_law == SkeletonLaw::kCircularPaper;
 }
 
 // A point of the rest surface: the triangle it lies on, as vertices and barycentric weights (>= 0, sum 1).

@@ -21,7 +21,7 @@ void rbf_terms(const Model& model, Vec3 x, RbfVector& g) PALPATE_RT {
   const auto anchors = static_cast<std::int32_t>(model.sizes.n_anchor);
   for (std::int32_t i = 0; i < anchors; ++i) g[i] = norm(x - model.anchor[static_cast<std::size_t>(i)].position_m);
   g[anchors] = 1;
-  if (model.params.rbf_tail != 1) return;
+  if (model.params.rbf_tail != RbfTail::kLinear) return;
   g[anchors + 1] = x.x;
   g[anchors + 2] = x.y;
   g[anchors + 3] = x.z;

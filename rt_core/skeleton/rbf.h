@@ -12,7 +12,7 @@ namespace palpate {
 inline constexpr std::int32_t kMaxRbf = kMaxAnchors + 4;
 
 // Polynomial terms beside the radial functions: 1 (constant tail, tail = 0) or 4 (linear tail, tail = 1).
-inline constexpr std::int32_t rbf_tail_size(std::int32_t tail) PALPATE_RT { return tail == 1 ? 4 : 1; }
+inline constexpr std::int32_t rbf_tail_size(RbfTail tail) PALPATE_RT { return tail == RbfTail::kLinear ? 4 : 1; }
 
 // g(x) = [|x - x_i| ; 1 ; (x)], up to kMaxRbf values.
 using RbfVector = Real[kMaxRbf];

@@ -20,7 +20,7 @@ void clear_forces(Skeleton& skeleton) PALPATE_RT {
 SkeletonSetup skeleton_setup(const Model& model) PALPATE_RT {
   SkeletonSetup setup;
   setup.material = {model.params.youngs_modulus_Pa, model.params.poisson_ratio};
-  const bool paper = model.params.skeleton_law == static_cast<std::int32_t>(SkeletonLaw::kPaper);
+  const bool paper = model.params.skeleton_law == SkeletonLaw::kPaper;
   setup.theory = paper ? BeamTheory::kEulerBernoulli : BeamTheory::kTimoshenko;
   return setup;
 }
@@ -100,7 +100,7 @@ bool distribute_by_ratios(Real youngs_modulus_Pa, Vec3 force_on_body_w, Skeleton
 
 bool solve_skeleton(const Model& model, std::span<const Vec3> offset_w, Vec3 contact_w, Vec3 force_on_body_w,
                     Skeleton& skeleton) PALPATE_RT {
-  const auto law = static_cast<SkeletonLaw>(model.params.skeleton_law);
+  const auto law = model.params.skeleton_law;
   skeleton.count = 0;
   clear_forces(skeleton);
   if (law == SkeletonLaw::kNone || model.anchor.empty()) return false;

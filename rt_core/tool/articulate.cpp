@@ -45,7 +45,7 @@ double goal_of(const Model& model, const State& state, Scratch& scratch, const I
 double load_on(const Model& model, const ArticulationState& a, std::int32_t j, std::int32_t piece) PALPATE_RT {
   const Joint& joint = joint_at(model, j);
   const Vec3 force = a.piece_force_tool_N[piece];
-  if (static_cast<JointKind>(joint.kind) == JointKind::kSlide) return joint.sign * dot(a.axis_tool[j], force);
+  if (joint.kind == JointKind::kSlide) return joint.sign * dot(a.axis_tool[j], force);
   return joint.sign * dot(a.axis_tool[j], a.piece_torque_tool_Nm[piece] - cross(a.origin_tool_m[j], force));
 }
 
@@ -124,7 +124,7 @@ void place_links(const Model& model, const double* joint, Pose* link_tool, Vec3*
     const Vec3 z = rotate(axis.orientation, {0, 0, 1});
     const double q = row.sign * joint[j];
     Pose moved = axis;
-    if (static_cast<JointKind>(row.kind) == JointKind::kSlide) {
+    if (row.kind == JointKind::kSlide) {
       moved.position_m += q * z;
     } else {
       moved.orientation = axis.orientation * Quat{math::cos(0.5 * q), 0, 0, math::sin(0.5 * q)};
@@ -166,7 +166,7 @@ void load_pieces(const Model& model, State& state, Scratch& scratch) PALPATE_RT 
     a.piece_force_tool_N[contact.piece] += force;
     a.piece_torque_tool_Nm[contact.piece] += cross(inverse_transform(state.tool_w, contact.position_w), force);
   }
-  if (static_cast<Articulation>(model.params.articulation) == Articulation::kHand) balance_palm(model, state, scratch);
+  if (model.params.articulation == Articulation::kHand) balance_palm(model, state, scratch);
 }
 
 }  // namespace palpate

@@ -21,7 +21,7 @@ void place_links(const Model& model, const double* joint, Pose* link_tool, Vec3*
 // and the motion of the piece by its joints.
 
 inline bool is_articulated(const Model& model) PALPATE_RT {
-  return model.params.articulation != static_cast<std::int32_t>(Articulation::kRigid);
+  return model.params.articulation != Articulation::kRigid;
 }
 // Tool-frame coordinates with all joints at zero (ToolPiece, ToolPoint) to the world: with the tool at `tool_w` and the
 // joints of this tick or of the last; or as the tool stands now and stood at the last tick.

@@ -122,7 +122,7 @@ template <class Vector>
   using Number = decltype(Vector::x);
   const Real(&half)[3] = piece.half_extent_m;
   const Number one = piece_gap_forms::one_like(p.x);
-  switch (static_cast<PieceShape>(piece.shape)) {
+  switch (piece.shape) {
     case PieceShape::kSphere:
       return piece_gap_forms::outside(p, piece.margin_m);
     case PieceShape::kCapsule:

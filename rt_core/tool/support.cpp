@@ -35,7 +35,7 @@ Vec3 hull_support(std::span<const Vec3> hull, Vec3 direction) PALPATE_RT {
 
 Vec3 core_support(const ToolPiece& piece, std::span<const Vec3> hull, Vec3 direction) PALPATE_RT {
   const Real* half = piece.half_extent_m;
-  switch (static_cast<PieceShape>(piece.shape)) {
+  switch (piece.shape) {
     case PieceShape::kSphere:
       return {};
     case PieceShape::kCapsule:
@@ -53,7 +53,7 @@ Vec3 core_support(const ToolPiece& piece, std::span<const Vec3> hull, Vec3 direc
 }
 
 std::span<const Vec3> hull_of(const Model& model, const ToolPiece& piece) PALPATE_RT {
-  if (static_cast<PieceShape>(piece.shape) != PieceShape::kHull || piece.hull_count <= 0) return {};
+  if (piece.shape != PieceShape::kHull || piece.hull_count <= 0) return {};
   const auto first = static_cast<std::size_t>(piece.first_hull);
   return {model.hull_vertex_m.data() + first, static_cast<std::size_t>(piece.hull_count)};
 }

@@ -16,9 +16,9 @@ namespace palpate {
 namespace {
 
 const char* method_text(const Model& model) {
-  if (static_cast<Backend>(model.params.backend) == Backend::kNodal)
+  if (model.params.backend == Backend::kNodal)
     return "nodes of a finite-element body, forces and the tool's place in one problem";
-  switch (static_cast<ResponseLaw>(model.params.response_law)) {
+  switch (model.params.response_law) {
     case ResponseLaw::kPoints:
       return "tool points with springs";
     case ResponseLaw::kTip:
@@ -30,7 +30,7 @@ const char* method_text(const Model& model) {
 
 // What a stage has to do in this scene beyond its usual work.
 std::string stage_note(const Model& model, std::string_view stage) {
-  const bool temporal = static_cast<CouplingLaw>(model.params.coupling_law) == CouplingLaw::kTemporal;
+  const bool temporal = model.params.coupling_law == CouplingLaw::kTemporal;
   if (stage == "articulate")
     return is_articulated(model) ? fmt::format("{} joints", model.joint.size()) : "nothing: the tool is rigid";
   if ((stage == "force" || stage == "solve") && temporal)

@@ -75,6 +75,15 @@ std::string array_row(const char* name, std::span<const T> values, const char* f
                      meaning);
 }
 
+// A choice by its word.
+template <class T>
+std::string value_text(T value) {
+  if constexpr (Choice<T>)
+    return word_of(value);
+  else
+    return fmt::format("{:.7g}", static_cast<double>(value));
+}
+
 }  // namespace
 
 std::string image_dump(const ImageHeader& header, const Model& model) {
@@ -85,8 +94,12 @@ std::string image_dump(const ImageHeader& header, const Model& model) {
       name, header.version, header.total_bytes, header.layout_hash, header.checksum);
   const auto out = std::back_inserter(text);
 #define PALPATE_ROW(type, field, unit, lowest, highest, meaning) \
-  fmt::format_to(out, "  {:<26}{:>14.7g}  {:<11}{}\n", #field, static_cast<double>(model.params.field), unit, meaning);
-  PALPATE_MODEL_PARAMS(PALPATE_ROW)
+  fmt::format_to(out, "  {:<26}{:>18}  {:<11}{}\n", #field, value_text(model.params.field), unit, meaning);
+#define PALPATE_GROUP(title, PARAMS)      \
+  fmt::format_to(out, " of {}\n", title); \
+  PARAMS(PALPATE_ROW)
+  PALPATE_PARAM_GROUPS(PALPATE_GROUP)
+#undef PALPATE_GROUP
 #undef PALPATE_ROW
   text += "\nsizes\n";
 #define PALPATE_ROW(field, lowest, highest) fmt::format_to(out, "  {:<16}{:>10}\n", #field, model.sizes.field);

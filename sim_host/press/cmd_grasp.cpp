@@ -81,8 +81,8 @@ void print_run(const Model& model, const GraspRun& run) {
 void print_order(const Model& model, const SceneDesc& scene) {
   for (const CouplingLaw law : {CouplingLaw::kCoupled, CouplingLaw::kTemporal}) {
     Model varied = model;
-    varied.params.coupling_law = static_cast<std::int32_t>(law);
-    varied.params.friction_law = static_cast<std::int32_t>(FrictionLaw::kNone);
+    varied.params.coupling_law = law;
+    varied.params.friction_law = FrictionLaw::kNone;
     varied.params.stop_force_N = 1e6;  // every finger ends where the preshape says
     GraspOptions fingers_late, thumb_late;
     for (std::size_t f = 1; f < kMaxFingers; ++f) fingers_late.delay_s[f] = 0.3;

@@ -43,7 +43,7 @@ void set_fraction(JointCommand& joints, std::size_t finger, double value, const 
 // Degrees or millimetres, within the joint's limits.
 void set_joint(JointCommand& joints, const Model& model, std::size_t j, double value, const std::string& where) {
   const Joint& joint = model.joint[j];
-  const bool slides = static_cast<JointKind>(joint.kind) == JointKind::kSlide;
+  const bool slides = joint.kind == JointKind::kSlide;
   const double unit = slides ? 1e-3 : kDegree;
   const double low = joint.lowest / unit, high = joint.highest / unit;
   if (!(value >= low - 1e-9 && value <= high + 1e-9))
@@ -90,7 +90,7 @@ void need_joints(const Model& model, const std::string& option) {
 
 std::vector<std::string> joint_names(const Model& model) {
   std::vector<std::string> names;
-  if (static_cast<Articulation>(model.params.articulation) == Articulation::kHand) {
+  if (model.params.articulation == Articulation::kHand) {
     names = {"thumb_root_spread", "thumb_root_flexion", "thumb_spread", "thumb_flexion", "thumb_tip_flexion"};
     for (std::size_t f = 1; f < kFingers.size(); ++f)
       for (const char* joint : {"_spread", "_flexion", "_middle_flexion", "_tip_flexion"})

@@ -36,7 +36,7 @@ bool add_table_beams(const Model& model, const State& state, std::int32_t slot, 
 }
 
 bool add_straight_beams(const Model& model, const State& state, std::int32_t slot, AnchorField& field) {
-  const bool temporal = model.params.coupling_law == static_cast<std::int32_t>(CouplingLaw::kTemporal);
+  const bool temporal = model.params.coupling_law == CouplingLaw::kTemporal;
   std::vector<Vec3> offset;
   for (std::int32_t a = 0; temporal && a < field.count; ++a) offset.push_back(field.anchor[a].displacement_w);
   const Region& region = state.region[slot];
@@ -96,7 +96,7 @@ BeamTableAnchor beam_table_anchor(const Model& model, const BeamTableSkeleton& s
 
 AnchorField anchors_of(const Model& model, const State& state) {
   AnchorField field;
-  if (model.params.skeleton_law == static_cast<std::int32_t>(SkeletonLaw::kNone)) return field;
+  if (model.params.skeleton_law == SkeletonLaw::kNone) return field;
   field.count = std::min(static_cast<std::int32_t>(model.anchor.size()), kMaxAnchors);
   if (field.count == 0) return field;
   std::int32_t order[kMaxRegions];

@@ -87,7 +87,7 @@ void displace(const Model& model, const State& state, DeformedSurface& surface) 
     const std::int32_t vertex = i < model.vertex_m.size() ? static_cast<std::int32_t>(i) : -1;
     surface.displacement_m.push_back(displacement_at(model, field, surface.rest_m[i], vertex));
   }
-  if (static_cast<Articulation>(model.params.articulation) != Articulation::kHand) return;
+  if (model.params.articulation != Articulation::kHand) return;
   finish_positions(surface);
   imprint(model, state, surface.position_m);
   for (std::size_t i = 0; i < surface.rest_m.size(); ++i)
@@ -210,8 +210,7 @@ DeformedSurface deformed_surface(const Model& model, const State& state) {
 DeformedSurface refined_surface(const Model& model, const State& state, std::size_t most_triangles) {
   DeformedSurface surface = rest_surface(model);
   std::vector<TriangleNormals> corner = smooth_normals(surface.rest_m, surface.triangle);
-  const bool everywhere = method_of(model) != Method::kNodes &&
-                          static_cast<ShapeLaw>(model.params.shape_law) != ShapeLaw::kDisplacementAngle;
+  const bool everywhere = method_of(model) != Method::kNodes && model.params.shape_law != ShapeLaw::kDisplacementAngle;
   while (everywhere && 4 * surface.triangle.size() <= most_triangles) refine(surface, corner);
   displace(model, state, surface);
   finish(surface);

@@ -68,7 +68,7 @@ double distance_m(const FingerShape& shape, Vec3 point_w) {
 
 std::vector<FingerShape> finger_shapes(const Model& model, const State& state) {
   std::vector<FingerShape> shapes;
-  if (static_cast<Articulation>(model.params.articulation) != Articulation::kHand) return shapes;
+  if (model.params.articulation != Articulation::kHand) return shapes;
   std::int32_t last_slot = -1, last_group = -1;
   for (std::size_t p = 0; p < model.piece.size(); ++p) {  // roots before tips
     const std::int32_t slot = region_of(model, state, p);
@@ -88,7 +88,7 @@ std::vector<FingerShape> finger_shapes(const Model& model, const State& state) {
 }
 
 void imprint(const Model& model, const State& state, std::vector<Vec3>& position_m) {
-  if (static_cast<Articulation>(model.params.articulation) != Articulation::kHand) return;
+  if (model.params.articulation != Articulation::kHand) return;
   for (const FingerShape& shape : finger_shapes(model, state)) {
     for (Vec3& p : position_m) p += way_out_m(shape, p) * shape.into_body_w;
   }

@@ -59,7 +59,7 @@ class Renderer {
         state_(state),
         surface_(surface),
         options_(options),
-        is_hand_(static_cast<Articulation>(model.params.articulation) == Articulation::kHand),
+        is_hand_(model.params.articulation == Articulation::kHand),
         samples_(std::clamp(options.supersampling, 1, 4)),
         forces_(force_arrows(model, state, options.force_max_N)),
         projection_(options.camera

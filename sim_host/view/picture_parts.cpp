@@ -12,7 +12,7 @@ namespace palpate {
 
 namespace {
 
-bool is_hand(const Model& model) { return static_cast<Articulation>(model.params.articulation) == Articulation::kHand; }
+bool is_hand(const Model& model) { return model.params.articulation == Articulation::kHand; }
 
 // Everything to be seen. What of a long tool lies farther from the body than kToolShown of its radii is
 // left to the edge of the picture.
@@ -116,7 +116,7 @@ RenderMesh piece_mesh(const Model& model, const ToolPiece& piece, const Pose& ca
   const Pose pose = carrier_w * piece.pose_tool;
   const double* half = piece.half_extent_m;
   const double r = half[0], h = half[2];
-  switch (static_cast<PieceShape>(piece.shape)) {
+  switch (piece.shape) {
     case PieceShape::kSphere:
       return sphere_mesh(pose, piece.margin_m);
     case PieceShape::kCapsule:

@@ -10,9 +10,7 @@
 namespace palpate {
 namespace {
 
-bool uses_angles(const Model& model) {
-  return model.params.shape_law == static_cast<std::int32_t>(ShapeLaw::kDisplacementAngle);
-}
+bool uses_angles(const Model& model) { return model.params.shape_law == ShapeLaw::kDisplacementAngle; }
 
 // The patch of a vertex, or nullptr where the displacement-angle law cannot be used.
 const PatchWeight* patch_of(const Model& model, std::int32_t vertex) {
@@ -76,8 +74,7 @@ void prepare_region(const Model& model, const State& state, const AnchorField& a
   r.dent_w = dent_of(model, region);
   r.local_amplitude_w = r.dent_w;
   const Real reach_m = reach_of(model, state, slot);
-  r.local = make_neighbourhood(static_cast<NeighbourhoodLaw>(model.params.neighbourhood_law),
-                               contact_radius_m(region.area_m2, reach_m), reach_m);
+  r.local = make_neighbourhood(model.params.neighbourhood_law, contact_radius_m(region.area_m2, reach_m), reach_m);
   for (std::int32_t i = 0; i < anchors.count; ++i) r.anchor_displacement_w[i] = anchors.by_region_w[slot][i];
   if (!field.interpolated) return;
 

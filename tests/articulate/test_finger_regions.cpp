@@ -20,7 +20,7 @@ struct TwoParts {
   ToolPoint point[2];
 
   TwoParts(std::int32_t group_a, std::int32_t group_b) {
-    model.params.articulation = static_cast<std::int32_t>(Articulation::kHand);
+    model.params.articulation = Articulation::kHand;
     model.params.cluster_distance_m = kNear_m;
     piece[0].group = group_a;
     piece[1].group = group_b;
@@ -70,7 +70,7 @@ TEST(FingerRegions, OnePartIsOneRegionHoweverFarItsPointsAreApart) {
 
 TEST(FingerRegions, PiecesOfARigidToolGoByDistanceAlone) {
   TwoParts parts(1, 2);
-  parts.model.params.articulation = 0;
+  parts.model.params.articulation = Articulation::kRigid;
   EXPECT_EQ(parts.clusters_at(0.99 * kNear_m), 1);
 }
 

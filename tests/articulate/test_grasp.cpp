@@ -132,8 +132,8 @@ TEST(Grasp, StressesStartAtZeroAndAreLargestWhileHeld) {
 GraspRun played_in_order(const std::string& name, CouplingLaw law, const std::vector<double>& delay_s) {
   const SceneModel& scene = scene_named(name);
   Model model = scene.model();
-  model.params.coupling_law = static_cast<std::int32_t>(law);
-  model.params.friction_law = static_cast<std::int32_t>(FrictionLaw::kNone);
+  model.params.coupling_law = law;
+  model.params.friction_law = FrictionLaw::kNone;
   model.params.stop_force_N = 1e6;
   GraspOptions options;
   options.every = 1'000'000;  // no history
@@ -206,7 +206,7 @@ TEST(Grasp, SeveralOrdersOfFiveFingersEndInTheSameForces) {
 // back, to the error of the sum over ticks. The far field of an articulated tool is fixed to the body for this.
 TEST(Grasp, LoopsOfFingersAndWristReturnNoEnergy) {
   Model model = scene_named("grasp_cylinder_5").model();
-  model.params.friction_law = static_cast<std::int32_t>(FrictionLaw::kNone);
+  model.params.friction_law = FrictionLaw::kNone;
   model.params.stop_force_N = 1e6;
   Bench bench(model);
   struct Push {

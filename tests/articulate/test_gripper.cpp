@@ -233,7 +233,7 @@ TEST(GripperImage, EveryBrokenJointIsRefused) {
       {"joint.speed_max", [](Joint& j) { j.speed_max = 0; }},
       {"joint.sign", [](Joint& j) { j.sign = 0.5; }},
       {"joint.parent", [](Joint& j) { j.parent = 1; }},
-      {"joint.kind", [](Joint& j) { j.kind = 2; }},
+      {"joint.kind", [](Joint& j) { j.kind = static_cast<JointKind>(2); }},
       {"joint.finger", [](Joint& j) { j.finger = kMaxFingers; }},
   };
   for (const auto& [field, damage] : damages) {
@@ -246,7 +246,7 @@ TEST(GripperImage, EveryBrokenJointIsRefused) {
     EXPECT_STREQ(result.field, field);
   }
   Model model = good;
-  model.params.articulation = 0;
+  model.params.articulation = Articulation::kRigid;
   EXPECT_STREQ(check_arrays(model).field, "n_joint");
 }
 

@@ -40,7 +40,7 @@ struct Body {
     model.hull_vertex_m = hull;
     model.params.surface_size_m = 0.1;
     model.params.cluster_distance_m = 5e-3;
-    model.params.coupling_law = static_cast<std::int32_t>(CouplingLaw::kCoupled);
+    model.params.coupling_law = CouplingLaw::kCoupled;
   }
 };
 

@@ -16,7 +16,7 @@ inline ToolPiece piece_of(PieceShape shape, double x, double y, double z, double
   piece.half_extent_m[2] = z;
   piece.margin_m = margin;
   piece.bounding_radius_m = std::sqrt(x * x + y * y + z * z) + margin;
-  piece.shape = static_cast<std::int32_t>(shape);
+  piece.shape = shape;
   return piece;
 }
 
@@ -24,7 +24,7 @@ inline ToolPiece piece_of(PieceShape shape, double x, double y, double z, double
 inline double distance_to_core(const ToolPiece& piece, Vec3 p) {
   const double* h = piece.half_extent_m;
   const double r = std::hypot(p.x, p.y), over_z = std::max(std::abs(p.z) - h[2], 0.0);
-  switch (static_cast<PieceShape>(piece.shape)) {
+  switch (piece.shape) {
     case PieceShape::kSphere:
       return norm(p);
     case PieceShape::kCapsule:

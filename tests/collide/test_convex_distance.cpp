@@ -61,7 +61,7 @@ TEST(ConvexDistance, MatchesTheNestedSearchOracle) {
       const Vec3 t[3] = {random_vec(rng, 0.02), random_vec(rng, 0.02), random_vec(rng, 0.02)};
       const ConvexDistance d = distance_piece_triangle(model, piece, pose, t);
       const double oracle = distance_oracle(piece, pose, t);
-      ASSERT_NEAR(d.distance_m, oracle, 1e-8) << "shape " << piece.shape << " pair " << i;
+      ASSERT_NEAR(d.distance_m, oracle, 1e-8) << "shape " << word_of(piece.shape) << " pair " << i;
       ASSERT_LE(d.lower_bound_m, oracle + 1e-9);
       ASSERT_LE(d.iterations, kClosestPointIterations);
       if (d.overlap) {

@@ -30,7 +30,8 @@ TEST(Overlap, AgreesWithTheDistanceOn20000RandomPairs) {
     // Within 1 um of touching either answer is right.
     if (abs_of(d.distance_m - piece.margin_m) < 1e-6) continue;
     ASSERT_EQ(result.overlap == Overlap::kHit, d.distance_m < piece.margin_m)
-        << "shape " << piece.shape << " pair " << i << " distance " << d.distance_m << " margin " << piece.margin_m;
+        << "shape " << word_of(piece.shape) << " pair " << i << " distance " << d.distance_m << " margin "
+        << piece.margin_m;
     hits += result.overlap == Overlap::kHit ? 1 : 0;
   }
   EXPECT_GT(hits, 3000);

@@ -103,16 +103,17 @@ const Damage kDamages[] = {
      [](ImageBytes& i) { i.array<Anchor>(kAnchor)->fixed = 7; }},
     {"rbf not finite", ImageError::kNotFinite, "rbf_inverse",
      [](ImageBytes& i) { i.array<double>(kRbf)[3] = kInfinity; }},
-    {"rbf tail", ImageError::kCrossReference, "n_rbf", [](ImageBytes& i) { i.params().rbf_tail = 1; }},
-    {"patches missing", ImageError::kCrossReference, "n_patch", [](ImageBytes& i) { i.params().shape_law = 1; }},
+    {"rbf tail", ImageError::kCrossReference, "n_rbf", [](ImageBytes& i) { i.params().rbf_tail = RbfTail::kLinear; }},
+    {"patches missing", ImageError::kCrossReference, "n_patch",
+     [](ImageBytes& i) { i.params().shape_law = ShapeLaw::kDisplacementAngle; }},
     {"beams missing", ImageError::kCrossReference, "n_beam_stiffness",
-     [](ImageBytes& i) { i.params().skeleton_law = static_cast<std::int32_t>(SkeletonLaw::kCircular); }},
+     [](ImageBytes& i) { i.params().skeleton_law = SkeletonLaw::kCircular; }},
     {"ratios missing", ImageError::kCrossReference, "n_beam_ratio",
-     [](ImageBytes& i) { i.params().skeleton_law = static_cast<std::int32_t>(SkeletonLaw::kCircularPaper); }},
+     [](ImageBytes& i) { i.params().skeleton_law = SkeletonLaw::kCircularPaper; }},
     {"piece shape", ImageError::kCrossReference, "piece.shape",
-     [](ImageBytes& i) { i.array<ToolPiece>(kPiece)->shape = 6; }},
+     [](ImageBytes& i) { i.array<ToolPiece>(kPiece)->shape = static_cast<PieceShape>(ChoiceOf<PieceShape>::kCount); }},
     {"hull without vertices", ImageError::kCrossReference, "piece.hull_count",
-     [](ImageBytes& i) { i.array<ToolPiece>(kPiece)->shape = 5; }},
+     [](ImageBytes& i) { i.array<ToolPiece>(kPiece)->shape = PieceShape::kHull; }},
     {"piece orientation", ImageError::kNotFinite, "piece.pose_tool",
      [](ImageBytes& i) { i.array<ToolPiece>(kPiece)->pose_tool.orientation.w = 2; }},
     {"piece margin", ImageError::kNotFinite, "piece.margin_m",
@@ -143,7 +144,7 @@ TEST(Image, EachRungNamesItsField) {
 // The same for the arrays of a finite-element body.
 const Damage kNodalDamages[] = {
     {"no nodal vertices", ImageError::kCrossReference, "n_nodal",
-     [](ImageBytes& i) { i.params().backend = static_cast<std::int32_t>(Backend::kResponse); }},
+     [](ImageBytes& i) { i.params().backend = Backend::kResponse; }},
     {"area", ImageError::kNotFinite, "nodal_vertex.area_m2",
      [](ImageBytes& i) { i.array<NodalVertex>(kNodalVertex)[1].area_m2 = 0; }},
     {"free flag", ImageError::kCrossReference, "nodal_vertex.is_free",
@@ -174,7 +175,8 @@ TEST(Image, EachNodalRungNamesItsField) {
 
 TEST(Image, NodalSceneWithoutItsArraysIsRefused) {
   ImageBytes image = tiny_image();
-  image.params().backend = static_cast<std::int32_t>(Backend::kNodal);
+  image.params().backend = Backend::kNodal;
+  image.params().friction_law = FrictionLaw::kNone;
   image.seal();
   EXPECT_EQ(open(image).error, ImageError::kCrossReference);
   EXPECT_STREQ(open(image).field, "n_nodal");
@@ -183,7 +185,7 @@ TEST(Image, NodalSceneWithoutItsArraysIsRefused) {
 TEST(Image, EveryParameterIsRangeChecked) {
 #define PALPATE_FIELD(type, name, unit, lowest, highest, meaning)                                            \
   for (const double value : {static_cast<double>(lowest) - 1.0, static_cast<double>(highest) + 1.0, kNan}) { \
-    if (std::isnan(value) && std::is_integral_v<type>) continue;                                             \
+    if (std::isnan(value) && !std::is_floating_point_v<type>) continue;                                      \
     ImageBytes image = tiny_image();                                                                         \
     image.params().name = static_cast<type>(value);                                                          \
     image.seal();                                                                                            \

@@ -107,8 +107,8 @@ struct Scene {
 inline void make_ellipsoid(Scene& scene, double radius_m = 6e-3) {
   scene.model.params.youngs_modulus_Pa = 3e6;
   scene.model.params.poisson_ratio = 0.47;
-  scene.model.params.skeleton_law = static_cast<std::int32_t>(SkeletonLaw::kStiffness);
-  scene.model.params.neighbourhood_law = static_cast<std::int32_t>(NeighbourhoodLaw::kLogC1);
+  scene.model.params.skeleton_law = SkeletonLaw::kStiffness;
+  scene.model.params.neighbourhood_law = NeighbourhoodLaw::kLogC1;
   scene.model.params.neighbourhood_radius_m = 10e-3;
   scene.model.params.surface_size_m = 80e-3;
   const Vec3 ends[6] = {{40e-3, 0, 0}, {-40e-3, 0, 0}, {0, 30e-3, 0}, {0, -30e-3, 0}, {0, 0, 25e-3}, {0, 0, -25e-3}};

@@ -18,8 +18,8 @@ class AnchorsOf : public ::testing::Test {
  protected:
   void SetUp() override { deform_test::make_ellipsoid(scene_); }
   Model& model() { return scene_.model; }
-  void set(CouplingLaw law) { model().params.coupling_law = static_cast<std::int32_t>(law); }
-  void set(SkeletonLaw law) { model().params.skeleton_law = static_cast<std::int32_t>(law); }
+  void set(CouplingLaw law) { model().params.coupling_law = law; }
+  void set(SkeletonLaw law) { model().params.skeleton_law = law; }
   void run() { field_ = anchors_of(model(), state_); }
   void run(Region first, Region second) {
     reset(state_);
@@ -151,7 +151,7 @@ TEST_F(AnchorsOf, NoSkeletonOrNoAnchorsIsNotAFault) {
   EXPECT_EQ(field_.anchor[0].displacement_w, Vec3{});
   Scene bare;
   bare.model.params = model().params;
-  bare.model.params.skeleton_law = static_cast<std::int32_t>(SkeletonLaw::kStiffness);
+  bare.model.params.skeleton_law = SkeletonLaw::kStiffness;
   EXPECT_EQ(anchors_of(bare.model, state_).count, 0);
 }
 

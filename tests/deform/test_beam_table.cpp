@@ -28,7 +28,7 @@ struct Table {
   std::vector<BeamResponse> response;
 
   explicit Table(std::size_t vertices, std::size_t anchors, SkeletonLaw law = SkeletonLaw::kCircular) {
-    model.params.skeleton_law = static_cast<std::int32_t>(law);
+    model.params.skeleton_law = law;
     model.sizes.n_vertex = static_cast<std::int64_t>(vertices);
     model.sizes.n_anchor = static_cast<std::int64_t>(anchors);
     for (std::size_t a = 0; a < anchors; ++a)

@@ -47,7 +47,7 @@ struct Weights {
 class Rbf : public ::testing::TestWithParam<int> {
  protected:
   void SetUp() override {
-    scene_.model.params.rbf_tail = GetParam();
+    scene_.model.params.rbf_tail = static_cast<RbfTail>(GetParam());
     deform_test::make_ellipsoid(scene_);
     ASSERT_TRUE(rbf_available(scene_.model));
   }
@@ -177,7 +177,7 @@ TEST_P(Rbf, InvariantUnderRigidMotion) {
   for (int trial = 0; trial < 20; ++trial) {
     const Pose pose{deform_test::random_vector(random, 1.0), deform_test::random_rotation(random)};
     Scene moved;
-    moved.model.params.rbf_tail = GetParam();
+    moved.model.params.rbf_tail = static_cast<RbfTail>(GetParam());
     moved.anchors = scene_.anchors;
     for (Anchor& a : moved.anchors) a.position_m = transform(pose, a.position_m);
     ASSERT_TRUE(moved.bind());
@@ -196,28 +196,28 @@ TEST(RbfSystem, RefusesWhatCannotBeInverted) {
     const double angle = palpate::kPi * i / 4;
     ring.push_back({0.3 + 0.04 * std::cos(angle), 0.2 + 0.03 * std::sin(angle), 0.1 + 0.02 * std::cos(angle)});
   }
-  EXPECT_TRUE(invert_rbf_system(ring, 0, inverse));
-  EXPECT_FALSE(invert_rbf_system(ring, 1, inverse));
+  EXPECT_TRUE(invert_rbf_system(ring, RbfTail::kConstant, inverse));
+  EXPECT_FALSE(invert_rbf_system(ring, RbfTail::kLinear, inverse));
   ring.push_back({0.3, 0.2, 0.15});  // one out of the plane is enough
-  EXPECT_TRUE(invert_rbf_system(ring, 1, inverse));
+  EXPECT_TRUE(invert_rbf_system(ring, RbfTail::kLinear, inverse));
   ring.push_back(ring[2]);  // the same anchor twice
-  EXPECT_FALSE(invert_rbf_system(ring, 0, inverse));
+  EXPECT_FALSE(invert_rbf_system(ring, RbfTail::kConstant, inverse));
   ring.back() = {nan, 0, 0};
-  EXPECT_FALSE(invert_rbf_system(ring, 0, inverse));
-  EXPECT_FALSE(invert_rbf_system({}, 0, inverse));
+  EXPECT_FALSE(invert_rbf_system(ring, RbfTail::kConstant, inverse));
+  EXPECT_FALSE(invert_rbf_system({}, RbfTail::kConstant, inverse));
   const std::vector<Vec3> one{{0.1, 0.2, 0.3}};
-  EXPECT_TRUE(invert_rbf_system(one, 0, inverse));
-  EXPECT_FALSE(invert_rbf_system(one, 1, inverse));
+  EXPECT_TRUE(invert_rbf_system(one, RbfTail::kConstant, inverse));
+  EXPECT_FALSE(invert_rbf_system(one, RbfTail::kLinear, inverse));
   std::vector<double> small(3);
-  EXPECT_FALSE(invert_rbf_system(one, 0, small));
+  EXPECT_FALSE(invert_rbf_system(one, RbfTail::kConstant, small));
   std::vector<Vec3> many(static_cast<std::size_t>(kMaxAnchors) + 1);
-  EXPECT_FALSE(invert_rbf_system(many, 0, inverse));
+  EXPECT_FALSE(invert_rbf_system(many, RbfTail::kConstant, inverse));
 }
 
 TEST(RbfSystem, FullCapacityIsAccurate) {
   std::mt19937_64 random(31);
   Scene scene;
-  scene.model.params.rbf_tail = 1;
+  scene.model.params.rbf_tail = RbfTail::kLinear;
   for (int i = 0; i < kMaxAnchors; ++i) {
     scene.anchors.push_back(deform_test::make_anchor(deform_test::random_vector(random, 0.05), 3e-3));
   }
@@ -234,7 +234,7 @@ TEST(RbfSystem, AnImageWithoutInterpolationIsNotUsed) {
   scene.anchors.push_back(deform_test::make_anchor({0, 0, 0.01}, 1e-3));
   ASSERT_TRUE(scene.bind());
   EXPECT_TRUE(rbf_available(scene.model));
-  scene.model.params.rbf_tail = 1;  // the size no longer fits
+  scene.model.params.rbf_tail = RbfTail::kLinear;  // the size no longer fits
   EXPECT_FALSE(rbf_available(scene.model));
 }
 

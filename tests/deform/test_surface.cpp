@@ -44,8 +44,8 @@ class Surface : public ::testing::Test {
   }
   Model& model() { return scene_.model; }
   void set(NeighbourhoodLaw law, ShapeLaw shape = ShapeLaw::kRbf) {
-    model().params.neighbourhood_law = static_cast<std::int32_t>(law);
-    model().params.shape_law = static_cast<std::int32_t>(shape);
+    model().params.neighbourhood_law = law;
+    model().params.shape_law = shape;
   }
   // Puts a region in contact.
   Region& press(std::int32_t slot, Vec3 point, double force_N = 5) {
@@ -76,7 +76,7 @@ TEST_F(Surface, ContactPointMovesByTheDent) {
     for (const NeighbourhoodLaw law : kLaws) {
       for (const int tail : {0, 1}) {
         set(law, shape);
-        model().params.rbf_tail = tail;
+        model().params.rbf_tail = static_cast<RbfTail>(tail);
         ASSERT_TRUE(scene_.bind());
         const std::int32_t vertex = 24 * 3 + 2;
         const Vec3 point = scene_.vertices[static_cast<std::size_t>(vertex)];

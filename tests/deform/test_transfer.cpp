@@ -72,7 +72,7 @@ class Transfer : public ::testing::Test {
 
 TEST_F(Transfer, MatchesItsDefinitionByDenseSolve) {
   for (const SkeletonLaw law : {SkeletonLaw::kStiffness, SkeletonLaw::kPaper}) {
-    model().params.skeleton_law = static_cast<std::int32_t>(law);
+    model().params.skeleton_law = law;
     const std::vector<Real> sum = added({side_, top_});
     EXPECT_NEAR(sum[0], expected(top_, side_, displacements(side_, {})), 1e-12);
     EXPECT_NE(sum[0], 0);

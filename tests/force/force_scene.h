@@ -18,10 +18,10 @@ struct ForceScene {
     test::poison(*scratch, test::roomiest_model(), 0xAB);  // nothing may depend on old scratch
     ModelParams& p = model.params;
     p = {};
-    p.contact_weight = static_cast<std::int32_t>(ContactWeight::kWinkler);
-    p.friction_law = static_cast<std::int32_t>(FrictionLaw::kReturnMap);
-    p.tangential_law = static_cast<std::int32_t>(TangentialLaw::kSeparable);
-    p.coupling_law = static_cast<std::int32_t>(CouplingLaw::kNone);
+    p.contact_weight = ContactWeight::kWinkler;
+    p.friction_law = FrictionLaw::kReturnMap;
+    p.tangential_law = TangentialLaw::kSeparable;
+    p.coupling_law = CouplingLaw::kNone;
     p.period_s = 1e-3;
     p.k1_N_per_m = 40;  // the paper's coefficients (Luo & Xiao 2006), read as N and mm
     p.k3_N_per_m3 = 3e8;
@@ -44,8 +44,8 @@ struct ForceScene {
     scratch->contact_count = 0;
     scratch->status = 0;
   }
-  void set_coupling(CouplingLaw law) { model.params.coupling_law = static_cast<std::int32_t>(law); }
-  void set_friction(FrictionLaw law) { model.params.friction_law = static_cast<std::int32_t>(law); }
+  void set_coupling(CouplingLaw law) { model.params.coupling_law = law; }
+  void set_friction(FrictionLaw law) { model.params.friction_law = law; }
 
   // Opens region `slot` as find_rows would.
   Region& open_region(std::int32_t slot, std::uint32_t id, std::uint32_t born_tick = 0) {

@@ -67,7 +67,7 @@ TEST(ComputeForce, ForcesAndMomentsBalance) {
     for (const TangentialLaw tangential : {TangentialLaw::kSeparable, TangentialLaw::kRadial}) {
       ForceScene s;
       s.set_coupling(coupling);
-      s.model.params.tangential_law = static_cast<std::int32_t>(tangential);
+      s.model.params.tangential_law = tangential;
       for (int r = 0; r < 5; ++r) s.open_region(r, static_cast<std::uint32_t>(r + 1));
       for (int tick = 0; tick < 20; ++tick) {
         s.clear_contacts();
@@ -386,14 +386,15 @@ struct TemporalScene : ForceScene {
       anchors[i].section_inertia_m4 = M_PI * 256e-12 / 4;
       anchors[i].release_length_m = 5e-3;
     }
-    EXPECT_TRUE(invert_rbf_system(std::array<Vec3, 6>{at[0], at[1], at[2], at[3], at[4], at[5]}, 0, inverse));
+    EXPECT_TRUE(
+        invert_rbf_system(std::array<Vec3, 6>{at[0], at[1], at[2], at[3], at[4], at[5]}, RbfTail::kConstant, inverse));
     model.anchor = anchors;
     model.rbf_inverse = inverse;
     model.sizes.n_anchor = 6;
     model.sizes.n_rbf = 7;
     model.sizes.n_rbf2 = 49;
-    model.params.rbf_tail = 0;
-    model.params.skeleton_law = static_cast<std::int32_t>(SkeletonLaw::kStiffness);
+    model.params.rbf_tail = RbfTail::kConstant;
+    model.params.skeleton_law = SkeletonLaw::kStiffness;
     set_coupling(CouplingLaw::kTemporal);
     add_contact(0, {0, 0, 0.02}, kUp, 3e-3);
     add_contact(1, {0.015, 0, 0.02}, unit_or({0.2, 0, 1}, kUp), 2e-3);

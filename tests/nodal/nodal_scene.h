@@ -35,12 +35,12 @@ class NodalScene {
     image.params = tiny_params();
     add_nodal_body(body, options.precision, "test", image);
     ModelParams& p = image.params;
-    p.backend = static_cast<std::int32_t>(Backend::kNodal);
+    p.backend = Backend::kNodal;
     image.strain_gauge = options.strain_gauge;
     p.strain_limit = options.strain_limit;
     p.nodal_sweeps = 20;
     p.friction_sweeps = 10;
-    p.nodal_carry = static_cast<std::int32_t>(options.carry);
+    p.nodal_carry = options.carry;
     p.contact_margin_m = 0.5 * mean_edge_m(body.surface);
     p.regularisation = options.precision == CompliancePrecision::kDouble ? 1e-6 : 1e-5;
     p.wall_N_per_m = 5e4;

@@ -321,7 +321,7 @@ TEST(NodalTick, SweepsThatDoNotConvergeAreReported) {
   for (const bool sweeps : {false, true}) {
     NodalScene scene(block(), {sphere_piece(0.010)}, soft());
     if (sweeps) {
-      scene.params().nodal_solver = static_cast<std::int32_t>(NodalSolver::kGaussSeidel);
+      scene.params().nodal_solver = NodalSolver::kGaussSeidel;
       scene.params().nodal_sweeps = 2;
       scene.reopen();
     }
@@ -348,7 +348,7 @@ TEST(NodalTick, GaussSeidelApproachesTheExactSolver) {
   double before = 1;
   for (const int sweeps : {2, 5, 10, 20}) {
     NodalScene approximate(block(), {sphere_piece(0.010)}, soft());
-    approximate.params().nodal_solver = static_cast<std::int32_t>(NodalSolver::kGaussSeidel);
+    approximate.params().nodal_solver = NodalSolver::kGaussSeidel;
     approximate.params().nodal_sweeps = sweeps;
     approximate.reopen();
     exact.restart();

@@ -11,7 +11,7 @@ namespace {
 
 ToolPiece piece_of(PieceShape shape, double a, double b, double c, double margin) {
   ToolPiece piece{};
-  piece.shape = static_cast<std::int32_t>(shape);
+  piece.shape = shape;
   piece.half_extent_m[0] = a;
   piece.half_extent_m[1] = b;
   piece.half_extent_m[2] = c;
@@ -36,13 +36,14 @@ TEST(PieceGap, IsTheDistanceOutside) {
       const PieceGap gap = piece_gap(piece, p);
       EXPECT_NEAR(norm(gap.normal), 1, 1e-12);
       if (search.overlap) {
-        EXPECT_LE(gap.gap_m, -piece.margin_m + 1e-9) << piece.shape;
+        EXPECT_LE(gap.gap_m, -piece.margin_m + 1e-9) << word_of(piece.shape);
         continue;
       }
       ++outside;
       // The search's bracket on curved cores is a millionth of the distance.
-      EXPECT_NEAR(gap.gap_m, search.distance_m - piece.margin_m, 1e-6 * search.distance_m + 1e-9) << piece.shape;
-      EXPECT_NEAR(dot(gap.normal, unit_or(search.on_triangle - search.on_piece, {})), 1, 1e-3) << piece.shape;
+      EXPECT_NEAR(gap.gap_m, search.distance_m - piece.margin_m, 1e-6 * search.distance_m + 1e-9)
+          << word_of(piece.shape);
+      EXPECT_NEAR(dot(gap.normal, unit_or(search.on_triangle - search.on_piece, {})), 1, 1e-3) << word_of(piece.shape);
     }
     EXPECT_GT(outside, 500);
   }
@@ -58,8 +59,8 @@ TEST(PieceGap, FourAtATimeHaveTheBitsOfOne) {
       const PieceGapOf<Vec3x4> four = piece_gap(piece, load4(p));
       for (std::uint32_t k = 0; k < 4; ++k) {
         const PieceGap one = piece_gap(piece, p[k]);
-        EXPECT_EQ(four.gap_m[k], one.gap_m) << piece.shape;
-        EXPECT_EQ(four.normal[k], one.normal) << piece.shape;
+        EXPECT_EQ(four.gap_m[k], one.gap_m) << word_of(piece.shape);
+        EXPECT_EQ(four.normal[k], one.normal) << word_of(piece.shape);
       }
     }
   }
@@ -80,7 +81,7 @@ TEST(PieceGap, NormalIsItsSlopeInsideAndOutside) {
         return (piece_gap(piece, p + h * e).gap_m - piece_gap(piece, p - h * e).gap_m) / (2 * h);
       };
       const Vec3 numeric{slope({1, 0, 0}), slope({0, 1, 0}), slope({0, 0, 1})};
-      EXPECT_LT(norm(numeric - gap.normal), 1e-5) << piece.shape;
+      EXPECT_LT(norm(numeric - gap.normal), 1e-5) << word_of(piece.shape);
       ++checked;
     }
     EXPECT_GT(checked, 700);

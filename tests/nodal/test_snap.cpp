@@ -104,8 +104,8 @@ TEST(Snap, FollowsTheReferenceOnThreeMeshes) {
 TEST(Snap, TheShippedSceneFollowsTheReference) {
   for (const bool shipped : {false, true}) {
     BakedScene scene(load_scene(PALPATE_SOURCE_DIR "/config/scenes/snap_in.toml"));
-    scene.model().params.friction_law = static_cast<std::int32_t>(FrictionLaw::kNone);
-    if (!shipped) scene.model().params.nodal_carry = static_cast<std::int32_t>(NodalCarry::kFarField);
+    scene.model().params.friction_law = FrictionLaw::kNone;
+    if (!shipped) scene.model().params.nodal_carry = NodalCarry::kFarField;
     Bench bench(scene.model());
     std::vector<double> force;
     for (int k = 0; k <= 560; ++k) {

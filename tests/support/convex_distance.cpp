@@ -79,8 +79,7 @@ ConvexDistance distance_piece_triangle(const Model& model, const ToolPiece& piec
     local[k] = inverse_transform(piece_pose, triangle[k]);
     if (!is_finite(local[k])) return result;
   }
-  result = static_cast<PieceShape>(piece.shape) == PieceShape::kSphere ? point_to_triangle(local)
-                                                                       : search(piece, hull_of(model, piece), local);
+  result = piece.shape == PieceShape::kSphere ? point_to_triangle(local) : search(piece, hull_of(model, piece), local);
   result.on_piece = transform(piece_pose, result.on_piece);
   result.on_triangle = transform(piece_pose, result.on_triangle);
   return result;

@@ -39,9 +39,9 @@ class ImageBytes {
 
 inline ModelParams tiny_params() {
   ModelParams p{};
-  p.contact_weight = static_cast<std::int32_t>(ContactWeight::kWinkler);
-  p.friction_law = static_cast<std::int32_t>(FrictionLaw::kReturnMap);
-  p.coupling_law = static_cast<std::int32_t>(CouplingLaw::kCoupled);
+  p.contact_weight = ContactWeight::kWinkler;
+  p.friction_law = FrictionLaw::kReturnMap;
+  p.coupling_law = CouplingLaw::kCoupled;
   p.silence_hold_ticks = 1;
   p.silence_passive_ticks = 5;
   p.silence_fault_ticks = 20;
@@ -131,11 +131,12 @@ inline ImageBytes tiny_image(bool nodal = false) {
   *image.array<Anchor>(kAnchor) = {{a, a, a}, unit_or({1, 1, 1}, {}), 1e-4, 1e-9, 5e-3, 6e-3, 0, 0};
   const double rbf[4] = {0, 1, 1, 0};
   std::memcpy(image.array<double>(kRbf), rbf, sizeof(rbf));
-  *image.array<ToolPiece>(kPiece) = {{}, {0, 0, 0}, 0.01, 0.01, 0, 0, 1, 0, 0, 0};
+  *image.array<ToolPiece>(kPiece) = {{}, {0, 0, 0}, 0.01, 0.01, PieceShape::kSphere, 0, 1, 0, 0, 0};
   *image.array<ToolPoint>(kToolPoint) = {{}, 0.01, 1e-4, 1, 0, 0};
   if (nodal) {
     ModelParams& p = image.params();
-    p.backend = static_cast<std::int32_t>(Backend::kNodal);
+    p.backend = Backend::kNodal;
+    p.friction_law = FrictionLaw::kNone;
     p.contact_margin_m = 2e-4;
     p.wall_N_per_m = 5e4;
     p.proxy_speed_max_m_per_s = 0.5;

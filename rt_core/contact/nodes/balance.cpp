@@ -14,7 +14,7 @@ constexpr Real kNormalTolerance_m = 1e-7;
 constexpr Real kFrictionTolerance_m = 30e-6;
 
 Real friction_coefficient(const Model& model) PALPATE_RT {
-  const bool coulomb = model.params.friction_law == static_cast<std::int32_t>(FrictionLaw::kCoulomb);
+  const bool coulomb = model.params.friction_law == FrictionLaw::kCoulomb;
   return coulomb ? model.params.friction_mu_dynamic : 0.0;
 }
 
@@ -41,9 +41,7 @@ class Balance {
   }
 
  private:
-  bool pivots() const PALPATE_RT {
-    return model_.params.nodal_solver == static_cast<std::int32_t>(NodalSolver::kPivoting);
-  }
+  bool pivots() const PALPATE_RT { return model_.params.nodal_solver == NodalSolver::kPivoting; }
 
   void clear_motion() PALPATE_RT {
     for (std::int32_t i = 0; i < p_.count; ++i) {  // bound: kMaxContacts

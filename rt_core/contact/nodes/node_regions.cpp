@@ -100,7 +100,7 @@ Real local_energy_J(const Model& model, const Region& region) PALPATE_RT {
 // pressed by 0.8 of the sphere's radius (and 44 % under a punch). With one that gives way as a whole it is all: a
 // clip's peak is 38 % too high without.
 Real far_share(const Model& model, Real local_J, Real energy_J) PALPATE_RT {
-  switch (static_cast<NodalCarry>(model.params.nodal_carry)) {
+  switch (model.params.nodal_carry) {
     case NodalCarry::kRest:
       return 0;
     case NodalCarry::kFarField:
@@ -145,7 +145,7 @@ void fit_motions(const Model& model, State& state, const Scratch& scratch) PALPA
     fit[slot].add(p.node[i].rest_w, motion_of(p, i));
     reach2[slot] = max_of(reach2[slot], distance2);
   }
-  const bool turned = model.params.nodal_carry == static_cast<std::int32_t>(NodalCarry::kTurned);
+  const bool turned = model.params.nodal_carry == NodalCarry::kTurned;
   for (std::int32_t k = 0; k < count; ++k) {  // bound: kMaxRegions; of the others nobody reads it
     const std::int32_t s = touching[k];
     RegionMotion& motion = state.nodal.motion[s];

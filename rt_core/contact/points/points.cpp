@@ -25,9 +25,7 @@ void weigh_contacts(ContactWeight law, const RegionRows& rows) PALPATE_RT {
 
 namespace {
 
-bool is_coupled(const Model& model) PALPATE_RT {
-  return static_cast<CouplingLaw>(model.params.coupling_law) == CouplingLaw::kCoupled;
-}
+bool is_coupled(const Model& model) PALPATE_RT { return model.params.coupling_law == CouplingLaw::kCoupled; }
 
 void find_rows(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   collide(model, state, scratch);
@@ -80,7 +78,7 @@ void couple(const Model& model, State& state, Scratch& scratch, PointLaws& laws)
 void solve(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   sort_rows(state, scratch);
   RegionRows region[kMaxRegions];
-  const auto weight = static_cast<ContactWeight>(model.params.contact_weight);
+  const auto weight = model.params.contact_weight;
   for (std::int32_t r = 0; r < scratch.rows.regions; ++r) {  // bound: kMaxContacts points
     region[r] = rows_of(scratch, r);
     weigh_contacts(weight, region[r]);
@@ -125,7 +123,7 @@ void slide_on_points(const Model& model, const State& state, Scratch& scratch, s
 }
 
 void account(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
-  const bool temporal = static_cast<CouplingLaw>(model.params.coupling_law) == CouplingLaw::kTemporal;
+  const bool temporal = model.params.coupling_law == CouplingLaw::kTemporal;
   if (temporal) add_transferred(model, state, scratch);
   for (std::int32_t r = 0; r < scratch.rows.regions; ++r) {  // bound: kMaxRegions
     slide_on_points(model, state, scratch, r, state.region[scratch.rows.slot[r]]);

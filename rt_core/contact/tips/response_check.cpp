@@ -72,13 +72,10 @@ ImageResult check_response(const Model& model) noexcept {
   for (std::size_t i = 0; i < model.corner_normal.size(); ++i)
     for (const Vec3& normal : model.corner_normal[i].normal)
       if (!is_unit(normal)) return not_finite("corner_normal", i);
-  const auto law = static_cast<ResponseLaw>(model.params.response_law);
+  const auto law = model.params.response_law;
   if (!model.corner_normal.empty() && model.corner_normal.size() != model.triangle.size()) return broken("n_corner", 0);
   if (law == ResponseLaw::kPoints) return {};
   if (model.corner_normal.empty()) return broken("n_corner", 0);
-  // One tip per piece: the stages have room for kMaxPieces.
-  for (std::size_t i = 0; i < model.piece.size(); ++i)
-    if (model.piece[i].point_count > 1) return broken("piece.point_count", i);
   if (law != ResponseLaw::kTip) return check_tables(model);
   if (model.tip_law.size() != model.piece.size()) return broken("n_tip_law", 0);
   return check_tip_laws(model);

@@ -56,7 +56,7 @@ struct TipLoad : TipLaws {
 
 // The far field under a region is that of its deepest tip.
 FarField far_field_of(const Model& model, const RegionRows& rows) PALPATE_RT {
-  if (static_cast<ResponseLaw>(model.params.response_law) != ResponseLaw::kTip) return {};
+  if (model.params.response_law != ResponseLaw::kTip) return {};
   std::int32_t deepest = 0;
   for (std::int32_t k = 1; k < rows.count; ++k) {  // bound: tips
     if (rows[k].depth_m > rows[deepest].depth_m) deepest = k;
@@ -68,7 +68,7 @@ FarField far_field_of(const Model& model, const RegionRows& rows) PALPATE_RT {
 Tip make_tip(const Model& model, const SurfaceFoot& foot, const Contact& contact) PALPATE_RT {
   Tip tip;
   tip.depth_m = contact.depth_m;
-  tip.tabulated = static_cast<ResponseLaw>(model.params.response_law) != ResponseLaw::kTip;
+  tip.tabulated = model.params.response_law != ResponseLaw::kTip;
   if (tip.tabulated) {
     tip.table = table_law(model, foot.triangle, foot.weight);
   } else {
@@ -139,7 +139,7 @@ void solve(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   if (scratch.rows.regions == 0) return;
   TipLoad load;
   gather(model, scratch, load);
-  const bool coupled = static_cast<CouplingLaw>(model.params.coupling_law) == CouplingLaw::kCoupled;
+  const bool coupled = model.params.coupling_law == CouplingLaw::kCoupled;
   if (coupled && load.n > 1) {
     couple(model, state, scratch, load);
   } else {

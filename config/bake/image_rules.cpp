@@ -1,0 +1,71 @@
+#include "config/bake/image_rules.h"
+
+#include <cstring>
+#include <memory>
+#include <new>
+
+#include "config/scene/config_error.h"
+
+namespace palpate {
+
+namespace {
+
+// Where the scene says what the loader refuses. `key`: %d is the element; nullptr: no key stands behind it.
+struct SceneKey {
+  const char* field;
+  const char* key;
+  const char* hand_key;  // the same of a hand, whose pieces no key describes one by one
+  const char* what;
+};
+constexpr SceneKey kKeys[] = {
+    {"piece.tip_points", "tool.piece[%d].points", "hand",
+     "a tip has one point: allowed 0 or 1 with laws of whole tips, contact.law = \"tool\" and \"table\"; set points = "
+     "1 (cylinder, capsule: touches an end; cone: plus_z). A hand's parts touch with several: use \"duffing\", "
+     "\"cubic\" or \"hertz\""},
+    {"piece.nodal_shape", "tool.piece[%d].shape", "hand",
+     "a hull's gap has no closed form, which contact.backend = \"nodal\" needs; use spheres, capsules, cylinders, "
+     "cones or "
+     "boxes"},
+    {"friction_law", "friction.law", "friction.law", "is not for this method of contact"},
+};
+
+std::string element_of(const char* key, std::int64_t index) {
+  std::string text = key;
+  const auto at = text.find("%d");
+  return at == std::string::npos ? text : text.replace(at, 2, std::to_string(index));
+}
+
+}  // namespace
+
+Model model_of(const ImageContents& image) {
+  Model model;
+  model.params = image.params;
+  model.sizes = sizes_of(image);
+#define PALPATE_FIELD(type, name, count, frame, meaning) model.name = image.name;
+  PALPATE_MODEL_ARRAYS(PALPATE_FIELD)
+#undef PALPATE_FIELD
+  return model;
+}
+
+void refuse(const SceneDesc& scene, const ImageResult& result) {
+  if (result.error == ImageError::kNone) return;
+  const bool hand = scene.articulation == Articulation::kHand;
+  for (const SceneKey& known : kKeys)
+    if (std::strcmp(known.field, result.field) == 0)
+      throw ConfigError(scene.source.where(element_of(hand ? known.hand_key : known.key, result.index)) + ": " +
+                        known.what);
+  throw ConfigError(scene.source.file + ": the image made of this scene would be refused: " + result.field +
+                    (result.index < 0 ? "" : "[" + std::to_string(result.index) + "]") + ": " + describe(result.error) +
+                    "; change what the scene says of it, see docs/image_format.md");
+}
+
+void check_bytes(const SceneDesc& scene, std::span<const std::byte> bytes) {
+  const auto release = [](std::byte* p) { ::operator delete (p, std::align_val_t{kImageAlignment}); };
+  const std::unique_ptr<std::byte, decltype(release)> aligned(
+      static_cast<std::byte*>(::operator new (bytes.size(), std::align_val_t{kImageAlignment})), release);
+  std::memcpy(aligned.get(), bytes.data(), bytes.size());
+  Model model;
+  refuse(scene, open_image({aligned.get(), bytes.size()}, model));
+}
+
+}  // namespace palpate

@@ -1,0 +1,23 @@
+// The loader's checks as the baker uses them: a scene that `run` would refuse is refused when it is baked.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "config/bake/image_writer.h"
+#include "config/scene/scene.h"
+#include "rt_core/image.h"
+
+namespace palpate {
+
+// Views of what has been compiled so far; valid while `image` lives unchanged.
+Model model_of(const ImageContents& image);
+
+// Throws the ConfigError of the scene's key that stands behind what the loader refuses; nothing for kNone.
+void refuse(const SceneDesc& scene, const ImageResult& result);
+
+// Opens the bytes as `run` would.
+void check_bytes(const SceneDesc& scene, std::span<const std::byte> bytes);
+
+}  // namespace palpate

@@ -1,0 +1,94 @@
+// What a scene may choose among in the core, each with its words in one table (rt_core/choice.h).
+#pragma once
+
+#include "rt_core/choice.h"
+
+namespace palpate {
+
+// Weight of a tool point: A_i / A_ref, A_i / sum of A, 1 / n.
+#define PALPATE_CONTACT_WEIGHTS(X) X(kWinkler, winkler) X(kArea, area) X(kPaper, paper)
+PALPATE_CHOICE(ContactWeight, PALPATE_CONTACT_WEIGHTS);
+
+// Who finds contact and makes force (contact/contact.h).
+enum class Method : std::int32_t {
+  kPoints = 0,  // springs at the tool's points
+  kTips = 1,    // one law per whole tip, or curves tabulated over the surface
+  kNodes = 2    // nodes of a finite-element body
+};
+// To say which of them takes a law.
+constexpr unsigned bit_of(Method method) { return 1u << static_cast<unsigned>(method); }
+inline constexpr unsigned kOfPoints = bit_of(Method::kPoints);
+inline constexpr unsigned kOfTips = bit_of(Method::kTips);
+inline constexpr unsigned kOfNodes = bit_of(Method::kNodes);
+
+// X(enumerator, word, methods that take it): those of points alone stretch the springs of tool points.
+#define PALPATE_FRICTION_LAWS(X)                  \
+  X(kNone, none, kOfPoints | kOfTips | kOfNodes)  \
+  X(kReturnMap, return_map, kOfPoints)            \
+  X(kPaper, paper, kOfPoints)                     \
+  X(kMindlin, mindlin, kOfPoints | kOfTips)       \
+  X(kCoulomb, coulomb, kOfNodes)                  \
+  X(kPresliding, presliding, kOfPoints | kOfTips) \
+  X(kPreslidingPaper, presliding_paper, kOfPoints | kOfTips)
+PALPATE_CHOICE(FrictionLaw, PALPATE_FRICTION_LAWS);
+
+constexpr unsigned methods_of(FrictionLaw law) {
+#define PALPATE_METHODS(name, word, methods) methods,
+  constexpr unsigned kMethods[] = {PALPATE_FRICTION_LAWS(PALPATE_METHODS)};
+#undef PALPATE_METHODS
+  return kMethods[static_cast<std::int32_t>(law)];
+}
+
+constexpr bool is_presliding(FrictionLaw law) {
+  return law == FrictionLaw::kPresliding || law == FrictionLaw::kPreslidingPaper;
+}
+
+// What carries the normal force: cubic springs at the tool points, one scalar law per tool tip, or curves tabulated
+// over the surface.
+#define PALPATE_RESPONSE_LAWS(X) X(kPoints, points) X(kTip, tip) X(kTable, table)
+PALPATE_CHOICE(ResponseLaw, PALPATE_RESPONSE_LAWS);
+
+#define PALPATE_TANGENTIAL_LAWS(X) X(kSeparable, separable) X(kRadial, radial)
+PALPATE_CHOICE(TangentialLaw, PALPATE_TANGENTIAL_LAWS);
+
+#define PALPATE_SKELETON_LAWS(X) \
+  X(kNone, none) X(kStiffness, stiffness) X(kPaper, paper) X(kCircular, circular) X(kCircularPaper, circular_paper)
+PALPATE_CHOICE(SkeletonLaw, PALPATE_SKELETON_LAWS);
+
+#define PALPATE_SHAPE_LAWS(X) X(kRbf, rbf) X(kDisplacementAngle, displacement_angle)
+PALPATE_CHOICE(ShapeLaw, PALPATE_SHAPE_LAWS);
+
+// Polynomial part of the rbf interpolation.
+#define PALPATE_RBF_TAILS(X) X(kConstant, constant) X(kLinear, linear)
+PALPATE_CHOICE(RbfTail, PALPATE_RBF_TAILS);
+
+#define PALPATE_NEIGHBOURHOOD_LAWS(X) X(kNone, none) X(kLog, log) X(kLogC1, log_c1) X(kPunch, punch)
+PALPATE_CHOICE(NeighbourhoodLaw, PALPATE_NEIGHBOURHOOD_LAWS);
+
+#define PALPATE_COUPLING_LAWS(X) X(kNone, none) X(kCoupled, coupled) X(kTemporal, temporal)
+PALPATE_CHOICE(CouplingLaw, PALPATE_COUPLING_LAWS);
+
+#define PALPATE_ARTICULATIONS(X) X(kRigid, rigid) X(kGripper, gripper) X(kHand, hand)
+PALPATE_CHOICE(Articulation, PALPATE_ARTICULATIONS);
+
+// Who measures contact and makes force. Response: tool points on the rest surface, one law per region. Nodal: surface
+// nodes of a finite-element body against the tool's pieces (rt_core/contact/nodes).
+#define PALPATE_BACKENDS(X) X(kResponse, response) X(kNodal, nodal)
+PALPATE_CHOICE(Backend, PALPATE_BACKENDS);
+
+#define PALPATE_NODAL_SOLVERS(X) X(kPivoting, pivoting) X(kGaussSeidel, gauss_seidel)
+PALPATE_CHOICE(NodalSolver, PALPATE_NODAL_SOLVERS);
+
+// Where the tool's gap and normal are taken: at the node carried by the body's far field, at rest, or carried by the
+// far field's finite rotation.
+#define PALPATE_NODAL_CARRIES(X) X(kFarField, far_field) X(kRest, rest) X(kTurned, turned)
+PALPATE_CHOICE(NodalCarry, PALPATE_NODAL_CARRIES);
+
+#define PALPATE_PIECE_SHAPES(X) \
+  X(kSphere, sphere) X(kCapsule, capsule) X(kCylinder, cylinder) X(kCone, cone) X(kBox, box) X(kHull, hull)
+PALPATE_CHOICE(PieceShape, PALPATE_PIECE_SHAPES);
+
+#define PALPATE_JOINT_KINDS(X) X(kTurn, turn) X(kSlide, slide)
+PALPATE_CHOICE(JointKind, PALPATE_JOINT_KINDS);
+
+}  // namespace palpate
