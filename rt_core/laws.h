@@ -84,8 +84,15 @@ PALPATE_CHOICE(NodalSolver, PALPATE_NODAL_SOLVERS);
 #define PALPATE_NODAL_CARRIES(X) X(kFarField, far_field) X(kRest, rest) X(kTurned, turned)
 PALPATE_CHOICE(NodalCarry, PALPATE_NODAL_CARRIES);
 
-#define PALPATE_PIECE_SHAPES(X) \
-  X(kSphere, sphere) X(kCapsule, capsule) X(kCylinder, cylinder) X(kCone, cone) X(kBox, box) X(kHull, hull)
+// X(enumerator, word, type): the type is the shape in the tick (rt_core/tool/shape), and NAME_card in config/tool what
+// it is to a scene.
+#define PALPATE_PIECE_SHAPES(X)         \
+  X(kSphere, sphere, SphereShape)       \
+  X(kCapsule, capsule, CapsuleShape)    \
+  X(kCylinder, cylinder, CylinderShape) \
+  X(kCone, cone, ConeShape)             \
+  X(kBox, box, BoxShape)                \
+  X(kHull, hull, HullShape)
 PALPATE_CHOICE(PieceShape, PALPATE_PIECE_SHAPES);
 
 #define PALPATE_JOINT_KINDS(X) X(kTurn, turn) X(kSlide, slide)

@@ -5,6 +5,8 @@
 #include <new>
 
 #include "config/scene/config_error.h"
+#include "config/tool/piece_card.h"
+#include "rt_core/tool/shapes.h"
 
 namespace palpate {
 
@@ -23,11 +25,11 @@ constexpr SceneKey kKeys[] = {
      "1 (cylinder, capsule: touches an end; cone: plus_z). A hand's parts touch with several: use \"duffing\", "
      "\"cubic\" or \"hertz\""},
     {"piece.nodal_shape", "tool.piece[%d].shape", "hand",
-     "a hull's gap has no closed form, which contact.backend = \"nodal\" needs; use spheres, capsules, cylinders, "
-     "cones or "
-     "boxes"},
+     "its gap has no closed form, which contact.backend = \"nodal\" needs; allowed "},
     {"friction_law", "friction.law", "friction.law", "is not for this method of contact"},
 };
+
+constexpr std::size_t kNodalShape = 1;  // whose text ends with the shapes allowed
 
 std::string element_of(const char* key, std::int64_t index) {
   std::string text = key;
@@ -53,7 +55,7 @@ void refuse(const SceneDesc& scene, const ImageResult& result) {
   for (const SceneKey& known : kKeys)
     if (std::strcmp(known.field, result.field) == 0)
       throw ConfigError(scene.source.where(element_of(hand ? known.hand_key : known.key, result.index)) + ": " +
-                        known.what);
+                        known.what + (&known == &kKeys[kNodalShape] ? shapes_where(has_gap) : ""));
   throw ConfigError(scene.source.file + ": the image made of this scene would be refused: " + result.field +
                     (result.index < 0 ? "" : "[" + std::to_string(result.index) + "]") + ": " + describe(result.error) +
                     "; change what the scene says of it, see docs/image_format.md");

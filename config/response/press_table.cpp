@@ -34,7 +34,7 @@ const PieceDesc& only_tip(const SceneDesc& scene) {
     if (piece.points == 0) continue;
     if (tip == nullptr) tip = &piece;
     const bool same = piece.shape == tip->shape && piece.radius_m == tip->radius_m &&
-                      (piece.shape != PieceShape::kCone || piece.length_m == tip->length_m);
+                      tip_indenter(piece).tan_half_angle == tip_indenter(*tip).tan_half_angle;
     if (!same)
       throw ConfigError(scene.source.where("tool.piece[" + std::to_string(i) + "]") +
                         ": a table holds the response of one tip, and this piece has another shape; make all touching "

@@ -10,6 +10,7 @@
 #include "config/response/table_bake.h"
 #include "config/scene/config_error.h"
 #include "config/scene/schema.h"
+#include "config/tool/piece_card.h"
 #include "rt_core/contact/tips/travel.h"
 #include "rt_core/math.h"
 
@@ -63,14 +64,8 @@ void check_stiffness(const TipLaw& law, const LocalLaw& local) {
 }  // namespace
 
 Indenter tip_indenter(const PieceDesc& piece) {
-  switch (piece.shape) {
-    case PieceShape::kCylinder:
-      return {TipProfile::kFlat, piece.radius_m, 0};
-    case PieceShape::kCone:
-      return {TipProfile::kCone, 0, piece.radius_m / piece.length_m};
-    default:
-      return {TipProfile::kSphere, piece.radius_m, 0};
-  }
+  const PieceCard& card = card_of(piece.shape);
+  return card.tip != nullptr ? card.tip(piece) : Indenter{TipProfile::kSphere, piece.radius_m, 0};
 }
 
 double tip_coefficient(const Indenter& indenter, double modulus_Pa) {

@@ -6,6 +6,7 @@
 #include "config/scene/config_error.h"
 #include "config/scene/scene.h"
 #include "config/scene/schema.h"
+#include "config/tool/piece_card.h"
 
 namespace palpate {
 
@@ -13,6 +14,10 @@ namespace {
 
 [[noreturn]] void fail(const SceneDesc& scene, const std::string& key, const std::string& what) {
   throw ConfigError(scene.source.where(key) + ": " + what);
+}
+
+void refuse_piece(const SceneDesc& scene, const std::string& label, const PieceRefusal& refusal) {
+  if (refusal.key != nullptr) fail(scene, label + "." + refusal.key, refusal.what);
 }
 
 // Refuses the keys of `all` that are present in the file but not in `used`: they would have no effect.
@@ -186,14 +191,12 @@ void check_tips(const SceneDesc& scene) {
     const PieceDesc& piece = scene.piece[i];
     const std::string label = "tool.piece[" + std::to_string(i) + "]";
     if (piece.points == 0) continue;
-    if (piece.shape == PieceShape::kBox || piece.shape == PieceShape::kHull)
+    const PieceCard& card = card_of(piece.shape);
+    if (card.tip == nullptr)
       fail(scene, label + ".shape",
-           "a box or hull has no tip law; allowed sphere, capsule, cylinder (flat punch), cone, or points = 0");
-    if (piece.shape == PieceShape::kCone && piece.touches != TouchingEnd::kPlusZ)
-      fail(scene, label + ".touches", "a cone presses with its apex; set touches = \"plus_z\"");
-    if ((piece.shape == PieceShape::kCylinder || piece.shape == PieceShape::kCapsule) &&
-        piece.touches == TouchingEnd::kAll)
-      fail(scene, label + ".touches", "this shape presses with one end; set touches = \"minus_z\" or \"plus_z\"");
+           "a " + std::string(word_of(piece.shape)) + " has no tip law; allowed " +
+               shapes_where([](PieceShape shape) { return card_of(shape).tip != nullptr; }) + ", or points = 0");
+    if (card.check_tip != nullptr) refuse_piece(scene, label, card.check_tip(piece));
   }
   const auto pieces = static_cast<std::int32_t>(scene.piece.size());
   for (std::size_t i = 0; i < scene.pair.size(); ++i) {
@@ -281,58 +284,25 @@ void check_backend(const SceneDesc& scene) {
   if (scene.body.shape == BodyShape::kClip) no_table("body.fixed", "for a clip, whose foot is held");
 }
 
-// Which dimensions each piece shape needs.
-struct Needs {
-  bool radius, length, size, vertices;
-};
-Needs needs_of(PieceShape shape) {
-  switch (shape) {
-    case PieceShape::kSphere:
-      return {true, false, false, false};
-    case PieceShape::kCapsule:
-    case PieceShape::kCylinder:
-    case PieceShape::kCone:
-      return {true, true, false, false};
-    case PieceShape::kBox:
-      return {false, false, true, false};
-    case PieceShape::kHull:
-      return {false, false, false, true};
+bool gives(const PieceDesc& piece, const std::string& key) {
+  if (key == "radius_mm") return !is_auto(piece.radius_m);
+  if (key == "length_mm") return !is_auto(piece.length_m);
+  if (key == "size_mm") return !is_auto(piece.size_m.x);
+  if (key == "vertices_mm") return !piece.vertices_m.empty();
+  return !is_auto(piece.margin_m);
+}
+
+void check_piece(const SceneDesc& scene, const PieceDesc& piece, const std::string& label) {
+  const PieceCard& card = card_of(piece.shape);
+  for (const std::string key : {"radius_mm", "length_mm", "size_mm", "vertices_mm"}) {
+    const bool needed = std::ranges::any_of(card.sizes, [&](const PieceSize& size) { return size.key == key; });
+    if (needed && !gives(piece, key)) fail(scene, label + "." + key, "missing; this shape needs it");
+    if (!needed && gives(piece, key)) fail(scene, label + "." + key, "has no effect for this shape; remove it");
   }
-  return {};
-}
-
-void check_piece_keys(const SceneDesc& scene, const PieceDesc& piece, const std::string& label) {
-  const Needs needs = needs_of(piece.shape);
-  const auto check = [&](bool needed, bool given, const char* key) {
-    if (needed && !given) fail(scene, label + "." + key, "missing; this shape needs it");
-    if (!needed && given) fail(scene, label + "." + key, "has no effect for this shape; remove it");
-  };
-  check(needs.radius, !is_auto(piece.radius_m), "radius_mm");
-  check(needs.length, !is_auto(piece.length_m), "length_mm");
-  check(needs.size, !is_auto(piece.size_m.x), "size_mm");
-  check(needs.vertices, !piece.vertices_m.empty(), "vertices_mm");
-  const bool round = piece.shape == PieceShape::kSphere || piece.shape == PieceShape::kCapsule;
-  check(false, round && !is_auto(piece.margin_m), "margin_mm");
-}
-
-void check_piece_sizes(const SceneDesc& scene, const PieceDesc& piece, const std::string& label) {
-  double smallest_half = kHuge;
-  if (piece.shape == PieceShape::kCapsule && piece.length_m < 2 * piece.radius_m)
-    fail(scene, label + ".length_mm", "shorter than twice the radius; a capsule's length includes its round ends");
-  if (piece.shape == PieceShape::kCylinder) smallest_half = std::min(piece.radius_m, 0.5 * piece.length_m);
-  if (piece.shape == PieceShape::kBox) smallest_half = 0.5 * std::min({piece.size_m.x, piece.size_m.y, piece.size_m.z});
-  if (!is_auto(piece.margin_m) && !(piece.margin_m <= smallest_half))
-    fail(scene, label + ".margin_mm",
-         "larger than half the smallest side; allowed up to " + number_text(1e3 * smallest_half) + " mm");
-  if (piece.shape == PieceShape::kHull && piece.vertices_m.size() > 64)
-    fail(scene, label + ".vertices_mm", std::to_string(piece.vertices_m.size()) + " corners; allowed 1 to 64");
-  if (piece.shape == PieceShape::kBox && piece.points > 0 && piece.points < 8)
-    fail(scene, label + ".points",
-         std::to_string(piece.points) + "; a box needs its 8 corners: allowed 0 or 8 to " +
-             std::to_string(kMaxToolPoints));
-  const bool has_ends =
-      piece.shape == PieceShape::kCapsule || piece.shape == PieceShape::kCylinder || piece.shape == PieceShape::kCone;
-  if (piece.touches != TouchingEnd::kAll && !has_ends)
+  if (card.margin == nullptr && gives(piece, "margin_mm"))
+    fail(scene, label + ".margin_mm", "has no effect for this shape; remove it");
+  if (card.check != nullptr) refuse_piece(scene, label, card.check(piece));
+  if (piece.touches != TouchingEnd::kAll && !card.has_ends)
     fail(scene, label + ".touches", "this shape has no end face; remove it");
 }
 
@@ -349,8 +319,7 @@ void check_tool(const SceneDesc& scene) {
   for (std::int32_t i = 0; i < count; ++i) {
     const std::string label = "tool.piece[" + std::to_string(i) + "]";
     const PieceDesc& piece = scene.piece[static_cast<std::size_t>(i)];
-    check_piece_keys(scene, piece, label);
-    check_piece_sizes(scene, piece, label);
+    check_piece(scene, piece, label);
     points += piece.points;
   }
   if (points < 1 || points > kMaxToolPoints)

@@ -287,22 +287,23 @@ const KeySpec kCoupling[] = {
                                             "core radius of the far field; auto: sqrt(reference area / pi)"),
 };
 const KeySpec kPiece[] = {
-    choice<&PieceDesc::shape>("shape", "convex piece; its axis is its z axis; a cone's apex is at +z", true),
+    choice<&PieceDesc::shape>(
+        "shape", "kind of piece, see the shapes below; its axis is its z axis; a cone's apex is at +z", true),
     choice<&PieceDesc::touches>("touches",
                                 "part that carries tool points: all of it, or only the end face (with its rounding) at "
-                                "the +z or -z end; spheres, boxes and hulls: all"),
+                                "the +z or -z end; only shapes with ends"),
     list<&PieceDesc::position_m>(kVec3, "position_mm", -1e4, 1e4, kMilli, "centre in the tool frame"),
     list<&PieceDesc::rotation_rad>(kVec3, "rotation_deg", -360, 360, kDegree, "rotation vector (axis times angle)"),
     number<&PieceDesc::radius_m>("radius_mm", 0.01, 5000, kMilli,
-                                 "sphere, capsule, cylinder: outer radius; cone: base radius of the core"),
-    number<&PieceDesc::length_m>("length_mm", 0.01, 10000, kMilli,
-                                 "capsule, cylinder: overall length; cone: height of the core"),
-    list<&PieceDesc::size_m>(kVec3, "size_mm", 0.01, 10000, kMilli, "box: outer sides"),
-    list<&PieceDesc::vertices_m>(KeyKind::kPoints, "vertices_mm", -1e4, 1e4, kMilli, "hull: corners of the core"),
-    number_or_auto<&PieceDesc::margin_m>(
-        "margin_mm", 0.01, 5000, kMilli,
-        "rounding radius: part of the outer size of cylinders and boxes, added to cones and hulls; contact is exact "
-        "while penetration stays below it; auto: a third of the smallest half size (cone, hull: 2 mm)"),
+                                 "radius, where the shape has one: see the shapes below"),
+    number<&PieceDesc::length_m>("length_mm", 0.01, 10000, kMilli, "length along the axis: see the shapes below"),
+    list<&PieceDesc::size_m>(kVec3, "size_mm", 0.01, 10000, kMilli, "outer sides: see the shapes below"),
+    list<&PieceDesc::vertices_m>(KeyKind::kPoints, "vertices_mm", -1e4, 1e4, kMilli,
+                                 "corners of the core: see the shapes below"),
+    number_or_auto<&PieceDesc::margin_m>("margin_mm", 0.01, 5000, kMilli,
+                                         "rounding radius, where the shape has one to choose (see below); contact is "
+                                         "exact while penetration stays below "
+                                         "it"),
     integer<&PieceDesc::points>(
         "points", 0, kMaxToolPoints,
         "most tool points to spread; each costs about 800 instructions a tick; sphere: 1; box: 8 or more; "

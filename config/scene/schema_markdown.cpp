@@ -2,6 +2,7 @@
 #include <charconv>
 
 #include "config/scene/schema.h"
+#include "config/tool/piece_card.h"
 
 namespace palpate {
 
@@ -125,6 +126,26 @@ std::string allowed_text(const KeySpec& key) {
   return "";
 }
 
+namespace {
+
+// What each shape of piece takes, from the cards.
+std::string piece_shapes_markdown() {
+  std::string text =
+      "Shapes of pieces:\n\n| shape | sizes, all needed | margin_mm | ends | tip law |\n|---|---|---|---|---|\n";
+  for (std::int32_t i = 0; i < ChoiceOf<PieceShape>::kCount; ++i) {
+    const PieceCard& card = card_of(static_cast<PieceShape>(i));
+    std::string sizes;
+    for (const PieceSize& size : card.sizes)
+      sizes += (sizes.empty() ? "`" : "; `") + std::string(size.key) + "` " + size.meaning;
+    text += "| `" + std::string(ChoiceOf<PieceShape>::kWord[i]) + "` | " + sizes + " | " +
+            (card.margin == nullptr ? "-" : card.margin) + " | " + (card.has_ends ? "yes" : "-") + " | " +
+            (card.tip == nullptr ? "-" : "yes") + " |\n";
+  }
+  return text;
+}
+
+}  // namespace
+
 std::string schema_markdown() {
   std::string text;
   for (const TableSpec& table : scene_schema()) {
@@ -136,6 +157,7 @@ std::string schema_markdown() {
     for (const KeySpec& key : table.keys)
       text += "| `" + std::string(key.key) + "` | " + default_text(key, fields) + " | " + allowed_text(key) + " | " +
               key.meaning + " |\n";
+    if (name == "tool.piece") text += "\n" + piece_shapes_markdown();
     text += "\n";
   }
   text.pop_back();  // no empty line at the end

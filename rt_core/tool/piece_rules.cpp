@@ -1,5 +1,7 @@
 #include "rt_core/tool/piece_rules.h"
 
+#include "rt_core/tool/shapes.h"
+
 namespace palpate {
 
 ImageResult check_method(const Model& model) noexcept {
@@ -8,7 +10,7 @@ ImageResult check_method(const Model& model) noexcept {
   if ((methods_of(model.params.friction_law) & bit_of(method)) == 0) return {ImageError::kCombination, "friction_law"};
   for (std::size_t i = 0; i < model.piece.size(); ++i) {
     const ToolPiece& piece = model.piece[i];
-    if (nodes && piece.shape == PieceShape::kHull)
+    if (nodes && !has_gap(piece.shape))
       return {ImageError::kCombination, "piece.nodal_shape", static_cast<std::int64_t>(i)};
     if (tips && piece.point_count > 1)
       return {ImageError::kCombination, "piece.tip_points", static_cast<std::int64_t>(i)};

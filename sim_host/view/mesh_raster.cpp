@@ -113,18 +113,18 @@ RenderMesh sphere_mesh(const Pose& pose, double radius_m) {
 
 // The profile of the rounded body is the core polygon's offset curve: an arc of radius margin_m about every corner
 // between the normals of its two edges, swept about the axis.
-RenderMesh revolved_mesh(const Pose& pose, std::span<const Point2> core, double margin_m) {
+RenderMesh revolved_mesh(const Pose& pose, std::span<const Point2> core, double margin_m, bool ring) {
   struct ProfileVertex {
     Point2 point, normal;
   };
   std::vector<ProfileVertex> profile;
   double angle = -0.25 * kTwoPi;  // of the outward normal in the (radius, z) half plane; starts straight down
   for (std::size_t i = 0; i < core.size(); ++i) {
-    double next = 0.25 * kTwoPi;
+    double next = (ring ? 0.75 : 0.25) * kTwoPi;
     if (i + 1 < core.size()) {
       next = std::atan2(-(core[i + 1].x - core[i].x), core[i + 1].y - core[i].y);
     }
-    constexpr int kArc = 10;
+    const int kArc = ring ? 40 : 10;
     for (int k = 0; k <= kArc; ++k) {
       const double a = angle + (next - angle) * k / kArc;
       const Point2 n{std::cos(a), std::sin(a)};

@@ -73,7 +73,7 @@ class Layer {
 RenderMesh sphere_mesh(const Pose& pose, double radius_m);
 // Rounded surface of revolution about z: the convex core profile (radius, z) from bottom to top, grown by margin_m.
 // Cylinder core: {(0,-h), (r,-h), (r,h), (0,h)}; capsule: {(0,-h), (0,h)}; cone: {(0,-h), (r,-h), (0,h)}.
-RenderMesh revolved_mesh(const Pose& pose, std::span<const Point2> core, double margin_m);
+RenderMesh revolved_mesh(const Pose& pose, std::span<const Point2> core, double margin_m, bool ring = false);
 // Convex polyhedron given by its vertices, grown by margin_m (the surface of greatest support in every direction).
 RenderMesh hull_mesh(const Pose& pose, std::span<const Vec3> vertices_m, double margin_m);
 // From tail to tip, with a cone for head.

@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "config/hand/hand_model.h"
+#include "config/tool/piece_card.h"
 #include "rt_core/tool/articulate.h"
+#include "rt_core/tool/support.h"
 #include "sim_host/view/hand_mesh.h"
 #include "sim_host/view/picture.h"
 
@@ -114,31 +116,19 @@ RenderMesh hand_render_mesh(const ToolPiece& piece, const Pose& carrier_w, bool 
 
 RenderMesh piece_mesh(const Model& model, const ToolPiece& piece, const Pose& carrier_w) {
   const Pose pose = carrier_w * piece.pose_tool;
-  const double* half = piece.half_extent_m;
-  const double r = half[0], h = half[2];
-  switch (piece.shape) {
-    case PieceShape::kSphere:
-      return sphere_mesh(pose, piece.margin_m);
-    case PieceShape::kCapsule:
-      return revolved_mesh(pose, std::array<Point2, 2>{{{0, -h}, {0, h}}}, piece.margin_m);
-    case PieceShape::kCylinder:
-      return revolved_mesh(pose, std::array<Point2, 4>{{{0, -h}, {r, -h}, {r, h}, {0, h}}}, piece.margin_m);
-    case PieceShape::kCone:
-      return revolved_mesh(pose, std::array<Point2, 3>{{{0, -h}, {r, -h}, {0, h}}}, piece.margin_m);
-    case PieceShape::kBox: {
-      std::array<Vec3, 8> corners;
-      for (unsigned k = 0; k < 8; ++k) {
-        corners[k] = {(k & 1) ? half[0] : -half[0], (k & 2) ? half[1] : -half[1], (k & 4) ? h : -h};
-      }
-      return hull_mesh(pose, corners, piece.margin_m);
-    }
-    case PieceShape::kHull:
-      return hull_mesh(pose,
-                       model.hull_vertex_m.subspan(static_cast<std::size_t>(piece.first_hull),
-                                                   static_cast<std::size_t>(piece.hull_count)),
-                       piece.margin_m);
-  }
-  return {};
+  const std::span<const Vec3> hull = hull_of(model, piece);
+  const PieceCore core{piece.shape,
+                       TouchingEnd::kAll,
+                       {piece.half_extent_m[0], piece.half_extent_m[1], piece.half_extent_m[2]},
+                       piece.margin_m,
+                       {hull.begin(), hull.end()}};
+  const PieceCard& card = card_of(piece.shape);
+  if (card.profile == nullptr) return hull_mesh(pose, card.corners(core), piece.margin_m);
+  const CoreProfile profile = card.profile(core);
+  if (profile.point.size() == 1 && !profile.ring) return sphere_mesh(pose, piece.margin_m);
+  std::vector<Point2> point;
+  for (const ProfilePoint p : profile.point) point.push_back({p.radius_m, p.height_m});
+  return revolved_mesh(pose, point, piece.margin_m, profile.ring);
 }
 
 }  // namespace palpate

@@ -80,7 +80,7 @@ const Mistake kMistakes[] = {
     {"mu_dynamic", "[friction]\nlaw = \"coulomb\"\nmu_dynamic = 0.3\n", "s.toml:15: friction.mu_dynamic", "no effect"},
     {"skeleton", "[skeleton]\nanchors_max = 9\n", "s.toml:13: skeleton", "remove the table"},
     {"hull", "[[tool.piece]]\nshape = \"hull\"\nvertices_mm = [[0,0,0],[9,0,0],[0,9,0],[0,0,9]]\n",
-     "tool.piece[1].shape", "boxes"},
+     "tool.piece[1].shape", "box"},
     // The mesh and its solution.
     {"mixed_nearly_incompressible",
      "[body.fem]\norder = \"mixed\"\nzone_from_mm = [-5, 15, -5]\nzone_to_mm = [5, 25, 5]\n",

@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include "rt_core/tool/piece_gap.h"
+#include "rt_core/tool/shapes.h"
 #include "tests/support/convex_distance.h"
 
 namespace palpate::test {

@@ -1,7 +1,7 @@
 #include "rt_core/contact/nodes/nodes.h"
 #include "rt_core/contact/nodes/region_motion.h"
 #include "rt_core/tool/articulate.h"
-#include "rt_core/tool/piece_gap.h"
+#include "rt_core/tool/shapes.h"
 
 namespace palpate {
 
