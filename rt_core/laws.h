@@ -84,7 +84,7 @@ PALPATE_CHOICE(NodalSolver, PALPATE_NODAL_SOLVERS);
 #define PALPATE_NODAL_CARRIES(X) X(kFarField, far_field) X(kRest, rest) X(kTurned, turned)
 PALPATE_CHOICE(NodalCarry, PALPATE_NODAL_CARRIES);
 
-// X(enumerator, word, type): the type is the shape in the tick (rt_core/tool/shape), and NAME_card in config/tool what
+// X(enumerator, word, type): the type is the shape in the tick (rt_core/tool/shape), and NAME_piece in config/tool what
 // it is to a scene.
 #define PALPATE_PIECE_SHAPES(X)         \
   X(kSphere, sphere, SphereShape)       \

@@ -1,9 +1,9 @@
 #include "config/bake/fem_body.h"
 #include "config/body/body.h"
+#include "config/body/body_card.h"
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include "config/bake/compile.h"
 #include "config/fem/compliance_precision.h"
@@ -16,31 +16,6 @@
 namespace palpate {
 
 namespace {
-
-double edge_m(const SceneDesc& scene, Vec3 size_m) {
-  return is_auto(scene.fem.edge_m) ? std::max({size_m.x, size_m.y, size_m.z}) / 8 : scene.fem.edge_m;
-}
-
-TetMesh box_mesh(const SceneDesc& scene) {
-  const Vec3 size = scene.body.size_m;
-  const double edge = edge_m(scene, size);
-  const auto cells = [&](double side) { return std::max(1, static_cast<std::int32_t>(std::lround(side / edge))); };
-  return make_mirrored_box_tets(size, {cells(size.x), cells(size.y), cells(size.z)});
-}
-
-TetMesh file_mesh(const SceneDesc& scene, std::vector<std::string>& warnings) {
-  const std::filesystem::path file(scene.body.mesh);
-  const std::string path = file.is_absolute() ? scene.body.mesh : scene.source.directory + scene.body.mesh;
-  TetFile read;
-  try {
-    read = read_tet_mesh(path, scene.body.scale);
-  } catch (const ConfigError& error) {
-    throw ConfigError(scene.source.where("body.mesh") + ": " + error.what());
-  }
-  if (read.unused_nodes > 0)
-    warnings.push_back(path + ": dropped " + std::to_string(read.unused_nodes) + " nodes that no tetrahedron uses");
-  return read.mesh;
-}
 
 std::string text_mm(Vec3 p) {
   return "(" + number_text(1e3 * p.x) + ", " + number_text(1e3 * p.y) + ", " + number_text(1e3 * p.z) + ")";
@@ -67,7 +42,7 @@ std::vector<char> zone_elements(const SceneDesc& scene, const TetMesh& mesh, std
 }
 
 Supports supports_of(const SceneDesc& scene, const TetMesh& mesh) {
-  if (scene.body.shape == BodyShape::kClip) return clip_supports(mesh);
+  if (const auto supports = card_of(scene.body.shape).supports; supports != nullptr) return supports(mesh);
   double lowest = kHuge;
   for (const Vec3& x : mesh.node_m) lowest = std::min(lowest, x.y);
   const double base = lowest + scene.fixed.base_height_m + 1e-9;
@@ -84,22 +59,17 @@ void add_gauges(const SceneDesc& scene, const LinearBody& solver, FemBody& body,
 
 }  // namespace
 
+double tet_edge_m(const SceneDesc& scene, Vec3 size_m) {
+  return is_auto(scene.fem.edge_m) ? std::max({size_m.x, size_m.y, size_m.z}) / 8 : scene.fem.edge_m;
+}
+
 TetMesh make_tet_mesh(const SceneDesc& scene, std::vector<std::string>& warnings) {
   TetMesh mesh;
-  switch (scene.body.shape) {
-    case BodyShape::kClip:
-      mesh = make_clip_mesh(scene.fem.level);
-      break;
-    case BodyShape::kBox:
-      mesh = box_mesh(scene);
-      break;
-    case BodyShape::kTets:
-      mesh = file_mesh(scene, warnings);
-      break;
-    default: {
-      const SurfaceMesh surface = make_body(scene, warnings);
-      mesh = tetrahedralise(surface, edge_m(scene, bounds_of(surface).size_m()), scene.source.where("body.shape"));
-    }
+  if (const auto tets = card_of(scene.body.shape).tets; tets != nullptr) {
+    mesh = tets(scene, warnings);
+  } else {
+    const SurfaceMesh surface = make_body(scene, warnings);
+    mesh = tetrahedralise(surface, tet_edge_m(scene, bounds_of(surface).size_m()), scene.source.where("body.shape"));
   }
   add_middle_nodes(mesh);
   if (scene.fem.order == FemOrder::kLinear) keep_middle_nodes(mesh, std::vector<char>(mesh.tet.size(), 0));

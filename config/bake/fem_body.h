@@ -16,6 +16,8 @@ struct FemBody {
   std::int32_t gauges = 0;
 };
 
+// Length of the edges: the scene's, or an eighth of the largest extent.
+double tet_edge_m(const SceneDesc& scene, Vec3 size_m);
 // Mesh only: made, read, or filled by gmsh, as the scene says. Throws ConfigError.
 TetMesh make_tet_mesh(const SceneDesc& scene, std::vector<std::string>& warnings);
 // Mesh, supports, compliance and strain gauges. Throws ConfigError. Adds warnings.

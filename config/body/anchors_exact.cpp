@@ -2,16 +2,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "config/body/anchors.h"
+#include "config/body/body_card.h"
 
 namespace palpate {
-
-namespace {
 
 // On an ellipsoid the Gaussian curvature 1/(a^2 b^2 c^2 Q^2), Q = x^2/a^4 + y^2/b^4 + z^2/c^4, is critical exactly at
 // the ends of the axes. Spheroids have a critical circle, of which four points are kept, and spheres are constant: the
 // same six points.
-std::vector<AnchorPoint> axis_ends(Vec3 half) {
+std::vector<AnchorPoint> axis_end_anchors(Vec3 half) {
   std::vector<AnchorPoint> anchors;
   const Vec3 centre{0, half.y, 0};
   const Vec3 axis[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -22,13 +20,14 @@ std::vector<AnchorPoint> axis_ends(Vec3 half) {
 }
 
 // Four points of a circle about the y axis; `slope` is the outward normal (radial, axial) of the profile.
-void add_circle(std::vector<AnchorPoint>& anchors, double radius, double height, double slope_r, double slope_h) {
+static void add_circle(std::vector<AnchorPoint>& anchors, double radius, double height, double slope_r,
+                       double slope_h) {
   const Vec3 direction[4] = {{1, 0, 0}, {0, 0, 1}, {-1, 0, 0}, {0, 0, -1}};
   for (const Vec3& d : direction)
     anchors.push_back({radius * d + Vec3{0, height, 0}, unit_or(slope_r * d + Vec3{0, slope_h, 0}, d), radius});
 }
 
-std::vector<AnchorPoint> box_corners(Vec3 size) {
+std::vector<AnchorPoint> box_corner_anchors(Vec3 size) {
   std::vector<AnchorPoint> anchors;
   for (const double x : {-0.5, 0.5})
     for (const double y : {-0.5, 0.5})
@@ -38,7 +37,7 @@ std::vector<AnchorPoint> box_corners(Vec3 size) {
 }
 
 // Signed curvature at the inner points of a polyline, by the circle through three neighbours.
-std::vector<double> polyline_curvature(const std::vector<ProfilePoint>& p) {
+static std::vector<double> polyline_curvature(const std::vector<ProfilePoint>& p) {
   std::vector<double> k(p.size(), 0.0);
   for (std::size_t i = 1; i + 1 < p.size(); ++i) {
     const double ur = p[i].radius_m - p[i - 1].radius_m, uh = p[i].height_m - p[i - 1].height_m;
@@ -54,7 +53,7 @@ std::vector<double> polyline_curvature(const std::vector<ProfilePoint>& p) {
 }
 
 // Extrema of `f` that stand out by `least` from the last opposite one, and its changes of sign; indices, increasing.
-std::vector<std::size_t> notable(const std::vector<double>& f, double least) {
+static std::vector<std::size_t> notable(const std::vector<double>& f, double least) {
   std::vector<std::size_t> found;
   std::size_t high = 0, low = 0;
   int direction = 0;  // 1: looking for a maximum, -1: for a minimum, 0: either
@@ -78,8 +77,8 @@ std::vector<std::size_t> notable(const std::vector<double>& f, double least) {
 }
 
 // Anchors of one smooth stretch [first, last] of the refined profile.
-void add_stretch(std::vector<AnchorPoint>& anchors, const std::vector<ProfilePoint>& p, std::size_t first,
-                 std::size_t last, double apart_m) {
+static void add_stretch(std::vector<AnchorPoint>& anchors, const std::vector<ProfilePoint>& p, std::size_t first,
+                        std::size_t last, double apart_m) {
   std::vector<ProfilePoint> stretch(p.begin() + static_cast<std::ptrdiff_t>(first),
                                     p.begin() + static_cast<std::ptrdiff_t>(last) + 1);
   std::vector<double> k = polyline_curvature(stretch);
@@ -163,7 +162,7 @@ std::vector<AnchorPoint> half_shell_anchors(const BodyDesc& body) {
 }
 
 // Points and normals given upright about the y axis and centred there, put where the body stands.
-std::vector<AnchorPoint> turned(std::vector<AnchorPoint> anchors, BodyAxis axis, double lift_m) {
+static std::vector<AnchorPoint> turned(std::vector<AnchorPoint> anchors, BodyAxis axis, double lift_m) {
   for (AnchorPoint& a : anchors) {
     if (axis == BodyAxis::kZ) {  // y -> z, as a right-handed turn: (x, y, z) -> (z, x, y)
       a.position_m = {a.position_m.z, a.position_m.x, a.position_m.y};
@@ -192,42 +191,11 @@ std::vector<AnchorPoint> hollow_cylinder_anchors(const BodyDesc& body) {
   return turned(std::move(anchors), body.axis, body.axis == BodyAxis::kZ ? body.radius_m : half);
 }
 
-}  // namespace
-
-bool has_exact_anchors(BodyShape shape) {
-  return shape != BodyShape::kHeart && shape != BodyShape::kMesh && shape != BodyShape::kClip &&
-         shape != BodyShape::kTets;
-}
-
-std::vector<AnchorPoint> exact_anchors(const BodyDesc& body) {
-  switch (body.shape) {
-    case BodyShape::kEllipsoid:
-      return axis_ends(body.half_axes_m);
-    case BodyShape::kSphere:
-      return axis_ends({body.radius_m, body.radius_m, body.radius_m});
-    case BodyShape::kCylinder: {
-      std::vector<AnchorPoint> anchors;
-      add_circle(anchors, body.radius_m, 0, 1, -1);
-      add_circle(anchors, body.radius_m, body.height_m, 1, 1);
-      return anchors;
-    }
-    case BodyShape::kBox:
-      return box_corners(body.size_m);
-    case BodyShape::kRevolution:
-      return revolution_anchors(body.profile);
-    case BodyShape::kHalfShell:
-      return half_shell_anchors(body);
-    case BodyShape::kRing:
-      return ring_anchors(body);
-    case BodyShape::kHollowCylinder:
-      return hollow_cylinder_anchors(body);
-    case BodyShape::kHeart:
-    case BodyShape::kMesh:
-    case BodyShape::kClip:
-    case BodyShape::kTets:
-      break;
-  }
-  return {};
+std::vector<AnchorPoint> cylinder_anchors(double radius_m, double height_m) {
+  std::vector<AnchorPoint> anchors;
+  add_circle(anchors, radius_m, 0, 1, -1);
+  add_circle(anchors, radius_m, height_m, 1, 1);
+  return anchors;
 }
 
 }  // namespace palpate

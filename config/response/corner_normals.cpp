@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "config/body/body_card.h"
 #include "rt_core/math.h"
 
 namespace palpate {
@@ -28,26 +29,6 @@ int corner_of(const Triangle& t, std::int32_t vertex) {
   return -1;
 }
 
-// Exact normal of a body's shape at one of its points, or a zero vector where the shape has none.
-Vec3 shape_normal(const BodyDesc& body, Vec3 p, Vec3 face, double height_m) {
-  switch (body.shape) {
-    case BodyShape::kSphere:
-      return unit_or(p - Vec3{0, body.radius_m, 0}, face);
-    case BodyShape::kEllipsoid: {
-      const Vec3 h = body.half_axes_m;
-      return unit_or({p.x / (h.x * h.x), (p.y - h.y) / (h.y * h.y), p.z / (h.z * h.z)}, face);
-    }
-    case BodyShape::kCylinder: {
-      const bool lying = body.axis == BodyAxis::kX;
-      const Vec3 axis = lying ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-      if (std::abs(dot(face, axis)) > 0.5) return dot(face, axis) > 0 ? axis : -axis;
-      return unit_or(tangential_part(p - Vec3{0, lying ? 0.5 * height_m : 0.0, 0}, axis), face);
-    }
-    default:
-      return {};
-  }
-}
-
 }  // namespace
 
 std::vector<CornerNormals> corner_normals(const BodyDesc& body, const std::vector<Vec3>& vertex_m,
@@ -57,12 +38,13 @@ std::vector<CornerNormals> corner_normals(const BodyDesc& body, const std::vecto
   double top = 0;
   for (const Vec3& p : vertex_m) top = std::max(top, p.y);
   const double smooth = math::cos(kCrease_rad);
+  const auto exact_normal = card_of(body.shape).normal;
   std::vector<CornerNormals> result(triangle.size());
   std::vector<std::int32_t> fan;
   for (std::size_t t = 0; t < triangle.size(); ++t) {
     for (int k = 0; k < 3; ++k) {
       const std::int32_t vertex = triangle[t].vertex[k];
-      const Vec3 exact = shape_normal(body, vertex_m[at(vertex)], face[t], top);
+      const Vec3 exact = exact_normal == nullptr ? Vec3{} : exact_normal(body, vertex_m[at(vertex)], face[t], top);
       if (squared_norm(exact) > 0.5) {
         result[t].normal[k] = exact;
         continue;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "config/bake/contact_fit.h"
+#include "config/body/body_card.h"
 #include "config/scene/config_error.h"
 
 namespace palpate {
@@ -16,33 +17,16 @@ constexpr double kLargestRatio = 0.495;
 }  // namespace
 
 fem::PressBody pressed_body(const SceneDesc& scene, const std::string& key) {
-  const BodyDesc& b = scene.body;
   fem::PressBody body;
   body.youngs_modulus_Pa = scene.material.youngs_modulus_Pa;
   body.poisson_ratio = std::min(effective_poisson_ratio(scene.material), kLargestRatio);
   body.slip_base = scene.layer.base == LayerBase::kSlip;
-  const auto round = [&](double across, double along) {
-    body.kind = fem::PressBody::Kind::kEllipsoid;
-    body.outer_radius_m = across;
-    body.height_m = along;
-    body.fixed_below_m = scene.fixed.base_height_m - along;
-  };
-  if (b.shape == BodyShape::kCylinder && b.axis == BodyAxis::kY) {
-    body.outer_radius_m = b.radius_m;
-    body.height_m = b.height_m;
-  } else if (b.shape == BodyShape::kBox) {
-    body.outer_radius_m = 0.5 * std::min(b.size_m.x, b.size_m.z);
-    body.height_m = b.size_m.y;
-  } else if (b.shape == BodyShape::kSphere) {
-    round(b.radius_m, b.radius_m);
-  } else if (b.shape == BodyShape::kEllipsoid && b.half_axes_m.x == b.half_axes_m.z) {
-    round(b.half_axes_m.x, b.half_axes_m.y);
-  } else {
+  const auto press = card_of(scene.body.shape).press;
+  if (press == nullptr || !press(scene.body, scene.fixed.base_height_m, body))
     throw ConfigError(
         scene.source.where(key) +
         ": presses are computed for a standing cylinder, a box, a sphere, or an ellipsoid with equal half axes along x "
         "and z; for other bodies give numbers instead of \"auto\", or measure presses and give their CSV");
-  }
   return body;
 }
 

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "config/bake/contact_fit.h"
+#include "config/body/body_card.h"
 #include "config/fem/series_fit.h"
 #include "config/scene/config_error.h"
 #include "config/scene/schema.h"
@@ -56,10 +57,9 @@ class PlaceTips {
     tip.modulus_Pa = modulus_Pa_;
     tip.depth_max_m = scene_.contact.max_depth_m;
     tip.indenter = tip_indenter(piece_);
-    const BodyDesc& b = scene_.body;
-    if (place.pressed_face && (b.shape == BodyShape::kBox || b.shape == BodyShape::kCylinder))
-      tip.layer = {b.shape == BodyShape::kBox ? b.size_m.y : b.height_m, effective_poisson_ratio(scene_.material),
-                   scene_.layer.base};
+    const auto layer_m = card_of(scene_.body.shape).layer_m;
+    if (place.pressed_face && layer_m != nullptr)
+      tip.layer = {layer_m(scene_.body), effective_poisson_ratio(scene_.material), scene_.layer.base};
     if (tip.indenter.profile == TipProfile::kSphere)
       tip.indenter.radius_m = elliptic_radius_m(1 / piece_.radius_m + place.curvature_1_per_m,
                                                 1 / piece_.radius_m + place.curvature_2_per_m);
@@ -98,9 +98,8 @@ std::string mm_text(double length_m) { return number_text(std::round(1e6 * lengt
 
 void check_depth(const SceneDesc& scene, const PlaceTips& tips, const std::vector<PressPlace>& places) {
   const double depth = scene.contact.max_depth_m;
-  const double height = scene.body.shape == BodyShape::kBox        ? scene.body.size_m.y
-                        : scene.body.shape == BodyShape::kCylinder ? scene.body.height_m
-                                                                   : kHuge;
+  const auto layer_m = card_of(scene.body.shape).layer_m;
+  const double height = layer_m != nullptr ? layer_m(scene.body) : kHuge;
   if (!(depth < height))
     fail(scene, "contact.max_depth_mm",
          mm_text(depth) + " is not less than the body's height of " + mm_text(height) + "; lower it");

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "config/bake/contact_fit.h"
+#include "config/body/body_card.h"
 #include "config/response/corner_normals.h"
 #include "config/response/press_bake.h"
 #include "config/response/table_bake.h"
@@ -147,17 +148,16 @@ class TipReader {
 
   // Curvatures 1/m of the body where it is touched: stated, or those of its shape.
   void body_curvature(double& first, double& second) const {
-    const BodyDesc& b = scene_.body;
     first = second = 0;
     if (!is_auto(scene_.tip.body_radius_1_m) || !is_auto(scene_.tip.body_radius_2_m)) {
       const auto inverse = [](double r) { return is_auto(r) || r == 0 ? 0.0 : 1 / r; };
       first = inverse(scene_.tip.body_radius_1_m);
       second = inverse(scene_.tip.body_radius_2_m);
-    } else if (b.shape == BodyShape::kSphere) {
-      first = second = 1 / b.radius_m;
-    } else if (b.shape == BodyShape::kCylinder && (b.axis == BodyAxis::kX || scene_.layer.thickness_m == 0)) {
-      first = 1 / b.radius_m;
-    } else if (b.shape != BodyShape::kBox && b.shape != BodyShape::kCylinder) {
+    } else if (const auto curvature = card_of(scene_.body.shape).curvature; curvature != nullptr) {
+      const BodyCurvature body = curvature(scene_.body, scene_.layer.thickness_m != 0);
+      first = body.first_1_per_m;
+      second = body.second_1_per_m;
+    } else {
       fail("contact.tip.body_radius_1_mm",
            "missing; this body has no single curvature: state both principal radii where it is touched (0 is flat, "
            "negative is hollow)");

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "config/body/body_card.h"
 #include "config/fem/material.h"
 #include "config/scene/config_error.h"
 #include "config/scene/scene.h"
@@ -16,7 +17,7 @@ namespace {
   throw ConfigError(scene.source.where(key) + ": " + what);
 }
 
-void refuse_piece(const SceneDesc& scene, const std::string& label, const PieceRefusal& refusal) {
+void refuse_piece(const SceneDesc& scene, const std::string& label, const Refusal& refusal) {
   if (refusal.key != nullptr) fail(scene, label + "." + refusal.key, refusal.what);
 }
 
@@ -30,80 +31,20 @@ void check_effect(const SceneDesc& scene, const std::string& table, std::initial
   }
 }
 
+// Every key of [body] that some shape takes, beside the shape's own.
 void check_body_keys(const SceneDesc& scene) {
-  const auto only = [&](std::initializer_list<const char*> used, const char* shape) {
-    check_effect(scene, "body",
-                 {"half_axes_mm", "radius_mm", "height_mm", "size_mm", "width_mm", "wall_mm", "axis", "profile_mm",
-                  "mesh", "scale", "fix_orientation", "triangles"},
-                 used, std::string("with shape = \"") + shape + "\"");
-  };
-  switch (scene.body.shape) {
-    case BodyShape::kEllipsoid:
-      return only({"half_axes_mm", "triangles"}, "ellipsoid");
-    case BodyShape::kSphere:
-      return only({"radius_mm", "triangles"}, "sphere");
-    case BodyShape::kCylinder:
-      return only({"radius_mm", "height_mm", "axis", "triangles"}, "cylinder");
-    case BodyShape::kBox:
-      return only({"size_mm", "triangles"}, "box");
-    case BodyShape::kRevolution:
-      return only({"profile_mm", "triangles"}, "revolution");
-    case BodyShape::kHeart:
-      return only({"width_mm", "triangles"}, "heart");
-    case BodyShape::kMesh:
-      return only({"mesh", "scale", "fix_orientation"}, "mesh");
-    case BodyShape::kHalfShell:
-      return only({"half_axes_mm", "wall_mm", "triangles"}, "half_shell");
-    case BodyShape::kRing:
-      return only({"radius_mm", "wall_mm", "axis", "triangles"}, "ring");
-    case BodyShape::kHollowCylinder:
-      return only({"radius_mm", "height_mm", "wall_mm", "axis", "triangles"}, "hollow_cylinder");
-    case BodyShape::kClip:
-      return only({}, "clip");
-    case BodyShape::kTets:
-      return only({"mesh", "scale"}, "tets");
-  }
-}
-
-void check_profile(const SceneDesc& scene) {
-  const std::vector<ProfilePoint>& p = scene.body.profile;
-  const std::string key = "body.profile_mm";
-  if (p.size() < 2) fail(scene, key, std::to_string(p.size()) + " points; allowed at least 2, from bottom to top");
-  double widest = 0;
-  for (std::size_t i = 0; i < p.size(); ++i) {
-    const std::string point = "point " + std::to_string(i);
-    if (p[i].radius_m < 0) fail(scene, key, point + " has a negative radius; allowed 0 or more");
-    if (p[i].radius_m == 0 && i > 0 && i + 1 < p.size())
-      fail(scene, key, point + " touches the axis; only the first and last point may have radius 0");
-    if (i > 0 && p[i].radius_m == p[i - 1].radius_m && p[i].height_m == p[i - 1].height_m)
-      fail(scene, key, point + " repeats the one before; remove it");
-    widest = std::max(widest, p[i].radius_m);
-  }
-  if (!(widest >= 0.5e-3)) fail(scene, key, "the largest radius is below 0.5 mm; check the unit (mm)");
-  if (!(p.back().height_m > p.front().height_m))
-    fail(scene, key, "runs from top to bottom; list the points from bottom to top");
-}
-
-void check_axis(const SceneDesc& scene) {
-  const BodyAxis other = scene.body.shape == BodyShape::kCylinder ? BodyAxis::kZ : BodyAxis::kX;
-  if (scene.body.axis == other)
-    fail(scene, "body.axis",
-         other == BodyAxis::kZ ? "\"z\" is not for this shape; allowed \"y\" and \"x\""
-                               : "\"x\" is not for this shape; allowed \"y\" and \"z\"");
-}
-
-// A wall must leave a hole.
-void check_wall(const SceneDesc& scene) {
-  const BodyDesc& body = scene.body;
-  double room = kHuge;
-  if (body.shape == BodyShape::kHalfShell)
-    room = std::min({body.half_axes_m.x, body.half_axes_m.y, body.half_axes_m.z});
-  if (body.shape == BodyShape::kRing) room = body.radius_m;
-  if (body.shape == BodyShape::kHollowCylinder) room = body.radius_m;
-  if (!(body.wall_m <= 0.9 * room))
-    fail(scene, "body.wall_mm",
-         number_text(1e3 * body.wall_m) + " mm leaves no hole; allowed up to " + number_text(900 * room) +
-             " mm, 0.9 of the outer radius");
+  const BodyCard& card = card_of(scene.body.shape);
+  for (std::int32_t i = 0; i < ChoiceOf<BodyShape>::kCount; ++i)
+    for (const CardKey& other : card_of(static_cast<BodyShape>(i)).keys) {
+      const bool taken =
+          std::ranges::any_of(card.keys, [&](const CardKey& own) { return std::string(own.key) == other.key; });
+      if (!taken && scene.source.has(std::string("body.") + other.key))
+        fail(scene, std::string("body.") + other.key,
+             "has no effect with shape = \"" + std::string(word_of(scene.body.shape)) + "\"; remove it");
+    }
+  if (card.check == nullptr) return;
+  const Refusal refusal = card.check(scene.body);
+  if (refusal.key != nullptr) fail(scene, std::string("body.") + refusal.key, refusal.what);
 }
 
 void check_skeleton(const SceneDesc& scene) {
@@ -117,14 +58,7 @@ void check_skeleton(const SceneDesc& scene) {
 
 void check_body(const SceneDesc& scene) {
   check_body_keys(scene);
-  check_axis(scene);
-  check_wall(scene);
   check_skeleton(scene);
-  if (scene.body.shape == BodyShape::kMesh && scene.body.mesh.empty())
-    fail(scene, "body.mesh", "missing; shape = \"mesh\" needs the path of an .obj, .stl or .ply file");
-  if (scene.body.shape == BodyShape::kTets && scene.body.mesh.empty())
-    fail(scene, "body.mesh", "missing; shape = \"tets\" needs the path of an .msh or .vtu file");
-  if (scene.body.shape == BodyShape::kRevolution) check_profile(scene);
   const double nu = scene.material.poisson_ratio;
   if (nu > 0.5 && !(scene.material.legacy_paper_material && nu == 1.0))
     fail(scene, "body.material.poisson_ratio",
@@ -144,8 +78,9 @@ void check_presses(const SceneDesc& scene) {
       fail(scene, std::string("contact.table.") + key,
            "has no effect with contact.table.source = \"fem\"; remove it or set source = \"file\"");
   const double stated = scene.layer.thickness_m;
-  const double height = scene.body.shape == BodyShape::kBox ? scene.body.size_m.y : scene.body.height_m;
-  if (stated > 0 && scene.body.shape != BodyShape::kBox && scene.body.shape != BodyShape::kCylinder)
+  const auto layer_m = card_of(scene.body.shape).layer_m;
+  const double height = layer_m != nullptr ? layer_m(scene.body) : 0;
+  if (stated > 0 && layer_m == nullptr)
     fail(scene, "contact.layer.thickness_mm",
          "has no effect on this body with contact.table.source = \"fem\"; remove it");
   const auto in_mm = [](double length_m) { return number_text(std::round(1e9 * length_m) / 1e6) + " mm"; };
@@ -279,9 +214,9 @@ void check_backend(const SceneDesc& scene) {
     check_effect(scene, "contact.nodal", {"sweeps"}, {}, "with solver = \"pivoting\"");
   if (scene.body.shape != BodyShape::kClip)
     check_effect(scene, "body.fem", {"level"}, {}, "unless body.shape = \"clip\"");
-  const bool own_mesh = scene.body.shape == BodyShape::kClip || scene.body.shape == BodyShape::kTets;
-  if (own_mesh) check_effect(scene, "body.fem", {"edge_mm"}, {}, "with a body that brings its own mesh");
-  if (scene.body.shape == BodyShape::kClip) no_table("body.fixed", "for a clip, whose foot is held");
+  if (card_of(scene.body.shape).own_tets)
+    check_effect(scene, "body.fem", {"edge_mm"}, {}, "with a body that brings its own mesh");
+  if (card_of(scene.body.shape).supports != nullptr) no_table("body.fixed", "for a body that says what is held");
 }
 
 bool gives(const PieceDesc& piece, const std::string& key) {
@@ -295,7 +230,7 @@ bool gives(const PieceDesc& piece, const std::string& key) {
 void check_piece(const SceneDesc& scene, const PieceDesc& piece, const std::string& label) {
   const PieceCard& card = card_of(piece.shape);
   for (const std::string key : {"radius_mm", "length_mm", "size_mm", "vertices_mm"}) {
-    const bool needed = std::ranges::any_of(card.sizes, [&](const PieceSize& size) { return size.key == key; });
+    const bool needed = std::ranges::any_of(card.sizes, [&](const CardKey& size) { return size.key == key; });
     if (needed && !gives(piece, key)) fail(scene, label + "." + key, "missing; this shape needs it");
     if (!needed && gives(piece, key)) fail(scene, label + "." + key, "has no effect for this shape; remove it");
   }

@@ -68,32 +68,22 @@ const KeySpec kTop[] = {
 };
 
 const KeySpec kBody[] = {
-    choice<&BodyDesc::shape>("shape",
-                             "kind of body; clip: a pipe clip of 10 mm, open towards +y (Duriez et al. 2003); tets: a "
-                             "tetrahedral mesh from a file",
-                             true),
-    list<&BodyDesc::half_axes_m>(kVec3, "half_axes_mm", 1, 5000, kMilli,
-                                 "ellipsoid, half_shell: half axes along x, y, z; a half shell stands on its rim"),
-    number<&BodyDesc::radius_m>("radius_mm", 1, 5000, kMilli,
-                                "sphere, cylinder: radius; ring, hollow_cylinder: outer radius"),
-    number<&BodyDesc::height_m>("height_mm", 1, 10000, kMilli, "cylinder, hollow_cylinder: length along the axis"),
-    list<&BodyDesc::size_m>(kVec3, "size_mm", 1, 10000, kMilli, "box: sides along x, y, z"),
-    number<&BodyDesc::width_m>("width_mm", 1, 10000, kMilli, "heart: width along x; it is about as high"),
-    number<&BodyDesc::wall_m>("wall_mm", 0.1, 5000, kMilli,
-                              "half_shell, hollow_cylinder: wall; ring: thickness of its round section"),
-    choice<&BodyDesc::axis>(
-        "axis",
-        "cylinder: standing (y) or lying along x; ring, hollow_cylinder: lying flat or standing (y), or "
-        "the axis along z"),
+    choice<&BodyDesc::shape>("shape", "kind of body, see the shapes below", true),
+    list<&BodyDesc::half_axes_m>(kVec3, "half_axes_mm", 1, 5000, kMilli, "half axes along x, y, z"),
+    number<&BodyDesc::radius_m>("radius_mm", 1, 5000, kMilli, "radius, the outer one where there are two"),
+    number<&BodyDesc::height_m>("height_mm", 1, 10000, kMilli, "length along the axis"),
+    list<&BodyDesc::size_m>(kVec3, "size_mm", 1, 10000, kMilli, "sides along x, y, z"),
+    number<&BodyDesc::width_m>("width_mm", 1, 10000, kMilli, "width along x"),
+    number<&BodyDesc::wall_m>("wall_mm", 0.1, 5000, kMilli, "wall, or thickness of a round section"),
+    choice<&BodyDesc::axis>("axis", "direction of the body's axis: y is up"),
     list<&BodyDesc::profile>(KeyKind::kPairs, "profile_mm", -10000, 10000, kMilli,
-                             "revolution: points [radius, height] from bottom to top; turns above 35 degrees stay "
+                             "points [radius, height] from bottom to top; turns above 35 degrees stay "
                              "sharp, the rest is smoothed; open ends are closed by discs"),
-    text<&BodyDesc::mesh>(
-        "mesh", 4096, "mesh: file (.obj, .stl, .ply); tets: file (.msh, .vtu); relative to the scene file; y is up"),
-    number<&BodyDesc::scale>("scale", 1e-9, 1e6, 1, "mesh, tets: metres per unit of the file"),
-    boolean<&BodyDesc::fix_orientation>("fix_orientation", "mesh: turn triangles that face inwards"),
+    text<&BodyDesc::mesh>("mesh", 4096, "file, relative to the scene file; y is up"),
+    number<&BodyDesc::scale>("scale", 1e-9, 1e6, 1, "metres per unit of the file"),
+    boolean<&BodyDesc::fix_orientation>("fix_orientation", "turn triangles that face inwards"),
     integer<&BodyDesc::triangles>("triangles", kFewestTriangles, kMostTriangles,
-                                  "all but mesh: about this many triangles; the tick's cost hardly depends on it"),
+                                  "about this many triangles; the tick's cost hardly depends on it"),
 };
 const KeySpec kFem[] = {
     choice<&FemDesc::order>("order",

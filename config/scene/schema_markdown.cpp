@@ -1,6 +1,7 @@
 // Text made from the schema: ranges for error messages, tables for docs/scene_format.md.
 #include <charconv>
 
+#include "config/body/body_card.h"
 #include "config/scene/schema.h"
 #include "config/tool/piece_card.h"
 
@@ -128,16 +129,29 @@ std::string allowed_text(const KeySpec& key) {
 
 namespace {
 
-// What each shape of piece takes, from the cards.
+std::string keys_text(std::span<const CardKey> keys) {
+  std::string text;
+  for (const CardKey& key : keys) text += (text.empty() ? "`" : "; `") + std::string(key.key) + "` " + key.meaning;
+  return text.empty() ? "-" : text;
+}
+
+// What each shape takes, from the cards.
+std::string body_shapes_markdown() {
+  std::string text = "Shapes of bodies:\n\n| shape | is | keys | anchors |\n|---|---|---|---|\n";
+  for (std::int32_t i = 0; i < ChoiceOf<BodyShape>::kCount; ++i) {
+    const BodyCard& card = card_of(static_cast<BodyShape>(i));
+    text += "| `" + std::string(ChoiceOf<BodyShape>::kWord[i]) + "` | " + card.meaning + " | " + keys_text(card.keys) +
+            " | " + (card.anchors != nullptr ? "exact" : "from the mesh") + " |\n";
+  }
+  return text;
+}
+
 std::string piece_shapes_markdown() {
   std::string text =
       "Shapes of pieces:\n\n| shape | sizes, all needed | margin_mm | ends | tip law |\n|---|---|---|---|---|\n";
   for (std::int32_t i = 0; i < ChoiceOf<PieceShape>::kCount; ++i) {
     const PieceCard& card = card_of(static_cast<PieceShape>(i));
-    std::string sizes;
-    for (const PieceSize& size : card.sizes)
-      sizes += (sizes.empty() ? "`" : "; `") + std::string(size.key) + "` " + size.meaning;
-    text += "| `" + std::string(ChoiceOf<PieceShape>::kWord[i]) + "` | " + sizes + " | " +
+    text += "| `" + std::string(ChoiceOf<PieceShape>::kWord[i]) + "` | " + keys_text(card.sizes) + " | " +
             (card.margin == nullptr ? "-" : card.margin) + " | " + (card.has_ends ? "yes" : "-") + " | " +
             (card.tip == nullptr ? "-" : "yes") + " |\n";
   }
@@ -157,6 +171,7 @@ std::string schema_markdown() {
     for (const KeySpec& key : table.keys)
       text += "| `" + std::string(key.key) + "` | " + default_text(key, fields) + " | " + allowed_text(key) + " | " +
               key.meaning + " |\n";
+    if (name == "body") text += "\n" + body_shapes_markdown();
     if (name == "tool.piece") text += "\n" + piece_shapes_markdown();
     text += "\n";
   }

@@ -10,11 +10,11 @@ namespace palpate {
 
 namespace {
 
-constexpr PieceSize kSizes[] = {{"size_mm", "outer sides"}};
+constexpr CardKey kSizes[] = {{"size_mm", "outer sides"}};
 
 double smallest_side_m(const PieceDesc& piece) { return std::min({piece.size_m.x, piece.size_m.y, piece.size_m.z}); }
 
-PieceRefusal check(const PieceDesc& piece) {
+Refusal check(const PieceDesc& piece) {
   if (piece.points > 0 && piece.points < 8)
     return {"points", std::to_string(piece.points) + "; a box needs its 8 corners: allowed 0 or 8 to " +
                           std::to_string(kMaxToolPoints)};
@@ -123,14 +123,14 @@ std::vector<Vec3> corners(const PieceCore& core) {
 
 }  // namespace
 
-extern const PieceCard box_card;
-const PieceCard box_card{.sizes = kSizes,
-                         .margin = "rounding, part of the outer size; auto: a third of the smallest half side",
-                         .check = check,
-                         .core = core,
-                         .reach_m = reach_m,
-                         .points = points,
-                         .samples = samples,
-                         .corners = corners};
+extern const PieceCard box_piece;
+const PieceCard box_piece{.sizes = kSizes,
+                          .margin = "rounding, part of the outer size; auto: a third of the smallest half side",
+                          .check = check,
+                          .core = core,
+                          .reach_m = reach_m,
+                          .points = points,
+                          .samples = samples,
+                          .corners = corners};
 
 }  // namespace palpate

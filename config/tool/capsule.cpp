@@ -8,9 +8,9 @@ namespace palpate {
 
 namespace {
 
-constexpr PieceSize kSizes[] = {{"radius_mm", "radius"}, {"length_mm", "overall length, round ends included"}};
+constexpr CardKey kSizes[] = {{"radius_mm", "radius"}, {"length_mm", "overall length, round ends included"}};
 
-PieceRefusal check(const PieceDesc& piece) {
+Refusal check(const PieceDesc& piece) {
   if (piece.length_m >= 2 * piece.radius_m) return {};
   return {"length_mm", "shorter than twice the radius; a capsule's length includes its round ends"};
 }
@@ -36,16 +36,16 @@ Indenter tip(const PieceDesc& piece) { return {TipProfile::kSphere, piece.radius
 
 }  // namespace
 
-extern const PieceCard capsule_card;
-const PieceCard capsule_card{.sizes = kSizes,
-                             .has_ends = true,
-                             .check = check,
-                             .core = core,
-                             .reach_m = reach_m,
-                             .points = points,
-                             .samples = samples,
-                             .profile = profile,
-                             .tip = tip,
-                             .check_tip = needs_one_end};
+extern const PieceCard capsule_piece;
+const PieceCard capsule_piece{.sizes = kSizes,
+                              .has_ends = true,
+                              .check = check,
+                              .core = core,
+                              .reach_m = reach_m,
+                              .points = points,
+                              .samples = samples,
+                              .profile = profile,
+                              .tip = tip,
+                              .check_tip = needs_one_end};
 
 }  // namespace palpate

@@ -8,7 +8,7 @@ namespace palpate {
 
 namespace {
 
-constexpr PieceSize kSizes[] = {{"radius_mm", "radius of the core's base"}, {"length_mm", "height of the core"}};
+constexpr CardKey kSizes[] = {{"radius_mm", "radius of the core's base"}, {"length_mm", "height of the core"}};
 
 PieceCore core(const PieceDesc& piece) {
   return {piece.shape,
@@ -27,23 +27,23 @@ CoreProfile profile(const PieceCore& core) {
 std::vector<SurfaceSample> samples(const PieceCore& core) { return revolved_samples(core, profile(core)); }
 
 Indenter tip(const PieceDesc& piece) { return {TipProfile::kCone, 0, piece.radius_m / piece.length_m}; }
-PieceRefusal check_tip(const PieceDesc& piece) {
+Refusal check_tip(const PieceDesc& piece) {
   if (piece.touches == TouchingEnd::kPlusZ) return {};
   return {"touches", "a cone presses with its apex; set touches = \"plus_z\""};
 }
 
 }  // namespace
 
-extern const PieceCard cone_card;
-const PieceCard cone_card{.sizes = kSizes,
-                          .margin = "rounding, added to the core; auto: 2 mm",
-                          .has_ends = true,
-                          .core = core,
-                          .reach_m = reach_m,
-                          .points = points,
-                          .samples = samples,
-                          .profile = profile,
-                          .tip = tip,
-                          .check_tip = check_tip};
+extern const PieceCard cone_piece;
+const PieceCard cone_piece{.sizes = kSizes,
+                           .margin = "rounding, added to the core; auto: 2 mm",
+                           .has_ends = true,
+                           .core = core,
+                           .reach_m = reach_m,
+                           .points = points,
+                           .samples = samples,
+                           .profile = profile,
+                           .tip = tip,
+                           .check_tip = check_tip};
 
 }  // namespace palpate

@@ -9,11 +9,9 @@ namespace palpate {
 
 namespace {
 
-constexpr PieceSize kSizes[] = {{"radius_mm", "outer radius"}, {"length_mm", "overall length"}};
+constexpr CardKey kSizes[] = {{"radius_mm", "outer radius"}, {"length_mm", "overall length"}};
 
-PieceRefusal check(const PieceDesc& piece) {
-  return margin_within(piece, std::min(piece.radius_m, 0.5 * piece.length_m));
-}
+Refusal check(const PieceDesc& piece) { return margin_within(piece, std::min(piece.radius_m, 0.5 * piece.length_m)); }
 
 PieceCore core(const PieceDesc& piece) {
   PieceCore core{piece.shape, piece.touches, {0, 0, 0}, piece.margin_m, {}};
@@ -34,17 +32,17 @@ Indenter tip(const PieceDesc& piece) { return {TipProfile::kFlat, piece.radius_m
 
 }  // namespace
 
-extern const PieceCard cylinder_card;
-const PieceCard cylinder_card{.sizes = kSizes,
-                              .margin = "rounding, part of the outer size; auto: a third of the smallest half size",
-                              .has_ends = true,
-                              .check = check,
-                              .core = core,
-                              .reach_m = reach_m,
-                              .points = points,
-                              .samples = samples,
-                              .profile = profile,
-                              .tip = tip,
-                              .check_tip = needs_one_end};
+extern const PieceCard cylinder_piece;
+const PieceCard cylinder_piece{.sizes = kSizes,
+                               .margin = "rounding, part of the outer size; auto: a third of the smallest half size",
+                               .has_ends = true,
+                               .check = check,
+                               .core = core,
+                               .reach_m = reach_m,
+                               .points = points,
+                               .samples = samples,
+                               .profile = profile,
+                               .tip = tip,
+                               .check_tip = needs_one_end};
 
 }  // namespace palpate

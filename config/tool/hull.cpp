@@ -40,9 +40,9 @@ std::vector<Corners> convex_hull(const std::vector<Vec3>& point) {
 
 namespace {
 
-constexpr PieceSize kSizes[] = {{"vertices_mm", "corners of the core, up to 64"}};
+constexpr CardKey kSizes[] = {{"vertices_mm", "corners of the core, up to 64"}};
 
-PieceRefusal check(const PieceDesc& piece) {
+Refusal check(const PieceDesc& piece) {
   if (piece.vertices_m.size() <= 64) return {};
   return {"vertices_mm", std::to_string(piece.vertices_m.size()) + " corners; allowed 1 to 64"};
 }
@@ -104,14 +104,14 @@ std::vector<Vec3> corners(const PieceCore& core) { return core.vertices_m; }
 
 }  // namespace
 
-extern const PieceCard hull_card;
-const PieceCard hull_card{.sizes = kSizes,
-                          .margin = "rounding, added to the core; auto: 2 mm",
-                          .check = check,
-                          .core = core,
-                          .reach_m = reach_m,
-                          .points = points,
-                          .samples = samples,
-                          .corners = corners};
+extern const PieceCard hull_piece;
+const PieceCard hull_piece{.sizes = kSizes,
+                           .margin = "rounding, added to the core; auto: 2 mm",
+                           .check = check,
+                           .core = core,
+                           .reach_m = reach_m,
+                           .points = points,
+                           .samples = samples,
+                           .corners = corners};
 
 }  // namespace palpate

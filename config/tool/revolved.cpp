@@ -140,7 +140,7 @@ std::vector<Vec3> revolved_points(const PieceCore& core, std::int32_t count, boo
   return best;
 }
 
-PieceRefusal needs_one_end(const PieceDesc& piece) {
+Refusal needs_one_end(const PieceDesc& piece) {
   if (piece.touches != TouchingEnd::kAll) return {};
   return {"touches", "this shape presses with one end; set touches = \"minus_z\" or \"plus_z\""};
 }

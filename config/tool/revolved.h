@@ -14,6 +14,6 @@ void add_ring(std::vector<Vec3>& point, double radius, double z, std::int32_t co
 std::vector<Vec3> revolved_points(const PieceCore& core, std::int32_t count, bool pointed);
 
 // Tip rule of shapes that press with either end.
-PieceRefusal needs_one_end(const PieceDesc& piece);
+Refusal needs_one_end(const PieceDesc& piece);
 
 }  // namespace palpate

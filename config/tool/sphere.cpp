@@ -5,7 +5,7 @@ namespace palpate {
 
 namespace {
 
-constexpr PieceSize kSizes[] = {{"radius_mm", "radius"}};
+constexpr CardKey kSizes[] = {{"radius_mm", "radius"}};
 
 PieceCore core(const PieceDesc& piece) { return {piece.shape, piece.touches, {0, 0, 0}, piece.radius_m, {}}; }
 double reach_m(const PieceCore&) { return 0; }
@@ -16,13 +16,13 @@ Indenter tip(const PieceDesc& piece) { return {TipProfile::kSphere, piece.radius
 
 }  // namespace
 
-extern const PieceCard sphere_card;
-const PieceCard sphere_card{.sizes = kSizes,
-                            .core = core,
-                            .reach_m = reach_m,
-                            .points = points,
-                            .samples = samples,
-                            .profile = profile,
-                            .tip = tip};
+extern const PieceCard sphere_piece;
+const PieceCard sphere_piece{.sizes = kSizes,
+                             .core = core,
+                             .reach_m = reach_m,
+                             .points = points,
+                             .samples = samples,
+                             .profile = profile,
+                             .tip = tip};
 
 }  // namespace palpate

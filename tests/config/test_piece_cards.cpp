@@ -21,7 +21,7 @@ using test::Bench;
 PieceDesc example(PieceShape shape) {
   PieceDesc piece;
   piece.shape = shape;
-  for (const PieceSize& size : card_of(shape).sizes) {
+  for (const CardKey& size : card_of(shape).sizes) {
     const std::string key = size.key;
     if (key == "radius_mm") piece.radius_m = 0.010;
     if (key == "length_mm") piece.length_m = 0.030;
@@ -35,7 +35,7 @@ PieceDesc example(PieceShape shape) {
 
 std::string example_toml(PieceShape shape, int points) {
   std::string text = "[[tool.piece]]\nshape = \"" + std::string(word_of(shape)) + "\"\n";
-  for (const PieceSize& size : card_of(shape).sizes) {
+  for (const CardKey& size : card_of(shape).sizes) {
     const std::string key = size.key;
     text += key + (key == "radius_mm"   ? " = 10\n"
                    : key == "length_mm" ? " = 30\n"
@@ -243,7 +243,7 @@ std::vector<PieceShape> all_shapes() {
   return shapes;
 }
 INSTANTIATE_TEST_SUITE_P(Shapes, PieceCards, testing::ValuesIn(all_shapes()),
-                         [](const auto& info) { return std::string(word_of(info.param)); });
+                         [](const auto& shape) { return std::string(word_of(shape.param)); });
 
 }  // namespace
 }  // namespace palpate
