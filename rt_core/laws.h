@@ -92,7 +92,8 @@ PALPATE_CHOICE(NodalCarry, PALPATE_NODAL_CARRIES);
   X(kCylinder, cylinder, CylinderShape) \
   X(kCone, cone, ConeShape)             \
   X(kBox, box, BoxShape)                \
-  X(kHull, hull, HullShape)
+  X(kHull, hull, HullShape)             \
+  X(kTorus, torus, TorusShape)
 PALPATE_CHOICE(PieceShape, PALPATE_PIECE_SHAPES);
 
 #define PALPATE_JOINT_KINDS(X) X(kTurn, turn) X(kSlide, slide)

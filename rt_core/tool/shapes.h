@@ -8,6 +8,7 @@
 #include "rt_core/tool/shape/cylinder.h"
 #include "rt_core/tool/shape/hull.h"
 #include "rt_core/tool/shape/sphere.h"
+#include "rt_core/tool/shape/torus.h"
 
 namespace palpate {
 
