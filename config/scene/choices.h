@@ -17,7 +17,8 @@ namespace palpate {
   X(kRing, ring)                      \
   X(kHollowCylinder, hollow_cylinder) \
   X(kClip, clip)                      \
-  X(kTets, tets)
+  X(kTets, tets)                      \
+  X(kSuperellipsoid, superellipsoid)
 PALPATE_CHOICE(BodyShape, PALPATE_BODY_SHAPES);
 
 #define PALPATE_FEM_ORDERS(X) X(kQuadratic, quadratic) X(kLinear, linear) X(kMixed, mixed)

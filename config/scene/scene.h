@@ -27,6 +27,7 @@ struct BodyDesc {
   Vec3 size_m{0.060, 0.060, 0.060};
   double width_m = 0.080;
   double wall_m = 0.010;
+  double e1 = 1, e2 = 1;
   BodyAxis axis = BodyAxis::kY;
   std::vector<ProfilePoint> profile;
   std::string mesh;

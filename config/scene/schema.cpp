@@ -75,6 +75,8 @@ const KeySpec kBody[] = {
     list<&BodyDesc::size_m>(kVec3, "size_mm", 1, 10000, kMilli, "sides along x, y, z"),
     number<&BodyDesc::width_m>("width_mm", 1, 10000, kMilli, "width along x"),
     number<&BodyDesc::wall_m>("wall_mm", 0.1, 5000, kMilli, "wall, or thickness of a round section"),
+    number<&BodyDesc::e1>("e1", 0.2, 1.8, 1, "exponent seen from the side: 0.2 square, 1 round, 1.8 pointed"),
+    number<&BodyDesc::e2>("e2", 0.2, 1.8, 1, "exponent seen from above"),
     choice<&BodyDesc::axis>("axis", "direction of the body's axis: y is up"),
     list<&BodyDesc::profile>(KeyKind::kPairs, "profile_mm", -10000, 10000, kMilli,
                              "points [radius, height] from bottom to top; turns above 35 degrees stay "
