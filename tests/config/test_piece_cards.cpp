@@ -200,13 +200,13 @@ TEST_P(PieceCards, EverySizeIsNeededAndNoOther) {
 }
 
 // Pressed into a body from above for 1000 ticks: everything stays finite, and there is contact that pushes back.
-void press(const std::string& scene_text, double top_m, double lift_m) {
+void press(const std::string& scene_text, double top_m, Vec3 lowest_m) {
   const BakedScene scene(scene_text);
   Bench bench(scene.model());
   double largest_N = 0;
   for (int i = 0; i < 1000; ++i) {
-    const double depth = 0.003 * std::min(1.0, i / 600.0);
-    const Output& out = bench.tick_at({{0, top_m + lift_m - depth, 0}, {}}, {});
+    const double depth = 0.004 * std::min(1.0, i / 600.0);
+    const Output& out = bench.tick_at({Vec3{0, top_m - depth, 0} - lowest_m, {}}, {});
     ASSERT_TRUE(is_finite(out.contact_w.force_N) && is_finite(out.device_w.force_N)) << "tick " << i;
     largest_N = std::max(largest_N, out.contact_w.force_N.y);
     if (i == 999) {
@@ -216,25 +216,27 @@ void press(const std::string& scene_text, double top_m, double lift_m) {
   EXPECT_GT(largest_N, 0.01);
 }
 
-// How far a piece whose axes are the world's reaches down.
-double reach_down_m(const Made& made) {
-  return -dot(core_support(made.piece(), made.tool.hull_vertex_m, {1e-6, -1, 1e-6}), {0, 1, 0}) + made.core.margin_m;
+// Lowest point of a piece whose axes are the world's.
+Vec3 lowest_m(const Made& made) {
+  const Vec3 down{0, -1, 0};
+  return core_support(made.piece(), made.tool.hull_vertex_m, down) + made.core.margin_m * down;
 }
 
 TEST_P(PieceCards, BakesAndTicksAsToolPoints) {
   press("name = \"s\"\n[body]\nshape = \"ellipsoid\"\nhalf_axes_mm = [40, 30, 25]\ntriangles = 800\n" +
             example_toml(GetParam(), 26),
-        0.060, reach_down_m(made));
+        0.060, lowest_m(made));
 }
 
+// Four elements a side: a node lies under the piece's lowest point, however slim it is.
 TEST_P(PieceCards, BakesAndTicksAgainstNodes) {
   if (!has_gap(GetParam())) return;
   press(
-      "name = \"s\"\n[body]\nshape = \"box\"\nsize_mm = [40, 20, 40]\n[body.fem]\nedge_mm = 8\nstrain_gauges = 0\n"
+      "name = \"s\"\n[body]\nshape = \"box\"\nsize_mm = [40, 20, 40]\n[body.fem]\nedge_mm = 10\nstrain_gauges = 0\n"
       "[body.material]\nyoungs_modulus_Pa = 2e5\npoisson_ratio = 0.45\n[contact]\nbackend = \"nodal\"\n"
       "[friction]\nlaw = \"none\"\n" +
           example_toml(GetParam(), 26),
-      0.020, reach_down_m(made));
+      0.020, lowest_m(made));
 }
 
 std::vector<PieceShape> all_shapes() {

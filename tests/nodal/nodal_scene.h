@@ -45,7 +45,7 @@ class NodalScene {
     p.regularisation = options.precision == CompliancePrecision::kDouble ? 1e-6 : 1e-5;
     p.wall_N_per_m = 5e4;
     p.proxy_speed_max_m_per_s = 0.5;
-    p.friction_law = static_cast<std::int32_t>(options.mu > 0 ? FrictionLaw::kCoulomb : FrictionLaw::kNone);
+    p.friction_law = options.mu > 0 ? FrictionLaw::kCoulomb : FrictionLaw::kNone;
     p.friction_mu_dynamic = options.mu;
     p.youngs_modulus_Pa = options.young_Pa;
     p.poisson_ratio = options.poisson;
