@@ -20,9 +20,7 @@ void place_links(const Model& model, const double* joint, Pose* link_tool, Vec3*
 // The rigid motion that carries a piece and its tool points: the tool's own pose, or for an articulated tool that pose
 // and the motion of the piece by its joints.
 
-inline bool is_articulated(const Model& model) PALPATE_RT {
-  return model.params.articulation != Articulation::kRigid;
-}
+inline bool is_articulated(const Model& model) PALPATE_RT { return model.params.articulation != Articulation::kRigid; }
 // Tool-frame coordinates with all joints at zero (ToolPiece, ToolPoint) to the world: with the tool at `tool_w` and the
 // joints of this tick or of the last; or as the tool stands now and stood at the last tick.
 inline Pose carrier_at(const Model& model, const State& state, const Pose& tool_w, std::int32_t piece) PALPATE_RT {

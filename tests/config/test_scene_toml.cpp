@@ -85,7 +85,7 @@ const Mistake kMistakes[] = {
     {"unknown_in_piece", with("colour = \"red\"\n"), 8, "tool.piece[0].colour", "unknown key"},
     {"too_large", with("[contact]\nmax_depth_mm = 4000\n"), 9, "contact.max_depth_mm",
      "4000 is out of range; allowed 0.001 to 1000 mm"},
-    {"too_small", with("[device]\nforce_max_N = -1\n"), 9, "device.force_max_N", "allowed 0.01 to 1000 N"},
+    {"too_small", with("[device]\nforce_max_N = -1\n"), 9, "device.force_max_N", "allowed 0.01 to 32.767 N"},
     {"nan", with("[contact]\nmax_depth_mm = nan\n"), 9, "contact.max_depth_mm", "out of range"},
     {"infinite", with("[contact]\nmax_depth_mm = inf\n"), 9, "contact.max_depth_mm", "out of range"},
     {"bad_choice", with("[contact]\nlaw = \"dufing\"\n"), 9, "contact.law", "Did you mean 'duffing'?"},

@@ -75,9 +75,8 @@ std::vector<Frame> frames_of(std::span<const std::uint8_t> input) {
 }
 
 bool sane(const DeviceSample& sample) {
-  return is_finite(sample.position_m) && is_finite(sample.orientation.w) &&
-         is_finite(sample.orientation.x) && is_finite(sample.orientation.y) && is_finite(sample.orientation.z) &&
-         norm(sample.position_m) < 2;
+  return is_finite(sample.position_m) && is_finite(sample.orientation.w) && is_finite(sample.orientation.x) &&
+         is_finite(sample.orientation.y) && is_finite(sample.orientation.z) && norm(sample.position_m) < 2;
 }
 
 void feed_bus(const std::vector<Frame>& frames, WireProfile profile) {

@@ -52,8 +52,8 @@ class NodalScene {
     p.cluster_distance_m = 3 * mean_edge_m(body.surface);
     p.coupling_N_per_m = options.coupling_N_per_m;
     p.coupling_Nm_per_rad = options.coupling_Nm_per_rad;
-    p.force_max_N = 1000;
-    p.torque_max_Nm = 100;
+    p.force_max_N = kWireForceMax_N;
+    p.torque_max_Nm = kWireTorqueMax_Nm;
     p.force_rate_max_N_per_s = 1e7;
     p.ramp_in_s = 0;
     p.speed_max_m_per_s = 100;
