@@ -90,14 +90,14 @@ bool move_joints(const Model& model, State& state, Scratch& scratch, const Input
 void place_pieces(const Model& model, ArticulationState& a) PALPATE_RT {
   Pose link[kMaxJoints];
   place_links(model, a.joint.data(), link, a.axis_tool.data(), a.origin_tool_m.data());
-  for (std::size_t p = 0; p < model.piece.size(); ++p) {  // bound: kMaxPieces
-    const std::int32_t j = model.piece[p].joint;
+  for (std::int32_t p = 0; p < a.motion_tool.size(); ++p) {  // bound: kMaxPieces
+    const std::int32_t j = model.piece[static_cast<std::size_t>(p)].joint;
     if (j >= 0) a.motion_tool[p] = link[j] * joint_at(model, j).zero_inverse;
   }
 }
 
-void keep_previous(const Model& model, ArticulationState& a) PALPATE_RT {
-  for (std::size_t p = 0; p < model.piece.size(); ++p) a.motion_previous_tool[p] = a.motion_tool[p];
+void keep_previous(ArticulationState& a) PALPATE_RT {
+  for (std::int32_t p = 0; p < a.motion_tool.size(); ++p) a.motion_previous_tool[p] = a.motion_tool[p];
 }
 
 // F_palm = -sum F_i - M g on the body, and its moment about the tool's origin (Cui & Xiao 2008: the palm supports the
@@ -143,20 +143,18 @@ void articulate(const Model& model, State& state, Scratch& scratch, const Input&
     for (std::int32_t j = 0; j < joint_count(model); ++j) a.joint[j] = joint_at(model, j).open;  // bound: kMaxJoints
     a.started = 1;
   }
-  if (a.moved != 0) keep_previous(model, a);
+  if (a.moved != 0) keep_previous(a);
   advance_closing(model, state, scratch, input);
   a.moved = move_joints(model, state, scratch, input) || first ? 1 : 0;
   if (a.moved != 0) place_pieces(model, a);
-  if (first) keep_previous(model, a);
+  if (first) keep_previous(a);
 }
 
 void load_pieces(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   if (!is_articulated(model)) return;
   ArticulationState& a = state.articulation;
-  for (std::size_t p = 0; p < model.piece.size(); ++p) {  // bound: kMaxPieces
-    a.piece_force_tool_N[p] = {};
-    a.piece_torque_tool_Nm[p] = {};
-  }
+  a.piece_force_tool_N.fill({});
+  a.piece_torque_tool_Nm.fill({});
   const Quat to_tool = conjugate(state.tool_w.orientation);
   const std::int32_t contacts = scratch.contact_count < kMaxContacts ? scratch.contact_count : kMaxContacts;
   for (std::int32_t i = 0; i < contacts; ++i) {  // bound: kMaxContacts

@@ -63,7 +63,7 @@ void keep_hold(const Model& model, const PressRow& row, const State& state, Gras
   for (std::size_t p = 0; p < model.piece.size(); ++p) {
     const std::int32_t part = model.piece[p].part;
     if (part >= 1 && part <= kHandParts)
-      run.part_force_N[static_cast<std::size_t>(part)] += norm(state.articulation.piece_force_tool_N[p]);
+      run.part_force_N[static_cast<std::size_t>(part)] += norm(state.articulation.piece_force_tool_N.data()[p]);
   }
 }
 

@@ -148,8 +148,8 @@ std::string touched(const Model& model, const State& state, std::int32_t fingers
     std::uint32_t first = std::numeric_limits<std::uint32_t>::max();
     for (std::size_t i = 0; i < model.tool_point.size(); ++i) {
       const ToolPiece& piece = model.piece[static_cast<std::size_t>(model.tool_point[i].piece)];
-      if (piece.group == f && state.point[i].region >= 0)
-        first = std::min(first, state.region[state.point[i].region].born_tick);
+      if (piece.group == f && state.point.data()[i].region >= 0)
+        first = std::min(first, state.region[state.point.data()[i].region].born_tick);
     }
     born.emplace_back(first, f);
   }
@@ -282,10 +282,10 @@ TEST(Grasp, JointsKeepLimitsAndSpeedsWhateverIsCommanded) {
       joints.target[random() % kMaxJoints] = garbage[random() % 3];
     }
     double before[kMaxJoints];
-    for (std::size_t j = 0; j < kMaxJoints; ++j) before[j] = bench.state->articulation.joint[j];
+    for (std::size_t j = 0; j < kMaxJoints; ++j) before[j] = bench.state->articulation.joint.data()[j];
     bench.tick_at(model.grasp_w[0], joints);
     for (std::size_t j = 0; j < kMaxJoints; ++j) {
-      const double now = bench.state->articulation.joint[j];
+      const double now = bench.state->articulation.joint.data()[j];
       ASSERT_TRUE(now >= model.joint[j].lowest && now <= model.joint[j].highest) << "joint " << j << " tick " << i;
       ASSERT_LE(std::abs(now - before[j]), model.joint[j].speed_max * model.params.period_s * (1 + 1e-12));
     }

@@ -104,7 +104,7 @@ TEST(Imprint, ThePalmFlattensWhatLiesAgainstItAndPressesNothing) {
     flat += over_palm_m(held, held.surface.position_m[i]) < 1e-12 ? 1 : 0;
   }
   EXPECT_GT(flat, 100u);
-  EXPECT_EQ(norm(held.bench.state->articulation.piece_force_tool_N[model.piece.size() - 1]), 0);
+  EXPECT_EQ(norm(held.bench.state->articulation.piece_force_tool_N.data()[model.piece.size() - 1]), 0);
   for (std::int32_t i = 0; i < held.bench.scratch->contact_count; ++i)
     EXPECT_NE(held.bench.scratch->contact[i].piece, static_cast<std::int32_t>(model.piece.size()) - 1);
 }
