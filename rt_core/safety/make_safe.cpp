@@ -34,8 +34,8 @@ Wrench limited(const Model& model, Wrench wrench, Scratch& scratch) PALPATE_RT {
   return wrench;
 }
 
-// A fault limiter, set above what contact does (a slow rate limit inside the loop would destabilise it): the device's
-// rate, and in no tick more than kOutputStepShare of its limit.
+// A fault limiter, set above what contact does but for a snap (a slow rate limit inside the loop destabilises it): the
+// device's rate, and in no tick more than kOutputStepShare of its limit.
 Wrench rate_limited(const Model& model, const Wrench& last, const Wrench& wanted, Scratch& scratch) PALPATE_RT {
   const double step_N =
       min_of(model.params.force_rate_max_N_per_s * model.params.period_s, kOutputStepShare * model.params.force_max_N);
