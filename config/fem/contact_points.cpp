@@ -32,29 +32,6 @@ std::vector<Facet> element_facets(StrainElement element) {
   return faces;
 }
 
-// Facets that belong to one element only; facets collapsed to a point are none.
-template <int kDim>
-std::vector<Facet> boundary_facets(const StrainMesh<kDim>& mesh) {
-  const std::vector<Facet> local = element_facets(mesh.element);
-  const int size = nodes_per_element(mesh.element);
-  std::map<Facet, std::pair<int, Facet>> seen;
-  for (int e = 0; e < mesh.element_count(); ++e)
-    for (const Facet& f : local) {
-      Facet nodes;
-      for (const int i : f) nodes.push_back(mesh.connectivity[static_cast<std::size_t>(e * size + i)]);
-      Facet key = nodes;
-      std::sort(key.begin(), key.end());
-      if (std::unique(key.begin(), key.end()) != key.end()) continue;
-      auto& entry = seen[key];
-      ++entry.first;
-      entry.second = nodes;
-    }
-  std::vector<Facet> boundary;
-  for (const auto& [key, entry] : seen)
-    if (entry.first == 1) boundary.push_back(entry.second);
-  return boundary;
-}
-
 std::vector<double> parabolas(double x) { return {0.5 * x * (x - 1), 1 - x * x, 0.5 * x * (x + 1)}; }
 
 std::vector<ContactPoint> points_of(const Facet& facet) {
@@ -86,13 +63,37 @@ std::vector<ContactPoint> points_of(const Facet& facet) {
 }  // namespace
 
 template <int kDim>
+std::vector<BoundaryFacet> boundary_facets(const StrainMesh<kDim>& mesh) {
+  const std::vector<Facet> local = element_facets(mesh.element);
+  const int size = nodes_per_element(mesh.element);
+  std::map<Facet, std::pair<int, BoundaryFacet>> seen;
+  for (int e = 0; e < mesh.element_count(); ++e)
+    for (const Facet& f : local) {
+      Facet nodes;
+      for (const int i : f) nodes.push_back(mesh.connectivity[static_cast<std::size_t>(e * size + i)]);
+      Facet key = nodes;
+      std::sort(key.begin(), key.end());
+      if (std::unique(key.begin(), key.end()) != key.end()) continue;
+      auto& entry = seen[key];
+      ++entry.first;
+      entry.second = {nodes, e};
+    }
+  std::vector<BoundaryFacet> boundary;
+  for (const auto& [key, entry] : seen)
+    if (entry.first == 1) boundary.push_back(entry.second);
+  return boundary;
+}
+template std::vector<BoundaryFacet> boundary_facets<2>(const StrainMesh<2>&);
+template std::vector<BoundaryFacet> boundary_facets<3>(const StrainMesh<3>&);
+
+template <int kDim>
 std::vector<ContactPoint> contact_points(const StrainMesh<kDim>& mesh, const std::vector<int>& contact_nodes) {
   std::vector<bool> wanted(mesh.nodes_m.size());
   for (const int node : contact_nodes) wanted[static_cast<std::size_t>(node)] = true;
   std::vector<ContactPoint> points;
-  for (const Facet& facet : boundary_facets(mesh))
-    if (std::all_of(facet.begin(), facet.end(), [&](int n) { return wanted[static_cast<std::size_t>(n)]; }))
-      for (ContactPoint& p : points_of(facet)) points.push_back(std::move(p));
+  for (const BoundaryFacet& facet : boundary_facets(mesh))
+    if (std::all_of(facet.nodes.begin(), facet.nodes.end(), [&](int n) { return wanted[static_cast<std::size_t>(n)]; }))
+      for (ContactPoint& p : points_of(facet.nodes)) points.push_back(std::move(p));
   return points;
 }
 template std::vector<ContactPoint> contact_points<2>(const StrainMesh<2>&, const std::vector<int>&);

@@ -13,6 +13,15 @@ struct ContactPoint {
   std::vector<double> shape;  // their weights at the point
   double share = 0;           // of the facet's area
 };
+// A facet that belongs to one element only; nodes in the order of the element's facet, which may be either way round.
+struct BoundaryFacet {
+  std::vector<int> nodes;  // 3 (edge), 6 (triangle: corners, then edges 01 12 20) or 9 (tensor product, first fastest)
+  int element = 0;
+};
+// In the order of their sorted nodes. Facets collapsed to a line or a point are none.
+template <int kDim>
+std::vector<BoundaryFacet> boundary_facets(const StrainMesh<kDim>& mesh);
+
 // Points on the boundary facets all of whose nodes are in `contact_nodes`. As many per facet as keep the pressure modes
 // independent: Gauss 2 on an edge, 2 x 2 on a face of nine nodes, 3 on a face of six.
 template <int kDim>

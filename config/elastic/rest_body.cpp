@@ -1,0 +1,88 @@
+#include "config/elastic/rest_body.h"
+
+#include <cmath>
+
+#include "config/scene/config_error.h"
+
+namespace palpate::elastic {
+
+namespace {
+
+// A load's displacement gives the load back to this share, or the factor has met a free rigid motion.
+constexpr double kSolveTolerance = 1e-6;
+
+std::vector<int> number(const std::vector<bool>& fixed) {
+  std::vector<int> equation;
+  int next = 0;
+  for (const bool f : fixed) equation.push_back(f ? -1 : next++);
+  return equation;
+}
+
+}  // namespace
+
+template <int kDim>
+RestBody<kDim>::RestBody(const fem::StrainMesh<kDim>& mesh, const fem::StrainBody& body, const std::vector<bool>& fixed)
+    : material_(body),
+      size_(static_cast<Eigen::Index>(mesh.node_count()) * kDim),
+      surface_(mesh, kDim == 2 ? body.thickness_m : 1),
+      assembly_(mesh, body, number(fixed)) {
+  if (!(body.youngs_modulus_Pa > 0) || !(body.poisson_ratio > -1 && body.poisson_ratio <= 0.4999))
+    throw ConfigError("elastic body: Young's modulus must be above 0 Pa and Poisson's ratio in (-1, 0.4999]");
+  if (body.kinematics == fem::Kinematics::kAxisymmetric)
+    throw ConfigError("elastic body: a body of revolution is meshed in space, not in its half plane");
+  Eigen::SparseMatrix<double> stiffness = assembly_.pattern();
+  assembly_.evaluate(Eigen::VectorXd::Zero(size_), nullptr, &stiffness);
+  factor_.analyse(stiffness);
+  bool held = factor_.factorise(stiffness, 0);
+  if (held) {
+    // A free motion leaves a pivot of rounding: the answer then is no answer.
+    Eigen::VectorXd load(stiffness.cols());
+    for (Eigen::Index i = 0; i < load.size(); ++i) load[i] = 1 + 0.1 * static_cast<double>(i % 7);
+    const Eigen::VectorXd answer = factor_.solve(load);
+    const Eigen::VectorXd back = stiffness.selfadjointView<Eigen::Lower>() * answer;
+    held = (back - load).norm() < kSolveTolerance * load.norm();
+  }
+  if (!held)
+    throw ConfigError(
+        "elastic body: the supports leave a motion free, or elements are so flat that rounding decides; hold the body "
+        "in "
+        "more places");
+}
+
+template <int kDim>
+double RestBody<kDim>::contact_modulus() const {
+  const double nu = material_.poisson_ratio;
+  const double shared = material_.kinematics == fem::Kinematics::kPlaneStress ? 1 : 1 - nu * nu;
+  return material_.youngs_modulus_Pa / shared * (kDim == 2 ? material_.thickness_m : 1);
+}
+
+template <int kDim>
+Eigen::VectorXd RestBody<kDim>::solve(const Eigen::VectorXd& force_N) const {
+  Eigen::VectorXd reduced(assembly_.free_count()), u = Eigen::VectorXd::Zero(size_);
+  for (int dof = 0; dof < size_; ++dof)
+    if (const int q = assembly_.equation(dof); q >= 0) reduced[q] = force_N[dof];
+  reduced = factor_.solve(reduced);
+  for (int dof = 0; dof < size_; ++dof)
+    if (const int q = assembly_.equation(dof); q >= 0) u[dof] = reduced[q];
+  return u;
+}
+
+template <int kDim>
+Eigen::VectorXd RestBody<kDim>::internal_force(const Eigen::VectorXd& u_m) const {
+  Eigen::VectorXd force = Eigen::VectorXd::Zero(size_);
+  if (!std::isfinite(assembly_.evaluate(u_m, &force, nullptr)))
+    throw ConfigError("elastic body: a probing displacement turns an element inside out; the mesh has flat elements");
+  release_fixed(force);
+  return force;
+}
+
+template <int kDim>
+void RestBody<kDim>::release_fixed(Eigen::VectorXd& v) const {
+  for (int dof = 0; dof < size_; ++dof)
+    if (assembly_.equation(dof) < 0) v[dof] = 0;
+}
+
+template class RestBody<2>;
+template class RestBody<3>;
+
+}  // namespace palpate::elastic

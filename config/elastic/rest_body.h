@@ -1,0 +1,42 @@
+// A supported body at rest: its stiffness factored once, its exact nodal forces at any displacement, its surface.
+// Vectors are [node * kDim + component]; fixed components are zero.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "config/elastic/surface.h"
+#include "config/fem/large_strain_assembly.h"
+#include "config/fem/supernodal_factor.h"
+
+namespace palpate::elastic {
+
+template <int kDim>
+class RestBody {
+ public:
+  // Plane strain, plane stress or solid; `fixed[node * kDim + component]` must hold every rigid motion. Throws
+  // ConfigError otherwise, and for a bad material.
+  RestBody(const fem::StrainMesh<kDim>& mesh, const fem::StrainBody& body, const std::vector<bool>& fixed);
+
+  const fem::StrainBody& material() const { return material_; }
+  const Surface<kDim>& surface() const { return surface_; }
+  Eigen::Index size() const { return size_; }
+  // What a contact patch meets: E / (1 - nu^2), in plane stress E; in the plane times the width (N/m).
+  double contact_modulus() const;
+
+  // K^-1 f at rest.
+  Eigen::VectorXd solve(const Eigen::VectorXd& force_N) const;
+  // Nodal forces that hold `u_m`. Throws ConfigError when an element is turned inside out.
+  Eigen::VectorXd internal_force(const Eigen::VectorXd& u_m) const;
+  // Sets fixed components to zero.
+  void release_fixed(Eigen::VectorXd& v) const;
+
+ private:
+  fem::StrainBody material_;
+  Eigen::Index size_;
+  Surface<kDim> surface_;
+  fem::LargeStrainAssembly<kDim> assembly_;
+  fem::SupernodalFactor factor_;
+};
+
+}  // namespace palpate::elastic
