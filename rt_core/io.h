@@ -19,11 +19,11 @@ namespace Command {
 inline constexpr std::uint32_t kArm = 1u << 0;    // edge: leave kIdle for kForce
 inline constexpr std::uint32_t kStop = 1u << 1;   // level: ramp to zero, then kIdle
 inline constexpr std::uint32_t kReset = 1u << 2;  // edge: leave kFault for kIdle
-// Set by the loop beside kStop, never by a host: it stops because the machine stood still, and will arm again by
-// itself. The tick ignores it; it is here so that a recording says why.
+// The rest are levels of the control loop alone (a host's command region with them is refused): they ramp force to zero
+// while they last and back afterwards, and nothing is armed. kStall: the machine and its simulated device stood still.
 inline constexpr std::uint32_t kStall = 1u << 3;
-// Level, set by the control loop alone (a host's command region with it is refused): the device does not show that
-// commands reach it. Force ramps to zero while it lasts and back afterwards; nothing is armed meanwhile.
+// The device does not show that commands reach it. What counts as showing, and when it is a fault of its own, is in
+// hal/loop/link_watch.h.
 inline constexpr std::uint32_t kUnheard = 1u << 4;
 }  // namespace Command
 

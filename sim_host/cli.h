@@ -4,6 +4,8 @@
 
 #include <string>
 
+#include "sim_host/exit_codes.h"
+
 namespace CLI {
 class App;
 }
@@ -16,12 +18,6 @@ struct JointOptions;
 inline std::string about_file(const std::string& file, const std::string& what) {
   return what.starts_with(file) ? what : file + ": " + what;
 }
-
-// Exit codes of every command (sysexits style, kept small).
-inline constexpr int kExitOk = 0;
-inline constexpr int kExitFailed = 1;       // it ran, and the answer is "no": replay differs, faults latched
-inline constexpr int kExitUsage = 2;        // wrong arguments, unreadable or invalid input file
-inline constexpr int kExitUnavailable = 3;  // the machine lacks something: interface, permission, device
 
 // Each registers its subcommand; when the user picks it, the callback sets `exit_code`. Errors may be thrown as
 // std::exception: main prints what() after "palpate: " and exits with kExitUsage.

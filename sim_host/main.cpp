@@ -54,6 +54,9 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? palpate::kExitOk : palpate::kExitUsage;
+  } catch (const palpate::ExitError& error) {
+    std::fprintf(stderr, "palpate: %s\n", error.what());
+    return error.code;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "palpate: %s\n", error.what());
     return palpate::kExitUsage;

@@ -46,8 +46,11 @@ struct LoopOptions {
   std::uint64_t ticks = 0;                   // controller ticks before an orderly stop; 0: until stopped
   std::uint32_t start_timeout_ticks = 2000;  // without any sample at start
   std::uint32_t silence_fault_ticks = 20;    // without a fresh sample in motion: Fault::kDeviceSilent
-  std::uint32_t stop_ticks = 200;            // longest ramp-down
-  std::uint32_t zero_ticks = 5;              // zero-force commands that end every run
+  // Ticks in a row, in time and with a sample, after which a run that stood still goes on by itself; 0: it latches the
+  // fault. Only for a simulated device, which stood still with the machine and hurts nobody.
+  std::uint32_t ride_through_ticks = 0;
+  std::uint32_t stop_ticks = 200;  // longest ramp-down
+  std::uint32_t zero_ticks = 5;    // zero-force commands that end every run
 };
 
 enum class LoopEnd : int { kTicksDone = 0, kStopped, kSilentAtStart };
@@ -63,6 +66,7 @@ struct LoopSummary {
   std::uint32_t worst_stale = 0;    // longest silence in periods
   std::uint64_t gaps = 0;           // status sequence numbers missing
   std::uint64_t send_failures = 0;  // commands the bus did not take
+  std::uint32_t stalls = 0;         // ridden through
   std::int64_t worst_wake_ns = 0;   // largest wake-up latency
   std::uint32_t worst_lag = 0;      // most commands sent beyond the newest one the device said it obeyed
   std::uint64_t unheard_ticks = 0;  // ticks in which force was let go because the device did not hear
@@ -228,11 +232,32 @@ class Loop {
     if (link_.unheard()) input_.commands |= Command::kUnheard;
     if constexpr (requires { host_.joints(); }) input_.joints = host_.joints();
     input_.device_fault = sample_.faults;
-    if (stale_ >= options_.silence_fault_ticks) input_.device_fault |= Fault::kDeviceSilent;
     if (link_.fault()) input_.device_fault |= Fault::kDeviceDeaf;
-    if (slots_.late_too_often()) input_.device_fault |= Fault::kOverrun;
-    if (slots_.stalled()) input_.device_fault |= Fault::kStalled;
+    std::uint32_t late = stale_ >= options_.silence_fault_ticks ? Fault::kDeviceSilent : 0u;
+    if (slots_.late_too_often()) late |= Fault::kOverrun;
+    if (slots_.stalled()) late |= Fault::kStalled;
+    if (options_.ride_through_ticks == 0) {
+      input_.device_fault |= late;
+    } else {
+      ride_through(late != 0 || slots_.missed() >= options_.silence_fault_ticks);
+    }
     input_.drive = Drive::kDevice;
+  }
+
+  // A stall on a simulated device: force is let go until the machine has kept up for a while. What the core is told of
+  // lateness stays below the limit at which it would latch by itself.
+  void ride_through(bool stalled) noexcept {
+    if (stalled && !riding_) summary_.stalls += 1;
+    riding_ = riding_ || stalled;
+    if (!riding_) return;
+    calm_ticks_ = stalled || slots_.missed() > 0 || stale_ > 0 ? 0 : calm_ticks_ + 1;
+    const std::uint32_t most = options_.silence_fault_ticks - 1;
+    input_.stale_ticks = input_.stale_ticks < most ? input_.stale_ticks : most;
+    input_.overrun_ticks = input_.overrun_ticks < most ? input_.overrun_ticks : most;
+    riding_ = calm_ticks_ <= options_.ride_through_ticks;
+    if (!riding_) return;
+    // Arming is an edge: a host that asks for it meanwhile gives one when the ride is over.
+    input_.commands = (input_.commands & ~Command::kArm) | Command::kStall;
   }
 
   void account(const TickTiming& timing) noexcept {
@@ -292,6 +317,8 @@ class Loop {
   Stamps stamps_{};
   LoopSummary summary_;
   std::uint32_t stale_ = 0;
+  bool riding_ = false;  // through a stall
+  std::uint32_t calm_ticks_ = 0;
   std::int64_t woke_ns_ = 0;
   std::int32_t publish_ns_ = 0;
 };

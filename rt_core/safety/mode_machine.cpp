@@ -4,6 +4,9 @@ namespace palpate {
 
 namespace {
 
+// The loop's reasons to let the force go for a while.
+constexpr std::uint32_t kLetGo = Command::kUnheard | Command::kStall;
+
 bool edge(const Input& input, const SafetyState& safety, std::uint32_t command) PALPATE_RT {
   return (input.commands & command) != 0 && (safety.last_commands & command) == 0;
 }
@@ -13,7 +16,7 @@ double step_of(double duration_s, const Model& model) PALPATE_RT {
 }
 
 Mode mode_when_late(const Model& model, const Input& input, std::uint32_t late_ticks) PALPATE_RT {
-  if ((input.commands & Command::kUnheard) != 0) return Mode::kRamp;
+  if ((input.commands & kLetGo) != 0) return Mode::kRamp;
   if (late_ticks == 0) return Mode::kForce;
   if (late_ticks <= static_cast<std::uint32_t>(model.params.silence_hold_ticks)) return Mode::kHold;
   if (late_ticks <= static_cast<std::uint32_t>(model.params.silence_passive_ticks)) return Mode::kPassive;
@@ -29,8 +32,7 @@ void leave_rest(const Input& input, const Findings& found, SafetyState& safety) 
     return;
   }
   safety.stopping = 0;
-  const bool may_start =
-      found.late_ticks == 0 && !found.pressed && (input.commands & (Command::kStop | Command::kUnheard)) == 0;
+  const bool may_start = found.late_ticks == 0 && !found.pressed && (input.commands & (Command::kStop | kLetGo)) == 0;
   if (edge(input, safety, Command::kArm) && may_start) safety.mode = Mode::kForce;
 }
 

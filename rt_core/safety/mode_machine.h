@@ -5,11 +5,12 @@
 //   Passive -- later still -------------------------------------> Ramp     gain falls to zero over ramp_out_s
 //   Hold, Passive, Ramp (no fault, not stopping) -- fresh ------> Force    gain rises again from where it is
 //   any but Idle -- stop ---------------------------------------> Ramp ---- gain 0 --> Idle
-//   Force, Hold, Passive -- unheard ----------------------------> Ramp     until heard again, then as above
+//   Force, Hold, Passive -- unheard or stalled -----------------> Ramp     until that is over, then as above
 //   any -- fault bit, or late by the silence limit -------------> Ramp ---- gain 0 --> Fault (latched)
 //   Fault   -- reset edge, cause gone --------------------------> Idle
-// "Unheard": Command::kUnheard, the device does not show that commands reach it.
-// "Late" counts ticks without a usable sample: no frame, a rejected sample, or deadlines missed.
+// "Unheard": Command::kUnheard, the device does not show that commands reach it. "Stalled": Command::kStall, the
+// machine stood still and the simulated device with it. "Late" counts ticks without a usable sample: no frame, a
+// rejected sample, or deadlines missed.
 #pragma once
 
 #include "rt_core/io.h"

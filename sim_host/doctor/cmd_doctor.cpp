@@ -15,7 +15,8 @@ struct Options {
   int priority = 80;
 };
 
-void print_summary(const std::vector<DoctorItem>& items) {
+// Returns how many fail.
+int print_summary(const std::vector<DoctorItem>& items) {
   int failed = 0, unknown = 0;
   for (const DoctorItem& item : items) {
     failed += item.verdict == Verdict::kFail;
@@ -23,6 +24,7 @@ void print_summary(const std::vector<DoctorItem>& items) {
   }
   fmt::print("{} items: {} fail, {} unknown. Nothing was changed; Palpate starts either way.\n", items.size(), failed,
              unknown);
+  return failed;
 }
 
 }  // namespace
@@ -36,7 +38,9 @@ void add_doctor_command(CLI::App& app, int& exit_code) {
   command->add_option("--priority", options->priority, "SCHED_FIFO priority of the loop")
       ->capture_default_str()
       ->check(CLI::Range(1, 98));
-  command->footer("Examples:\n  palpate doctor\n  palpate doctor --device can:can0 --cpu 3");
+  command->footer(
+      "Exits with 1 when an item fails; unknown ones do not count.\n"
+      "Examples:\n  palpate doctor\n  palpate doctor --device can:can0 --cpu 3");
   command->callback([options, &exit_code] {
     DoctorSources sources = this_machine();
     sources.cpu = options->cpu;
@@ -47,8 +51,7 @@ void add_doctor_command(CLI::App& app, int& exit_code) {
     const std::vector<DoctorItem> heard = listen_to_device(options->device);
     items.insert(items.end(), heard.begin(), heard.end());
     fmt::print("{}", doctor_table(items));
-    print_summary(items);
-    exit_code = kExitOk;
+    exit_code = print_summary(items) == 0 ? kExitOk : kExitFailed;
   });
 }
 

@@ -11,6 +11,7 @@
 #include "sim_host/bake/scene_model.h"
 #include "sim_host/cli.h"
 #include "sim_host/press/grasp_run.h"
+#include "sim_host/run/verdict.h"
 #include "sim_host/view/line_plot.h"
 #include "sim_host/view/picture.h"
 
@@ -23,6 +24,7 @@ struct GraspCommand {
   std::string out = "grasp";
   double hand_N_per_m = 0;
   bool order = false;
+  VerdictLimits limits;
 };
 
 void write_csv(const std::string& path, const Model& model, const GraspRun& run) {
@@ -98,6 +100,7 @@ int run(const GraspCommand& command) {
   const auto file = [&](const std::string& name) { return command.out + "/" + name; };
   std::vector<PlotCurve> curves;
   bool rest = true;
+  std::vector<RunVerdict> verdicts;  // one a scene
   for (const std::string& path : command.scenes) {
     const SceneModel scene(path);
     if (!scene.scene()) throw std::runtime_error(path + ": an image holds no path; name the scene's .toml");
@@ -107,6 +110,7 @@ int run(const GraspCommand& command) {
     print_run(scene.model(), played);
     if (command.order) print_order(scene.model(), *scene.scene());
     rest = rest && played.back_at_rest;
+    verdicts.push_back(judge_unconverged(played.unconverged_ticks, played.ticks, command.limits));
     curves.push_back(stress_by_anchor(played));
     write_csv(file(played.name + ".stress.csv"), scene.model(), played);
     history_plot(played).save(file(played.name + ".stress.png"));
@@ -114,7 +118,8 @@ int run(const GraspCommand& command) {
   }
   line_plot(curves, {"stress at the anchors while held", "anchor", "stress (kPa)"}, true).save(file("anchors.png"));
   fmt::print("wrote   {}: anchors.png, and for each scene a picture, a stress history and its table\n", command.out);
-  return rest ? kExitOk : kExitFailed;
+  fmt::print("{}", verdict_text(verdicts));
+  return rest && all_ok(verdicts) ? kExitOk : kExitFailed;
 }
 
 }  // namespace
@@ -130,6 +135,7 @@ void add_grasp_command(CLI::App& app, int& exit_code) {
                    "stiffness (N/m) of the arm that holds the wrist; 0: the wrist is where the path says")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1e6));
+  add_allow_option(*command, settings->limits, {"unconverged"});
   command->add_flag("--order", settings->order, "also close the thumb first and last, with both coupling laws");
   command->footer(
       "Example:\n"

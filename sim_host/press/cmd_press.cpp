@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <bit>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -14,6 +15,7 @@
 #include "sim_host/press/anchor_loads.h"
 #include "sim_host/press/force_csv.h"
 #include "sim_host/run/joint_script.h"
+#include "sim_host/run/verdict.h"
 #include "sim_host/status_text.h"
 #include "sim_host/tick_memory.h"
 #include "sim_host/view/picture.h"
@@ -31,6 +33,7 @@ struct PressOptions {
   int every = 1;
   bool resample = false;
   JointOptions joints;
+  VerdictLimits limits;
   double hand_N_per_m = -1;  // -1: the scene's for the demo, otherwise none
 };
 
@@ -202,7 +205,11 @@ int run_press(const PressOptions& options) {
   print_summary(all, options);
   write_pictures(options, model, all);
   write_anchors(options, model, all);
-  return all.fault == 0 ? kExitOk : kExitFailed;
+  const auto bit = static_cast<std::size_t>(std::countr_zero(Status::kNotConverged));
+  const RunVerdict verdict = judge_unconverged(all.status[bit].ticks, all.rows, options.limits);
+  fmt::print("{}", verdict_text({verdict}));
+  if (all.fault != 0) return kExitFault;
+  return verdict.ok() ? kExitOk : kExitFailed;
 }
 
 }  // namespace
@@ -239,6 +246,7 @@ void add_press_command(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(0.0, 1e6));
   command->add_flag("--resample", options->resample, "interpolate the poses by their time_s to one per tick period");
   add_joint_options(*command, options->joints);
+  add_allow_option(*command, options->limits, {"unconverged"});
   command->footer(
       "One pose is one tick, friction history included. Columns of both tables: docs/press.md.\n"
       "Examples:\n"

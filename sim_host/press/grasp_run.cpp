@@ -90,6 +90,8 @@ GraspRun run_grasp(const Model& model, const SceneDesc& scene, const GraspOption
         [&](const PressRow& row, const State& now, const Scratch&) {
           const double sum_N = normal_sum_N(now);
           run.residual_max_m = std::max(run.residual_max_m, row.record.output.residual_m);
+          run.ticks += 1;
+          run.unconverged_ticks += (row.record.output.status & Status::kNotConverged) != 0 ? 1 : 0;
           if (n + watched > hold_end && n <= hold_end && sum_N > 0)
             run.chatter = std::max(run.chatter, std::abs(sum_N - before_N) / sum_N);
           before_N = sum_N;

@@ -36,6 +36,7 @@ struct GraspRun {
   double chatter = 0;         // largest relative change of the summed normal force per tick over the last 0.2 s of hold
   bool back_at_rest = false;  // no force, no region (so no displacement), no energy at the end
   double residual_max_m = 0;
+  std::uint64_t ticks = 0, unconverged_ticks = 0;
 };
 
 // `model` may differ from the scene's own in its parameters. Throws std::runtime_error when the scene has no path or no

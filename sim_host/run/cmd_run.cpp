@@ -8,6 +8,7 @@
 #include "sim_host/cli.h"
 #include "sim_host/doctor/doctor.h"
 #include "sim_host/run/run_session.h"
+#include "sim_host/run/verdict.h"
 
 namespace palpate {
 
@@ -18,6 +19,7 @@ struct RunCommand {
   bool no_record = false, no_black_box = false, live = false, virtual_time = false, real_time = false;
   int worst = 3;
   CLI::Option* record_option = nullptr;
+  VerdictLimits limits;
 };
 
 // One line about the real-time checklist, when something on it fails.
@@ -81,10 +83,14 @@ int run(RunCommand& command) {
     fmt::print(stderr, "palpate: recording incomplete: {}\n         `palpate recover {}{}` keeps what is there\n",
                result.recorder_error, options.record, kPartSuffix);
   }
+  if (result.device_died) fmt::print(stderr, "palpate: the simulated device was killed or ended by itself\n");
   if (result.controller_exit != 0) {
     fmt::print(stderr, "palpate: the controller ended with exit code {}\n", result.controller_exit);
   }
-  return result.faulted() || result.controller_exit != 0 || !result.recorder_error.empty() ? kExitFailed : kExitOk;
+  const std::vector<RunVerdict> verdicts =
+      judge(result.summary, {result.lost, options.arm, result.interrupted}, command.limits);
+  if (result.summary.ticks > 0) fmt::print("{}", verdict_text(verdicts));
+  return exit_code_of(result, verdicts);
 }
 
 }  // namespace
@@ -133,12 +139,15 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command->add_option("--worst", settings->worst, "how many of the worst ticks to list at the end, with their parts")
       ->capture_default_str()
       ->check(CLI::Range(0, static_cast<int>(kWorstTicksKept)));
+  add_allow_option(*command, settings->limits, {"stale", "unconverged", "clamped", "armed", "lost"});
   command->add_flag("--no-black-box", settings->no_black_box,
                     "do not write the last seconds (RECORD.fault-N.plr and .log) when a fault latches");
   command->footer(
-      "Ctrl-C ramps the force to zero and leaves a complete recording. Exits with 1 when a fault was latched; the "
-      "last\n"
-      "seconds before it are then in RECORD.fault-1.plr (see palpate replay) and, as CAN frames encoded again from\n"
+      "Ctrl-C ramps the force to zero and leaves a complete recording. Exits with 0 only when the hand felt what the "
+      "scene\n"
+      "says (verdicts and exit codes: docs/exit_codes.md), with 5 when a fault was latched; the last seconds before "
+      "it\n"
+      "are then in RECORD.fault-1.plr (see palpate replay) and, as CAN frames encoded again from\n"
       "it, in RECORD.fault-1.log (candump -L format: canplayer vcan0=palpate0 -I RECORD.fault-1.log).\n"
       "Examples:\n"
       "  palpate run config/scenes/ellipsoid_mallet.toml --duration 10 --record run.plr\n"

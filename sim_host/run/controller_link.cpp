@@ -5,6 +5,8 @@
 #include <csignal>
 #include <stdexcept>
 
+#include "sim_host/exit_codes.h"
+
 namespace palpate {
 
 namespace {
@@ -33,7 +35,11 @@ ControllerLink::ControllerLink(const std::string& program, std::vector<std::stri
   if (send_descriptor(control_.end(0), 'C', mailbox_memory_.fd(), error)) {
     fd = receive_descriptor(control_.end(0), 'T', kStartTimeout_ms, error);
   }
-  if (fd < 0) throw std::runtime_error("the controller did not start: " + error);
+  if (fd < 0) {
+    // It has said why on stderr; its exit code is the run's.
+    const bool told = process_.wait(1000) && process_.exit_code() > kExitOk && process_.exit_code() < 128;
+    throw ExitError(told ? process_.exit_code() : kExitDied, "the controller did not start: " + error);
+  }
   telemetry_ = SharedMemory::open_peer(fd, sizeof(TelemetryRegion), error);
   if (!telemetry_) throw std::runtime_error("the controller's telemetry is refused: " + error);
   if (const char* wrong = check_telemetry(telemetry())) {

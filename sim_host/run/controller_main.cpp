@@ -22,6 +22,7 @@
 #include "hal/system/shared_memory.h"
 #include "rt_core/image.h"
 #include "sim_host/build_id.h"
+#include "sim_host/exit_codes.h"
 #include "sim_host/run/crash_file.h"
 #include "sim_host/run/heap_count.h"
 #include "sim_host/run/host_port.h"
@@ -30,7 +31,13 @@
 namespace palpate {
 namespace {
 
-enum Exit { kOk = 0, kFaulted = 1, kUsage = 2, kUnavailable = 3, kSilentAtStart = 4 };
+enum Exit {
+  kOk = kExitOk,
+  kFaulted = kExitFault,
+  kUsage = kExitUsage,
+  kUnavailable = kExitUnavailable,
+  kSilentAtStart = kExitSilent
+};
 
 constexpr char kHelp[] =
     "palpate-rt --image FILE --device ADDRESS [options]: the real-time controller\n"
@@ -48,8 +55,8 @@ constexpr char kHelp[] =
     "  --allow-no-rt       drive a real device without them all the same\n"
     "  --device-turn-fd N, --host-turn-fd N   inherited sockets: virtual time in lock step with them; default: real "
     "time\n"
-    "Exit codes: 0 done, 1 a fault was latched, 2 bad arguments or image, 3 device, host or memory unavailable,\n"
-    "            4 the device sent nothing at start. In every case the last commands sent are zero force, drives off.\n"
+    "Exit codes: 0 done, 2 bad arguments or image, 3 device, host or memory unavailable, 4 the device sent nothing at\n"
+    "            start, 5 a fault was latched. In every case the last commands sent are zero force, drives off.\n"
     "Example: palpate-rt --image mallet.pal --device can:can0 --cpu 3 --duration 60\n";
 
 constexpr int kSocketTimeout_ms = 2000;
@@ -185,13 +192,18 @@ std::unique_ptr<Transport> connect_device(const Arguments& arguments, double per
   return transport;
 }
 
-LoopOptions loop_options(const Model& model, const Arguments& arguments) {
+// Ticks in time after a stall before the force comes back, on the loopback: as many as before arming at the start.
+constexpr std::uint32_t kRideThroughTicks = 50;
+
+LoopOptions loop_options(const Model& model, const Arguments& arguments, TransportKind transport) {
   const double period_s = model.params.period_s;
   LoopOptions options;
   options.deadline = deadline_limits(model.params);
   options.ticks = static_cast<std::uint64_t>(arguments.duration_s / period_s);
   options.start_timeout_ticks = static_cast<std::uint32_t>(kStartTimeout_s / period_s);
   options.silence_fault_ticks = static_cast<std::uint32_t>(model.params.silence_fault_ticks);
+  const bool ride_through = transport == TransportKind::kLoopback && !arguments.virtual_time();
+  options.ride_through_ticks = ride_through ? kRideThroughTicks : 0;
   options.link = link_limits(model.params);
   // Long enough for the ramp, with room for ticks that come late.
   options.stop_ticks = static_cast<std::uint32_t>(3.0 * model.params.ramp_out_s / period_s) + 20;
@@ -251,7 +263,7 @@ std::string missing_rights(const RtSetup& setup, const Arguments& arguments) {
 // The real-time thread: set-up, system-call filter, loop. Prints only before the filter is in place.
 template <Clock C>
 LoopSummary run_loop(const Arguments& arguments, const Model& model, Core& core, HostConnection& host, DeviceBus& bus,
-                     C& clock, const std::atomic<bool>& interrupted, LoopUsage& usage) {
+                     TransportKind transport, C& clock, const std::atomic<bool>& interrupted, LoopUsage& usage) {
   std::string missing;
   std::atomic<bool> stop{false};
   const auto* mailbox = static_cast<const MailboxRegion*>(host.mailbox.data());
@@ -277,7 +289,7 @@ LoopSummary run_loop(const Arguments& arguments, const Model& model, Core& core,
     drain(bus);
     const ThreadUsage before = thread_usage();
     const long heap_calls_before = heap_calls();
-    Loop loop(device, clock, controller, sink, port, kinematics, loop_options(model, arguments), stop);
+    Loop loop(device, clock, controller, sink, port, kinematics, loop_options(model, arguments, transport), stop);
     summary = loop.run();
     const long heap_calls_after = heap_calls();
     usage.heap_calls = heap_calls_after < 0 ? -1 : heap_calls_after - heap_calls_before;
@@ -304,12 +316,13 @@ LoopSummary run_loop(const Arguments& arguments, const Model& model, Core& core,
 }
 
 LoopSummary run_in_virtual_time(const Arguments& arguments, const Model& model, Core& core, HostConnection& host,
-                                DeviceBus& bus, const std::atomic<bool>& interrupted, LoopUsage& usage) {
+                                DeviceBus& bus, TransportKind transport, const std::atomic<bool>& interrupted,
+                                LoopUsage& usage) {
   LockstepClock clock;
   // The device first: a host that looks in the same step sees the sample's tick not yet, but everything before it.
   if (arguments.device_turn_fd >= 0) clock.add(arguments.device_turn_fd, "device");
   if (arguments.host_turn_fd >= 0) clock.add(arguments.host_turn_fd, "host");
-  const LoopSummary summary = run_loop(arguments, model, core, host, bus, clock, interrupted, usage);
+  const LoopSummary summary = run_loop(arguments, model, core, host, bus, transport, clock, interrupted, usage);
   if (clock.lost() != nullptr) {
     std::fprintf(stderr, "virtual time: the %s %s at %.3f s; time went on without it\n", clock.lost(),
                  clock.lost_closed() ? "closed its end" : "did not take its turn for 10 s",
@@ -353,16 +366,19 @@ int run(int argc, char** argv) {
   arguments.require_rt = (arguments.require_rt || real) && !arguments.allow_no_rt && !arguments.virtual_time();
   LoopUsage usage;
   MonotonicClock clock;
-  const LoopSummary summary = arguments.virtual_time()
-                                  ? run_in_virtual_time(arguments, model, core, host, bus, interrupted, usage)
-                                  : run_loop(arguments, model, core, host, bus, clock, interrupted, usage);
+  const LoopSummary summary =
+      arguments.virtual_time()
+          ? run_in_virtual_time(arguments, model, core, host, bus, address.kind, interrupted, usage)
+          : run_loop(arguments, model, core, host, bus, address.kind, clock, interrupted, usage);
   if (summary.end == LoopEnd::kSilentAtStart) {
     const LinkReport report = report_link(bus, transport->state());
     throw Failure{kSilentAtStart, "no sample at start: " + report.found + "; " + report.remedy};
   }
-  std::fprintf(stderr, "controller: %llu ticks, %llu missed, %llu without a fresh sample, faults 0x%x\n",
-               static_cast<unsigned long long>(summary.ticks), static_cast<unsigned long long>(summary.missed_slots),
-               static_cast<unsigned long long>(summary.stale_ticks), summary.faults);
+  std::fprintf(
+      stderr,
+      "controller: %llu ticks, %llu missed, %u stalls ridden through, %llu without a fresh sample, faults 0x%x\n",
+      static_cast<unsigned long long>(summary.ticks), static_cast<unsigned long long>(summary.missed_slots),
+      summary.stalls, static_cast<unsigned long long>(summary.stale_ticks), summary.faults);
   print_link(summary, bus, transport->state());
   print_usage(usage);
   return summary.faults != 0 ? kFaulted : kOk;

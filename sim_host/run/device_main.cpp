@@ -21,13 +21,14 @@
 #include "hal/loop/clock.h"
 #include "hal/loop/lockstep.h"
 #include "hal/system/rt_linux.h"
+#include "sim_host/exit_codes.h"
 #include "sim_host/run/hand_path_file.h"
 #include "sim_host/run/plant_options.h"
 
 namespace palpate {
 namespace {
 
-enum Exit { kOk = 0, kUsage = 2, kUnavailable = 3 };
+enum Exit { kOk = kExitOk, kUsage = kExitUsage, kUnavailable = kExitUnavailable };
 
 constexpr char kHelp[] =
     "palpate-device --device ADDRESS [options]: a simulated device and hand\n"

@@ -21,6 +21,7 @@ class DeviceProcess {
   DeviceProcess(const DeviceProcess&) = delete;
   DeviceProcess& operator=(const DeviceProcess&) = delete;
 
+  bool running() { return process_.running(); }
   int controller_end() const { return sockets_.end(0); }
   // Once the controller holds it: then the device notices the controller's end.
   void close_controller_end() { sockets_.close_end(0); }

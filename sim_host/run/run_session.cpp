@@ -15,6 +15,7 @@
 #include "hal/bus/device_address.h"
 #include "sim_host/bake/image_file.h"
 #include "sim_host/bake/scene_image.h"
+#include "sim_host/exit_codes.h"
 #include "sim_host/record/recorded_image.h"
 #include "sim_host/record/recorder.h"
 #include "sim_host/record/recording_writer.h"
@@ -144,10 +145,11 @@ class SharedSummary {
   RunSummary all_, recent_;
 };
 
-// "" when the controller ended in order (a latched fault is order: exit code 1), otherwise how.
+// "" when the controller ended in order (a latched fault is order), otherwise how.
 std::string death_text(int exit_code) {
   if (exit_code >= 128) return fmt::format("controller killed by signal {}", exit_code - 128);
-  return exit_code > 1 ? fmt::format("controller ended with exit code {}", exit_code) : "";
+  return exit_code != kExitOk && exit_code != kExitFault ? fmt::format("controller ended with exit code {}", exit_code)
+                                                         : "";
 }
 
 CandumpOptions candump_options(const DeviceAddress& address, bool virtual_time) {
@@ -169,11 +171,12 @@ double recording_bytes(double duration_s, const ImageFile& image) {
 // Watches the controller until the time is over, a signal comes or it ends by itself.
 class Watch {
  public:
-  // `recorder`: drained at each look; null when it has a thread of its own.
-  Watch(ControllerLink& link, HostTime& time, Recorder* recorder, const RunOptions& options, const JointScript& joints,
-        SharedSummary& summary)
+  // `device`: null when it is not ours. `recorder`: drained at each look; null when it has a thread of its own.
+  Watch(ControllerLink& link, HostTime& time, DeviceProcess* device, Recorder* recorder, const RunOptions& options,
+        const JointScript& joints, SharedSummary& summary)
       : link_(link),
         time_(time),
+        device_(device),
         recorder_(recorder),
         options_(options),
         joints_(joints),
@@ -185,7 +188,7 @@ class Watch {
 
   // Returns how long it watched, in seconds of the run.
   double run() {
-    while (next() && time_.elapsed_s() < options_.duration_s && stop_signal == 0 && !faulted_) {
+    while (next() && time_.elapsed_s() < options_.duration_s && stop_signal == 0 && !faulted_ && !waits_in_vain()) {
       if (!joints_.empty()) link_.mailbox().set_joints(joints_.at(time_.elapsed_s()));
       look();
       report(time_.elapsed_s(), false);
@@ -194,6 +197,8 @@ class Watch {
     report(time_.elapsed_s(), true);
     return time_.elapsed_s();
   }
+
+  bool device_died() const { return device_died_; }
 
   // Ends the controller in order; the heartbeat goes on meanwhile, or a slow stop would look like a dead host. Returns
   // its exit code.
@@ -215,6 +220,12 @@ class Watch {
     return true;
   }
 
+  // Its device is gone, and so is the fault that would say so: at rest, or while a stall is ridden, silence is none.
+  bool waits_in_vain() {
+    device_died_ = device_died_ || (device_ != nullptr && !device_->running());
+    return device_died_ && !rendering_;
+  }
+
   void look() {
     TickRecord newest;
     if (!reader_.newest(newest)) return;
@@ -225,6 +236,8 @@ class Watch {
     }
     // A latched fault leaves only by an operator's reset; there is none to ask here, so the run is over.
     faulted_ = newest.output.mode == Mode::kFault;
+    const bool waits = newest.output.mode == Mode::kIdle || (newest.input.commands & Command::kStall) != 0;
+    rendering_ = !faulted_ && !waits;
     if (show_) fmt::print(stderr, "\r{}\x1b[K", line_.text(newest));
   }
 
@@ -238,6 +251,7 @@ class Watch {
 
   ControllerLink& link_;
   HostTime& time_;
+  DeviceProcess* device_;
   Recorder* recorder_;
   const RunOptions& options_;
   const JointScript& joints_;
@@ -249,11 +263,14 @@ class Watch {
   double reported_s_ = 0;
   bool arming_ = false;
   bool faulted_ = false;
+  bool rendering_ = false;
+  bool device_died_ = false;
 };
 
 // Records and watches a controller that has just started, then ends it.
-RunResult follow(ControllerLink& link, HostTime& time, const RunOptions& options, const JointScript& joints,
-                 const DeviceAddress& address, const ImageFile& image, std::optional<PartFile> record_file) {
+RunResult follow(ControllerLink& link, HostTime& time, DeviceProcess* device, const RunOptions& options,
+                 const JointScript& joints, const DeviceAddress& address, const ImageFile& image,
+                 std::optional<PartFile> record_file) {
   const bool virtual_time = runs_in_virtual_time(options);
   const TelemetryHeader& header = link.telemetry().header;
   const StatePtr initial = make_state(image.model());  // every run starts after a reset
@@ -274,10 +291,11 @@ RunResult follow(ControllerLink& link, HostTime& time, const RunOptions& options
     if (box) box->add(record);
   });
   if (!virtual_time) recorder.start();
-  Watch watch(link, time, virtual_time ? &recorder : nullptr, options, joints, *summary);
+  Watch watch(link, time, device, virtual_time ? &recorder : nullptr, options, joints, *summary);
   RunResult result;
   result.virtual_time = virtual_time;
   result.elapsed_s = watch.run();
+  result.device_died = watch.device_died();
   result.interrupted = stop_signal != 0;
   result.controller_exit = watch.finish();
   recorder.stop();  // the controller has ended: the ring holds its last word
@@ -351,12 +369,12 @@ RunResult run_session(const RunOptions& options) {
   if (device) device->close_controller_end();
   if (!virtual_time) {
     RealHostTime time;
-    return follow(link, time, options, joints, address, image, std::move(record));
+    return follow(link, time, device ? &*device : nullptr, options, joints, address, image, std::move(record));
   }
   device_turns.reset();
   host_turns->close_end(0);
   VirtualHostTime time(host_turns->end(1), options.pace);
-  return follow(link, time, options, joints, address, image, std::move(record));
+  return follow(link, time, device ? &*device : nullptr, options, joints, address, image, std::move(record));
 }
 
 }  // namespace palpate

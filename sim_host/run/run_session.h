@@ -46,6 +46,7 @@ struct RunResult {
   int controller_exit = 0;
   std::string recorder_error;
   bool interrupted = false;  // Ctrl-C
+  bool device_died = false;  // the simulated one, before the end
   std::vector<BlackBoxDump> dumps;
   std::string black_box_error;
   double elapsed_s = 0;  // until the stop

@@ -32,6 +32,40 @@ void times_table(std::string& text, const RunSummary& summary) {
   time_row(text, "whole tick", summary.busy);
 }
 
+// What the machine did where a fault is its doing; numbers say more than the fault's general text.
+std::string fault_detail(const RunSummary& summary, std::uint32_t fault) {
+  const double typical_us = 1e-3 * static_cast<double>(percentile_ns(summary.compute, 0.5));
+  const double slow_us = 1e-3 * static_cast<double>(percentile_ns(summary.compute, 0.999));
+  const std::string own =
+      fmt::format("Palpate's own work took {:.1f} us a tick, {:.1f} us in one of 1000", typical_us, slow_us);
+  if (fault == Fault::kStalled) {
+    return fmt::format("        this machine stood still {:.1f} ms before tick {}; {}\n",
+                       1e-6 * static_cast<double>(summary.fault_gap_ns), summary.fault_tick, own);
+  }
+  if (fault == Fault::kOverrun) {
+    return fmt::format("        {} ticks in a row came late, up to tick {}; {}\n", summary.fault_late_run,
+                       summary.fault_tick, own);
+  }
+  return "";
+}
+
+void machine_row(std::string& text, const RunSummary& summary) {
+  const auto out = std::back_inserter(text);
+  fmt::format_to(out, "machine ");
+  if (summary.missed_ticks == 0) {
+    fmt::format_to(out, "kept up: no tick missed");
+  } else {
+    fmt::format_to(out, "missed {} ticks, at most {:.1f} ms at one go, before tick {}", summary.missed_ticks,
+                   1e-6 * static_cast<double>(summary.longest_gap_ns), summary.longest_gap_tick);
+  }
+  if (summary.stalls > 0) {
+    fmt::format_to(out, "; {} stalls so long that the force ramped out and in again", summary.stalls);
+  }
+  fmt::format_to(out, "; Palpate computes {:.1f} us a tick, {:.1f} us in one of 1000\n",
+                 1e-3 * static_cast<double>(percentile_ns(summary.compute, 0.5)),
+                 1e-3 * static_cast<double>(percentile_ns(summary.compute, 0.999)));
+}
+
 void bit_rows(std::string& text, const RunSummary& summary) {
   for (const BitText& bit : status_bit_texts()) {
     const std::uint64_t ticks = summary.status_ticks[bit.bit];
@@ -42,17 +76,53 @@ void bit_rows(std::string& text, const RunSummary& summary) {
   for (const BitText& bit : fault_bit_texts()) {
     if ((summary.fault >> bit.bit & 1u) == 0) continue;
     fmt::format_to(std::back_inserter(text), "FAULT   {}: {}\n        remedy: {}\n", bit.name, bit.meaning, bit.remedy);
+    text += fault_detail(summary, 1u << bit.bit);
   }
+}
+
+// Deadlines lie on one grid, so a step longer than the period is slots without a tick. Input::overrun_ticks says the
+// same, but is cut where a stall is ridden through.
+void add_gap(RunSummary& summary, const TickRecord& record) {
+  const std::int64_t step_ns = record.timing.deadline_ns - summary.last_deadline_ns;
+  const bool follows = summary.ticks > 0 && step_ns > 0;
+  if (follows && (summary.period_ns == 0 || step_ns < summary.period_ns)) summary.period_ns = step_ns;
+  const bool gap = record.input.overrun_ticks > 0 && follows;
+  summary.gap_ns = gap ? step_ns - summary.period_ns : 0;
+  summary.late_run = gap ? summary.late_run + 1 : 0;
+  if (summary.gap_ns > summary.longest_gap_ns) {
+    summary.longest_gap_ns = summary.gap_ns;
+    summary.longest_gap_tick = record.tick;
+  }
+  const std::uint32_t commands = record.input.commands;
+  summary.stalls += (commands & Command::kStall) != 0 && (summary.last_commands & Command::kStall) == 0 ? 1 : 0;
+  summary.last_commands = commands;
+  const auto slots = gap ? static_cast<std::uint64_t>(summary.gap_ns / summary.period_ns) : 0;
+  summary.missed_ticks += std::max<std::uint64_t>(record.input.overrun_ticks, slots);
+  if (summary.armed_ticks > 0) summary.paused_ticks += slots;
+}
+
+void add_felt(RunSummary& summary, const TickRecord& record) {
+  const Output& output = record.output;
+  const bool riding = (record.input.commands & Command::kStall) != 0;
+  const bool ending = (record.input.commands & Command::kStop) != 0;
+  if (riding || output.mode == Mode::kIdle || output.mode == Mode::kFault) {
+    summary.paused_ticks += summary.armed_ticks > 0 && !ending ? 1 : 0;
+    return;
+  }
+  summary.armed_ticks += 1;
+  summary.armed_stale_ticks += record.input.stale_ticks > 0 ? 1 : 0;
+  summary.armed_clamped_ticks += (output.status & Status::kForceClamped) != 0 ? 1 : 0;
 }
 
 }  // namespace
 
 void add(RunSummary& summary, const TickRecord& record) {
   const TickTiming& timing = record.timing;
+  add_gap(summary, record);
+  add_felt(summary, record);
   if (summary.ticks == 0) summary.first_deadline_ns = timing.deadline_ns;
   summary.last_deadline_ns = timing.deadline_ns;
   summary.ticks += 1;
-  summary.missed_ticks += record.input.overrun_ticks;
   summary.stale_ticks += record.input.stale_ticks > 0 ? 1 : 0;
   add(summary.wake, timing.wake_latency_ns, record.tick);
   add(summary.receive, timing.receive_ns, record.tick);
@@ -70,6 +140,11 @@ void add(RunSummary& summary, const TickRecord& record) {
   summary.regions_max = std::max(summary.regions_max, output.regions);
   summary.high_water = record.high_water;
   for (int bit = 0; bit < 32; ++bit) summary.status_ticks[bit] += output.status >> bit & 1u;
+  if (summary.fault == 0 && output.fault != 0) {
+    summary.fault_tick = record.tick;
+    summary.fault_gap_ns = summary.gap_ns;
+    summary.fault_late_run = summary.late_run;
+  }
   summary.fault |= output.fault;
   summary.last_mode = output.mode;
 }
@@ -92,6 +167,7 @@ std::string summary_text(const RunSummary& summary, std::uint64_t lost_records, 
   if (is_virtual(summary)) {
     text += "times   none: in virtual time a tick takes no time; --device loopback measures them\n";
   } else {
+    machine_row(text, summary);
     times_table(text, summary);
     text += worst_ticks_text(summary.worst, worst);
   }

@@ -25,6 +25,21 @@ struct RunSummary {
   HighWater high_water;
   std::uint64_t status_ticks[32] = {};  // ticks during which each status bit was set
   std::uint32_t fault = 0;              // every fault bit seen
+  // While it rendered force, from arming on; pauses are ticks at rest and slots missed in between, but for the end.
+  std::uint64_t armed_ticks = 0, paused_ticks = 0;
+  std::uint64_t armed_stale_ticks = 0, armed_clamped_ticks = 0;
+  // How this machine kept up. A gap is time without a tick where there should have been some.
+  std::uint32_t stalls = 0;    // ridden through (Command::kStall)
+  std::int64_t gap_ns = 0;     // before the last tick
+  std::uint32_t late_run = 0;  // gaps in a row, up to the last tick
+  std::int64_t longest_gap_ns = 0;
+  std::uint64_t longest_gap_tick = 0;  // the tick after it
+  // At the tick that latched the first fault.
+  std::uint64_t fault_tick = 0;
+  std::int64_t fault_gap_ns = 0;
+  std::uint32_t fault_late_run = 0;
+  std::uint32_t last_commands = 0;
+  std::int64_t period_ns = 0;  // smallest step between deadlines
   Mode last_mode = Mode::kIdle;
 };
 

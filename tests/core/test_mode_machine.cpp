@@ -151,30 +151,34 @@ TEST(ModeMachine, StopRampsToIdleFromForceAndHold) {
   }
 }
 
-TEST(ModeMachine, ADeviceThatDoesNotHearRampsOutAndBackIn) {
-  Machine m;
-  m.arm();
-  m.run(300);
-  m.input.commands = Command::kUnheard;
-  m.run(10);
-  EXPECT_EQ(m.safety.mode, Mode::kRamp);
-  EXPECT_NEAR(m.safety.ramp, 0.5, 1e-12);
-  m.run(20);
-  EXPECT_EQ(m.safety.mode, Mode::kRamp) << "waiting to be heard again is neither rest nor a fault";
-  EXPECT_EQ(m.safety.ramp, 0);
-  m.input.commands = 0;
-  m.step();
-  EXPECT_EQ(m.safety.mode, Mode::kForce);
-  EXPECT_NEAR(m.safety.ramp, 1.0 / 200, 1e-12);
+TEST(ModeMachine, ADeviceThatDoesNotHearAndAStallRampOutAndBackIn) {
+  for (const std::uint32_t let_go : {Command::kUnheard, Command::kStall}) {
+    Machine m;
+    m.arm();
+    m.run(300);
+    m.input.commands = let_go;
+    m.run(10);
+    EXPECT_EQ(m.safety.mode, Mode::kRamp);
+    EXPECT_NEAR(m.safety.ramp, 0.5, 1e-12);
+    m.run(20);
+    EXPECT_EQ(m.safety.mode, Mode::kRamp) << "waiting is neither rest nor a fault";
+    EXPECT_EQ(m.safety.ramp, 0);
+    m.input.commands = 0;
+    m.step();
+    EXPECT_EQ(m.safety.mode, Mode::kForce);
+    EXPECT_NEAR(m.safety.ramp, 1.0 / 200, 1e-12);
+  }
 }
 
-TEST(ModeMachine, DoesNotArmUnheardOrPressed) {
+TEST(ModeMachine, DoesNotArmUnheardStalledOrPressed) {
   Machine m;
-  m.input.commands = Command::kArm | Command::kUnheard;
-  m.step();
-  EXPECT_EQ(m.safety.mode, Mode::kIdle);
-  m.input.commands = 0;
-  m.step();
+  for (const std::uint32_t let_go : {Command::kUnheard, Command::kStall}) {
+    m.input.commands = Command::kArm | let_go;
+    m.step();
+    EXPECT_EQ(m.safety.mode, Mode::kIdle);
+    m.input.commands = 0;
+    m.step();
+  }
   m.pressed = true;
   m.arm();
   EXPECT_EQ(m.safety.mode, Mode::kIdle);

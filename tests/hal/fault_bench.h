@@ -140,7 +140,7 @@ struct FaultRun {
 // The real tick and loop on `device`, whose time `clock` is.
 template <class D>
 FaultRun run_on(D& device, VirtualClock& clock, std::uint64_t ticks, double rate_max_N_per_s = 2e4,
-                const Meddle& meddle = {}) {
+                const Meddle& meddle = {}, std::uint32_t ride_through_ticks = 0) {
   ImageBytes image = tiny_image();
   image.params().force_rate_max_N_per_s = rate_max_N_per_s;
   image.seal();
@@ -160,6 +160,7 @@ FaultRun run_on(D& device, VirtualClock& clock, std::uint64_t ticks, double rate
   SupervisedDevice supervised(device, port);
   LoopOptions options;
   options.ticks = ticks;
+  options.ride_through_ticks = ride_through_ticks;
   Loop loop(supervised, clock, controller, recorder, port, CartesianKinematics{}, options, stop);
   FaultRun run;
   run.limits = model.params;
@@ -170,10 +171,10 @@ FaultRun run_on(D& device, VirtualClock& clock, std::uint64_t ticks, double rate
 
 inline FaultRun run_with_faults(const std::string& script, std::uint64_t ticks = 1500,
                                 WireProfile profile = WireProfile::kFd, double rate_max_N_per_s = 2e4,
-                                const Meddle& meddle = {}) {
+                                const Meddle& meddle = {}, std::uint32_t ride_through_ticks = 0) {
   VirtualClock clock;
   WiredDevice device(script, profile, clock);
-  FaultRun run = run_on(device, clock, ticks, rate_max_N_per_s, meddle);
+  FaultRun run = run_on(device, clock, ticks, rate_max_N_per_s, meddle, ride_through_ticks);
   DeviceSample sample;
   clock.advance(1'000'000);
   device.receive(sample);  // the device's last period: it takes what the loop sent last

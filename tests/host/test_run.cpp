@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "sim_host/bake/image_file.h"
+#include "sim_host/exit_codes.h"
 #include "sim_host/record/mapped_file.h"
 #include "sim_host/record/recorder.h"
 #include "sim_host/record/recording_reader.h"
@@ -186,7 +187,7 @@ TEST_F(Run, ControllerWhoseHostDiesStopsByItself) {
   device.close_controller_end();
   link.mailbox().set(Command::kArm, false);
   EXPECT_TRUE(link.process().wait(20'000));  // no heartbeat: silent after 2 s
-  EXPECT_EQ(link.process().exit_code(), 1);
+  EXPECT_EQ(link.process().exit_code(), kExitFault);
   TelemetryReader reader(link.telemetry());
   TickRecord last{};
   ASSERT_TRUE(reader.newest(last));
@@ -202,7 +203,7 @@ TEST_F(Run, DeviceThatNeverSpeaksIsNamedByItsExitCode) {
                       {"--image", scene.image_path, "--device", "loopback", "--device-fd", "4", "--priority", "0"},
                       pair[0]);
   for (int i = 0; i < 2000 && !link.process().wait(10); ++i) link.mailbox().beat();
-  EXPECT_EQ(link.process().exit_code(), 4);
+  EXPECT_EQ(link.process().exit_code(), kExitSilent);
   close(pair[0]);
   close(pair[1]);
 }

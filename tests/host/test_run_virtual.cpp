@@ -1,9 +1,11 @@
 // Whole runs in virtual time: three processes in lock step give the same file on a busy machine, and what happens to
 // one of them happens to the run as it would on a wire.
 #include <gtest/gtest.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -24,6 +26,7 @@ class RunVirtual : public BallRun {
     options_.device = "loopback";
     options_.record = (folder_ / "run.plr").string();
     options_.duration_s = 1.5;
+    options_.overwrite = true;
   }
   std::string recording() const {
     std::ifstream file(options_.record, std::ios::binary);
@@ -37,9 +40,11 @@ class BusyMachine {
   BusyMachine() {
     for (unsigned i = 0; i < 2 * std::max(1u, std::thread::hardware_concurrency()); ++i) {
       const pid_t pid = fork();
-      if (pid == 0)
+      if (pid == 0) {
+        prctl(PR_SET_PDEATHSIG, SIGKILL);  // a test that dies leaves nobody busy
         for (volatile unsigned long n = 0;;) n = n + 1;
-      child_.push_back(pid);
+      }
+      if (pid > 0) child_.push_back(pid);
     }
   }
   ~BusyMachine() {
@@ -53,17 +58,17 @@ class BusyMachine {
   std::vector<pid_t> child_;
 };
 
-// Our child with this program name, or -1.
-pid_t child_named(const std::string& name) {
+// Kills our child with this program name; false if there is none.
+bool kill_child(const std::string& name) {
   for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {
     std::ifstream children(task.path() / "children");
     for (pid_t pid; children >> pid;) {
       std::ifstream comm("/proc/" + std::to_string(pid) + "/comm");
       std::string text;
-      if (std::getline(comm, text) && text == name) return pid;
+      if (std::getline(comm, text) && text == name && pid > 1) return kill(pid, SIGKILL) == 0;
     }
   }
-  return -1;
+  return false;
 }
 
 TEST_F(RunVirtual, GivesTheSameBytesFiveTimesOnABusyMachine) {
@@ -88,13 +93,25 @@ TEST_F(RunVirtual, AKilledDeviceIsASilentOne) {
   bool killed = false;
   options_.progress = [&](const LiveState& state) {
     if (killed || state.elapsed_s < 1) return;
-    killed = kill(child_named("palpate-device"), SIGKILL) == 0;
+    killed = kill_child("palpate-device");
   };
   const RunResult result = run_session(options_);
   ASSERT_TRUE(killed);
   EXPECT_EQ(result.summary.fault, Fault::kDeviceSilent);
   EXPECT_EQ(result.summary.last_mode, Mode::kFault);
+  EXPECT_TRUE(result.device_died);
   EXPECT_LT(result.elapsed_s, 2);
+}
+
+// In real time its silence is ridden through, as a stall of this machine would be; so the run has to notice by itself.
+TEST_F(RunVirtual, InRealTimeAKilledDeviceEndsTheRun) {
+  options_.time = RunTime::kReal;
+  options_.duration_s = 60;
+  options_.progress = [](const LiveState&) { kill_child("palpate-device"); };
+  const RunResult result = run_session(options_);
+  EXPECT_TRUE(result.device_died);
+  EXPECT_LT(result.elapsed_s, 50);
+  EXPECT_EQ(result.summary.last_mode, Mode::kIdle);
 }
 
 TEST_F(RunVirtual, AnInterruptedRunIsTheBeginningOfAWholeOne) {
