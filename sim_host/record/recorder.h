@@ -6,8 +6,8 @@
 #include <string>
 #include <thread>
 
-#include "rt_core/telemetry.h"
 #include "sim_host/record/recording_writer.h"
+#include "sim_host/rings/telemetry.h"
 
 namespace palpate {
 

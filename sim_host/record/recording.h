@@ -21,7 +21,7 @@
 #include <stdexcept>
 
 #include "rt_core/record.h"
-#include "rt_core/telemetry.h"
+#include "sim_host/rings/telemetry.h"
 
 namespace palpate {
 

@@ -4,7 +4,7 @@
 
 #include <cstring>
 
-#include "rt_core/state_check.h"
+#include "sim_host/record/state_check.h"
 
 namespace palpate {
 

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "hal/system/shared_memory.h"
-#include "rt_core/mailbox.h"
-#include "rt_core/telemetry.h"
+#include "sim_host/rings/mailbox.h"
+#include "sim_host/rings/telemetry.h"
 #include "sim_host/run/process.h"
 #include "sim_host/run/socket_pair.h"
 

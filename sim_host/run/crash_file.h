@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "rt_core/telemetry.h"
+#include "sim_host/rings/telemetry.h"
 
 namespace palpate {
 

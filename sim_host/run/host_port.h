@@ -7,8 +7,8 @@
 
 #include "hal/device/device.h"
 #include "hal/system/syscall_filter.h"
-#include "rt_core/mailbox.h"
-#include "rt_core/telemetry.h"
+#include "sim_host/rings/mailbox.h"
+#include "sim_host/rings/telemetry.h"
 
 namespace palpate {
 

@@ -3,8 +3,8 @@
 #include <cstdlib>
 #include <memory>
 
-#include "rt_core/mailbox.h"
-#include "rt_core/telemetry.h"
+#include "sim_host/rings/mailbox.h"
+#include "sim_host/rings/telemetry.h"
 #include "tests/fuzz/edits.h"
 
 using namespace palpate;

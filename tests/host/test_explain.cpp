@@ -33,7 +33,7 @@ TEST(Explain, NamesStagesDataReadersMemoryAndBudget) {
   EXPECT_THAT(text, Not(HasSubstr("compliance_f64")));  // holds nothing
   EXPECT_THAT(text, Not(HasSubstr("a skeleton of")));
   SceneOverlays temporal;
-  temporal.setting = {"coupling.law=temporal"};
+  temporal.setting = {"coupling.law=temporal_paper"};
   EXPECT_THAT(explained("heart_compass", temporal), HasSubstr("a skeleton of"));
 }
 

@@ -390,7 +390,7 @@ TEST(PressTools, OverlaysAndSettingsNameThemselvesInErrors) {
   EXPECT_NE(message({{}, {"contact.max_depth_mm"}}).find("write KEY=VALUE"), std::string::npos);
   EXPECT_NE(message({{"/nonexistent.toml"}, {}}).find("/nonexistent.toml: no such scene file"), std::string::npos);
   EXPECT_NE(message({{}, {"friction.law=return_map"}}).find("--set:1: friction.law"), std::string::npos);
-  EXPECT_NE(message({{}, {"coupling.law=temporal"}}).find("allowed none, coupled"), std::string::npos);
+  EXPECT_NE(message({{}, {"coupling.law=temporal_paper"}}).find("allowed none, coupled"), std::string::npos);
   EXPECT_EQ(message({{scene_path("materials/foam")}, {}}), "accepted");
 }
 

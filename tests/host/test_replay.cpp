@@ -8,13 +8,13 @@
 #include <filesystem>
 #include <functional>
 
-#include "rt_core/state_check.h"
 #include "rt_core/tick.h"
 #include "sim_host/bake/image_file.h"
 #include "sim_host/record/mapped_file.h"
 #include "sim_host/record/recording_reader.h"
 #include "sim_host/record/recording_writer.h"
 #include "sim_host/record/replay.h"
+#include "sim_host/record/state_check.h"
 #include "tests/support/roomy.h"
 #include "tests/support/tiny_image.h"
 

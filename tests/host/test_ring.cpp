@@ -8,8 +8,8 @@
 #include <random>
 #include <thread>
 
-#include "rt_core/mailbox.h"
-#include "rt_core/telemetry.h"
+#include "sim_host/rings/mailbox.h"
+#include "sim_host/rings/telemetry.h"
 
 namespace palpate {
 namespace {

@@ -11,7 +11,7 @@
 #include <cstring>
 
 #include "hal/system/shared_memory.h"
-#include "rt_core/telemetry.h"
+#include "sim_host/rings/telemetry.h"
 
 namespace palpate {
 namespace {

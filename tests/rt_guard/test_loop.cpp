@@ -17,7 +17,7 @@
 #include "hal/loop/loop.h"
 #include "hal/system/rt_linux.h"
 #include "hal/system/syscall_filter.h"
-#include "rt_core/telemetry.h"
+#include "sim_host/rings/telemetry.h"
 #include "sim_host/tick_memory.h"
 #include "tests/rt_guard/guard.h"
 #include "tests/support/image_file.h"

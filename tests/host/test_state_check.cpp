@@ -8,8 +8,8 @@
 #include <memory>
 #include <random>
 
-#include "rt_core/state_check.h"
 #include "rt_core/tick.h"
+#include "sim_host/record/state_check.h"
 #include "tests/support/roomy.h"
 #include "tests/support/tiny_image.h"
 

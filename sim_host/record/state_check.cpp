@@ -1,4 +1,4 @@
-#include "rt_core/state_check.h"
+#include "sim_host/record/state_check.h"
 
 namespace palpate {
 
