@@ -78,7 +78,7 @@ std::uint64_t image_layout_hash() noexcept {
   hasher.add(static_cast<std::uint64_t>(sizeof(type)));
   PALPATE_MODEL_ARRAYS(PALPATE_FIELD)
 #undef PALPATE_FIELD
-#define PALPATE_FIELD(name, lowest, highest) add_text(hasher, #name);
+#define PALPATE_FIELD(name, lowest, highest, methods) add_text(hasher, #name);
   PALPATE_MODEL_SIZES(PALPATE_FIELD)
 #undef PALPATE_FIELD
   return hasher.value;
@@ -95,7 +95,7 @@ std::uint64_t image_checksum(std::span<const std::byte> bytes) noexcept {
 ImageSections image_sections() noexcept { return {kSizesOffset, kParamsOffset, kArraysOffset}; }
 
 bool image_offsets(const ModelSizes& sizes, std::uint64_t (&offset)[kArrayCount + 1]) noexcept {
-#define PALPATE_CHECK(name, lowest, highest) \
+#define PALPATE_CHECK(name, lowest, highest, methods) \
   if (!(sizes.name >= (lowest) && sizes.name <= (highest))) return false;
   PALPATE_MODEL_SIZES(PALPATE_CHECK)
 #undef PALPATE_CHECK
@@ -122,7 +122,7 @@ ImageResult open_image(std::span<const std::byte> bytes, Model& model) noexcept 
   Model opened;
   std::memcpy(&opened.sizes, bytes.data() + kSizesOffset, sizeof(ModelSizes));
   std::memcpy(&opened.params, bytes.data() + kParamsOffset, sizeof(ModelParams));
-#define PALPATE_CHECK(name, lowest, highest) \
+#define PALPATE_CHECK(name, lowest, highest, methods) \
   if (!(opened.sizes.name >= (lowest) && opened.sizes.name <= (highest))) return {ImageError::kSizeRange, #name};
   PALPATE_MODEL_SIZES(PALPATE_CHECK)
 #undef PALPATE_CHECK

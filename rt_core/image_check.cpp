@@ -1,7 +1,6 @@
 #include "rt_core/image_check.h"
 
-#include "rt_core/contact/tips/response_check.h"
-#include "rt_core/tool/piece_rules.h"
+#include "rt_core/contact/contact.h"
 
 namespace palpate {
 
@@ -9,20 +8,6 @@ namespace {
 
 using std::int32_t;
 using std::int64_t;
-
-bool in_range(int64_t index, std::size_t size) noexcept { return index >= 0 && index < static_cast<int64_t>(size); }
-bool is_unit(Vec3 v) noexcept { return squared_norm(v) > 0.99 && squared_norm(v) < 1.01; }
-bool is_unit(Quat q) noexcept {
-  const Real s = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
-  return s > 0.99 && s < 1.01;
-}
-
-ImageResult broken(const char* field, std::size_t index) noexcept {
-  return {ImageError::kCrossReference, field, static_cast<int64_t>(index)};
-}
-ImageResult not_finite(const char* field, std::size_t index) noexcept {
-  return {ImageError::kNotFinite, field, static_cast<int64_t>(index)};
-}
 
 ImageResult check_surface(const Model& model) noexcept {
   if (model.vertex_m.size() != model.vertex_normal.size()) return broken("vertex_normal", 0);
@@ -109,7 +94,7 @@ ImageResult check_skeleton(const Model& model) noexcept {
   for (std::size_t i = 0; i < model.rbf_inverse.size(); ++i)
     if (!is_finite(model.rbf_inverse[i])) return not_finite("rbf_inverse", i);
   if (model.sizes.n_patch != 0 && model.sizes.n_patch != model.sizes.n_vertex) return broken("n_patch", 0);
-  if (model.params.shape_law == ShapeLaw::kDisplacementAngle && n_anchor > 0 && model.sizes.n_patch == 0)
+  if (model.params.shape_law == ShapeLaw::kDisplacementAnglePaper && n_anchor > 0 && model.sizes.n_patch == 0)
     return broken("n_patch", 0);
   for (std::size_t i = 0; i < model.patch.size(); ++i)
     for (int k = 0; k < 3; ++k) {
@@ -212,67 +197,41 @@ ImageResult check_articulation(const Model& model) noexcept {
   return {};
 }
 
-template <class Number>
-ImageResult check_numbers(std::span<const Number> values, const char* field) noexcept {
-  for (std::size_t i = 0; i < values.size(); ++i)
-    if (!is_finite(static_cast<Real>(values[i]))) return not_finite(field, i);
+// Smooth normals: none, or three for every triangle.
+ImageResult check_corners(const Model& model) noexcept {
+  if (!model.corner_normal.empty() && model.corner_normal.size() != model.triangle.size()) return broken("n_corner", 0);
+  for (std::size_t i = 0; i < model.corner_normal.size(); ++i)
+    for (const Vec3& normal : model.corner_normal[i].normal)
+      if (!is_unit(normal)) return not_finite("corner_normal", i);
   return {};
 }
 
-ImageResult check_nodal_vertices(const Model& model) noexcept {
-  for (std::size_t i = 0; i < model.nodal_vertex.size(); ++i) {
-    const NodalVertex& v = model.nodal_vertex[i];
-    if (!(v.area_m2 > 0 && v.area_m2 < kHuge)) return not_finite("nodal_vertex.area_m2", i);
-    if (v.is_free != 0 && v.is_free != 1) return broken("nodal_vertex.is_free", i);
-    if (!(v.round_m >= 0 && v.round_m < kHuge)) return not_finite("nodal_vertex.round_m", i);
-    if (v.round_m > 0 && !(is_unit(v.round_normal) && v.round_cosine >= 0 && v.round_cosine < 1))
-      return not_finite("nodal_vertex.round_normal", i);
-  }
+// Arrays of other methods than the scene's are empty.
+ImageResult check_owners(const Model& model) noexcept {
+  const unsigned own = bit_of(method_of(model.params));
+#define PALPATE_CHECK(name, lowest, highest, methods) \
+  if (((methods)&own) == 0 && model.sizes.name != 0) return broken(#name, 0);
+  PALPATE_MODEL_SIZES(PALPATE_CHECK)
+#undef PALPATE_CHECK
   return {};
-}
-
-// A response scene holds none of the nodal arrays; a nodal one all of them, in one precision.
-ImageResult check_nodal(const Model& model) noexcept {
-  const ModelSizes& n = model.sizes;
-  if (model.params.backend != Backend::kNodal) {
-    if (n.n_nodal != 0) return broken("n_nodal", 0);
-    if (n.n_compliance_f32 != 0) return broken("n_compliance_f32", 0);
-    if (n.n_compliance_f64 != 0) return broken("n_compliance_f64", 0);
-    return n.n_strain_gauge == 0 ? ImageResult{} : broken("n_strain_gauge", 0);
-  }
-  if (n.n_nodal != n.n_vertex) return broken("n_nodal", 0);
-  if (n.n_vertex > kMaxNodalVertices) return broken("n_vertex", 0);
-  const int64_t entries = 9 * n.n_vertex * n.n_vertex;
-  if (n.n_compliance_f32 != 0 && n.n_compliance_f64 != 0) return broken("n_compliance_f64", 0);
-  if (n.n_compliance_f32 + n.n_compliance_f64 != entries) return broken("n_compliance_f32", 0);
-  if (n.n_strain_gauge % (18 * n.n_vertex) != 0) return broken("n_strain_gauge", 0);
-  if (n.n_strain_gauge > 18 * n.n_vertex * kMaxStrainGauges) return broken("n_strain_gauge", 0);
-  const double positive[] = {model.params.contact_margin_m, model.params.wall_N_per_m,
-                             model.params.proxy_speed_max_m_per_s};
-  for (const double value : positive)
-    if (!(value > 0)) return broken("nodal parameters", 0);
-  if (const ImageResult result = check_nodal_vertices(model); result.error != ImageError::kNone) return result;
-  if (const ImageResult result = check_numbers(model.compliance_f32, "compliance_f32");
-      result.error != ImageError::kNone)
-    return result;
-  if (const ImageResult result = check_numbers(model.compliance_f64, "compliance_f64");
-      result.error != ImageError::kNone)
-    return result;
-  return check_numbers(model.strain_gauge, "strain_gauge");
 }
 
 }  // namespace
 
+ImageResult check_method(const Model& model) noexcept {
+  const Method method = method_of(model.params);
+  if ((methods_of(model.params.friction_law) & bit_of(method)) == 0) return {ImageError::kCombination, "friction_law"};
+  return contact_method(method).check_tool(model);
+}
+
+// In this order: what a later check indexes, an earlier one has seen.
 ImageResult check_arrays(const Model& model) noexcept {
-  if (const ImageResult result = check_surface(model); result.error != ImageError::kNone) return result;
-  if (const ImageResult result = check_hierarchy(model); result.error != ImageError::kNone) return result;
-  if (const ImageResult result = check_skeleton(model); result.error != ImageError::kNone) return result;
-  if (const ImageResult result = check_beams(model); result.error != ImageError::kNone) return result;
-  if (const ImageResult result = check_tool(model); result.error != ImageError::kNone) return result;
-  if (const ImageResult result = check_articulation(model); result.error != ImageError::kNone) return result;
-  if (const ImageResult result = check_method(model); result.error != ImageError::kNone) return result;
-  if (const ImageResult result = check_nodal(model); result.error != ImageError::kNone) return result;
-  return check_response(model);
+  using Check = ImageResult (*)(const Model&) noexcept;
+  constexpr Check kChecks[] = {check_owners, check_surface,      check_hierarchy, check_skeleton, check_beams,
+                               check_tool,   check_articulation, check_corners,   check_method};
+  for (const Check check : kChecks)
+    if (const ImageResult result = check(model); result.error != ImageError::kNone) return result;
+  return contact_method(method_of(model)).check_data(model);
 }
 
 }  // namespace palpate

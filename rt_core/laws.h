@@ -9,17 +9,17 @@ namespace palpate {
 #define PALPATE_CONTACT_WEIGHTS(X) X(kWinkler, winkler) X(kArea, area) X(kPaper, paper)
 PALPATE_CHOICE(ContactWeight, PALPATE_CONTACT_WEIGHTS);
 
-// Who finds contact and makes force (contact/contact.h).
-enum class Method : std::int32_t {
-  kPoints = 0,  // springs at the tool's points
-  kTips = 1,    // one law per whole tip, or curves tabulated over the surface
-  kNodes = 2    // nodes of a finite-element body
-};
-// To say which of them takes a law.
+// Who finds contact and makes force: springs at the tool's points; one law per whole tip, or curves tabulated over the
+// surface; nodes of a finite-element body. X(enumerator, word): the method itself is WORD_method (contact/contact.h).
+#define PALPATE_METHODS(X) X(kPoints, points) X(kTips, tips) X(kNodes, nodes)
+PALPATE_CHOICE(Method, PALPATE_METHODS);
+
+// To say which of them takes a law or an array.
 constexpr unsigned bit_of(Method method) { return 1u << static_cast<unsigned>(method); }
 inline constexpr unsigned kOfPoints = bit_of(Method::kPoints);
 inline constexpr unsigned kOfTips = bit_of(Method::kTips);
 inline constexpr unsigned kOfNodes = bit_of(Method::kNodes);
+inline constexpr unsigned kOfAll = ~0u;
 
 // X(enumerator, word, methods that take it): those of points alone stretch the springs of tool points.
 #define PALPATE_FRICTION_LAWS(X)                  \
@@ -33,9 +33,9 @@ inline constexpr unsigned kOfNodes = bit_of(Method::kNodes);
 PALPATE_CHOICE(FrictionLaw, PALPATE_FRICTION_LAWS);
 
 constexpr unsigned methods_of(FrictionLaw law) {
-#define PALPATE_METHODS(name, word, methods) methods,
-  constexpr unsigned kMethods[] = {PALPATE_FRICTION_LAWS(PALPATE_METHODS)};
-#undef PALPATE_METHODS
+#define PALPATE_TAKEN_BY(name, word, methods) methods,
+  constexpr unsigned kMethods[] = {PALPATE_FRICTION_LAWS(PALPATE_TAKEN_BY)};
+#undef PALPATE_TAKEN_BY
   return kMethods[static_cast<std::int32_t>(law)];
 }
 
@@ -55,17 +55,17 @@ PALPATE_CHOICE(TangentialLaw, PALPATE_TANGENTIAL_LAWS);
   X(kNone, none) X(kStiffness, stiffness) X(kPaper, paper) X(kCircular, circular) X(kCircularPaper, circular_paper)
 PALPATE_CHOICE(SkeletonLaw, PALPATE_SKELETON_LAWS);
 
-#define PALPATE_SHAPE_LAWS(X) X(kRbf, rbf) X(kDisplacementAngle, displacement_angle)
+#define PALPATE_SHAPE_LAWS(X) X(kRbf, rbf) X(kDisplacementAnglePaper, displacement_angle_paper)
 PALPATE_CHOICE(ShapeLaw, PALPATE_SHAPE_LAWS);
 
 // Polynomial part of the rbf interpolation.
 #define PALPATE_RBF_TAILS(X) X(kConstant, constant) X(kLinear, linear)
 PALPATE_CHOICE(RbfTail, PALPATE_RBF_TAILS);
 
-#define PALPATE_NEIGHBOURHOOD_LAWS(X) X(kNone, none) X(kLog, log) X(kLogC1, log_c1) X(kPunch, punch)
+#define PALPATE_NEIGHBOURHOOD_LAWS(X) X(kNone, none) X(kLogPaper, log_paper) X(kLogC1, log_c1) X(kPunch, punch)
 PALPATE_CHOICE(NeighbourhoodLaw, PALPATE_NEIGHBOURHOOD_LAWS);
 
-#define PALPATE_COUPLING_LAWS(X) X(kNone, none) X(kCoupled, coupled) X(kTemporal, temporal)
+#define PALPATE_COUPLING_LAWS(X) X(kNone, none) X(kCoupled, coupled) X(kTemporalPaper, temporal_paper)
 PALPATE_CHOICE(CouplingLaw, PALPATE_COUPLING_LAWS);
 
 #define PALPATE_ARTICULATIONS(X) X(kRigid, rigid) X(kGripper, gripper) X(kHand, hand)

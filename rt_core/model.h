@@ -308,37 +308,37 @@ struct BeamResponse {
   X(ResponseKnot, response, n_response, "-", "curves, n_knot entries each (tables only)")                       \
   X(std::int32_t, vertex_response, n_vertex_response, "-", "curve of each vertex")
 
-// X(name, lowest, highest)
-#define PALPATE_MODEL_SIZES(X)       \
-  X(n_vertex, 4, 1 << 26)            \
-  X(n_triangle, 4, 1 << 26)          \
-  X(n_bvh, 1, 1 << 26)               \
-  X(n_anchor, 0, kMaxAnchors)        \
-  X(n_rbf, 0, kMaxAnchors + 4)       \
-  X(n_rbf2, 0, 1 << 12)              \
-  X(n_patch, 0, 1 << 26)             \
-  X(n_beam_stiffness, 0, 1 << 26)    \
-  X(n_beam_ratio, 0, 1 << 26)        \
-  X(n_beam_response, 0, 1 << 26)     \
-  X(n_piece, 1, kMaxPieces)          \
-  X(n_tool_point, 1, kMaxToolPoints) \
-  X(n_hull, 0, 1 << 16)              \
-  X(n_nodal, 0, 1 << 26)             \
-  X(n_compliance_f32, 0, 1 << 28)    \
-  X(n_compliance_f64, 0, 1 << 28)    \
-  X(n_strain_gauge, 0, 1 << 26)      \
-  X(n_joint, 0, kMaxJoints)          \
-  X(n_grasp, 0, 1)                   \
-  X(n_corner, 0, 1 << 26)            \
-  X(n_tip_law, 0, kMaxPieces)        \
-  X(n_factor, 0, 1 << 16)            \
-  X(n_tip_pair, 0, kMaxTipPairs)     \
-  X(n_knot, 0, kMaxResponseKnots)    \
-  X(n_response, 0, 1 << 26)          \
-  X(n_vertex_response, 0, 1 << 26)
+// X(name, lowest, highest, methods that have such an array; in a scene of another it is empty)
+#define PALPATE_MODEL_SIZES(X)               \
+  X(n_vertex, 4, 1 << 26, kOfAll)            \
+  X(n_triangle, 4, 1 << 26, kOfAll)          \
+  X(n_bvh, 1, 1 << 26, kOfAll)               \
+  X(n_anchor, 0, kMaxAnchors, kOfAll)        \
+  X(n_rbf, 0, kMaxAnchors + 4, kOfAll)       \
+  X(n_rbf2, 0, 1 << 12, kOfAll)              \
+  X(n_patch, 0, 1 << 26, kOfAll)             \
+  X(n_beam_stiffness, 0, 1 << 26, kOfAll)    \
+  X(n_beam_ratio, 0, 1 << 26, kOfAll)        \
+  X(n_beam_response, 0, 1 << 26, kOfAll)     \
+  X(n_piece, 1, kMaxPieces, kOfAll)          \
+  X(n_tool_point, 1, kMaxToolPoints, kOfAll) \
+  X(n_hull, 0, 1 << 16, kOfAll)              \
+  X(n_nodal, 0, 1 << 26, kOfNodes)           \
+  X(n_compliance_f32, 0, 1 << 28, kOfNodes)  \
+  X(n_compliance_f64, 0, 1 << 28, kOfNodes)  \
+  X(n_strain_gauge, 0, 1 << 26, kOfNodes)    \
+  X(n_joint, 0, kMaxJoints, kOfAll)          \
+  X(n_grasp, 0, 1, kOfAll)                   \
+  X(n_corner, 0, 1 << 26, kOfAll)            \
+  X(n_tip_law, 0, kMaxPieces, kOfTips)       \
+  X(n_factor, 0, 1 << 16, kOfTips)           \
+  X(n_tip_pair, 0, kMaxTipPairs, kOfTips)    \
+  X(n_knot, 0, kMaxResponseKnots, kOfTips)   \
+  X(n_response, 0, 1 << 26, kOfTips)         \
+  X(n_vertex_response, 0, 1 << 26, kOfTips)
 
 struct ModelSizes {
-#define PALPATE_FIELD(name, lowest, highest) std::int64_t name;
+#define PALPATE_FIELD(name, lowest, highest, methods) std::int64_t name;
   PALPATE_MODEL_SIZES(PALPATE_FIELD)
 #undef PALPATE_FIELD
 };

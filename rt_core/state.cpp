@@ -1,6 +1,6 @@
 #include "rt_core/state.h"
 
-#include "rt_core/contact/nodes/node_problem.h"
+#include "rt_core/contact/contact.h"
 #include "rt_core/hash.h"
 
 namespace palpate {
@@ -21,7 +21,8 @@ Arena lay_out(const Model& model, Scratch& scratch) noexcept {
   Arena arena(&scratch, sizeof(Scratch));
   arena.place(scratch.contact, kMaxContacts);
   arena.place(scratch.foot, model.sizes.n_corner > 0 ? model.sizes.n_piece : 0);
-  place_problem(model, scratch.nodal_memory, arena);
+  const ContactMethod& method = contact_method(method_of(model));
+  if (method.scratch_bytes != nullptr) arena.place(scratch.own, static_cast<std::int64_t>(method.scratch_bytes(model)));
   scratch.bytes = arena.bytes();
   return arena;
 }
@@ -65,7 +66,8 @@ State& create_state(const Model& model, void* block) noexcept {
 Scratch& create_scratch(const Model& model, void* block) noexcept {
   Scratch& scratch = *::new (static_cast<void*>(block)) Scratch;
   lay_out(model, scratch);
-  scratch.nodal = create_problem(scratch.nodal_memory);
+  const ContactMethod& method = contact_method(method_of(model));
+  if (method.create_scratch != nullptr) method.create_scratch(model, scratch.own.data());
   return scratch;
 }
 
@@ -89,6 +91,15 @@ void reset(State& state) PALPATE_RT {
   PALPATE_STATE_GROUPS(PALPATE_STATE_MEMBER)
 #undef PALPATE_STATE_MEMBER
   state.high_water = {};
+}
+
+void forget_contact(State& state) PALPATE_RT {
+  for (Real& k : state.contact_stiffness) k = 0;  // bound: 36
+  state.point.fill({});
+  state.region.fill({});
+#define PALPATE_STATE_MEMBER(type, name, meaning) state.name.reset();
+  PALPATE_METHOD_STATES(PALPATE_STATE_MEMBER)
+#undef PALPATE_STATE_MEMBER
 }
 
 std::uint64_t hash_state(const State& state) PALPATE_RT {

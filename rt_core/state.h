@@ -215,9 +215,10 @@ using Matrix6 = double[36];
   X(PointState, point, model.sizes.n_tool_point, point.size(), "one for each tool point") \
   X(Region, region, kMaxRegions, region.size(), "by slot")
 
-// X(type, name, meaning)
-#define PALPATE_STATE_GROUPS(X)                       \
-  X(NodalState, nodal, "memory of the nodes' method") \
+// X(type, name, meaning): memory of the methods of contact, and of the tool.
+#define PALPATE_METHOD_STATES(X) X(NodalState, nodal, "memory of the nodes' method")
+#define PALPATE_STATE_GROUPS(X) \
+  PALPATE_METHOD_STATES(X)      \
   X(ArticulationState, articulation, "joints of the tool")
 
 struct StateFields {
@@ -250,16 +251,6 @@ struct SurfaceFoot {
   Vec3 gradient_per_m[3];  // of the area coordinates when the centre moves; zero where the foot is held
 };
 
-// The nodes' method keeps its problem in the same block: contact/nodes/node_problem.h. Other scenes have none.
-struct ContactProblem;
-struct NearFour;
-struct NodalScratch {
-  Pool<ContactProblem> problem;  // one
-  Pool<NearFour> near;
-  Pool<std::int8_t> memory_of;
-  Pool<std::int16_t> near_of;
-};
-
 struct Scratch {
   std::uint32_t status = 0;
   std::int32_t contact_count = 0;
@@ -275,9 +266,8 @@ struct Scratch {
   std::int32_t driven = 0;     // the tool's pose is given, nobody holds it by a spring
   double strain = 0;           // largest at the gauges (nodal)
   Pose tool_corrected_w;       // where the tool balances
-  NodalScratch nodal_memory;
-  ContactProblem* nodal = nullptr;  // there; null unless the method is the nodes'
-  std::uint64_t bytes = 0;          // of the block that this begins
+  Pool<std::byte> own;         // of the scene's method, as it lays it out (contact/contact.h)
+  std::uint64_t bytes = 0;     // of the block that this begins
 };
 
 // Hash of every name and size in the tables: two builds that disagree about one of them have different hashes.
@@ -302,6 +292,8 @@ bool is_laid_out_for(const Model& model, const State& state) noexcept;
 void copy_state(const State& from, State& to) PALPATE_RT;
 // Resets to the state before the first tick. Bound: the block.
 void reset(State& state) PALPATE_RT;
+// Drops what was in contact: points, regions, what the methods remember. Bound: the block.
+void forget_contact(State& state) PALPATE_RT;
 // Canonical hash of everything that can influence a later tick, field by field, never padding or unused entries.
 std::uint64_t hash_state(const State& state) PALPATE_RT;
 

@@ -15,7 +15,7 @@
 #include "config/hand/preshape.h"
 #include "config/scene/config_error.h"
 #include "config/scene/schema.h"
-#include "rt_core/tool/piece_rules.h"
+#include "rt_core/image_check.h"
 
 namespace palpate {
 
@@ -397,8 +397,8 @@ class Compiler {
     }
     report_.baked_beams = true;
     report_.section_radius_m = image_.anchor[0].section_radius_m;
-    if (scene_.coupling.law == CouplingLaw::kTemporal)
-      warn("coupling.law = \"temporal\" displaces no anchor of circular beams: they are baked at rest");
+    if (scene_.coupling.law == CouplingLaw::kTemporalPaper)
+      warn("coupling.law = \"temporal_paper\" displaces no anchor of circular beams: they are baked at rest");
     const BeamTableReport& beams = report_.beams;
     for (std::size_t a = 0; a < beams.dropped_by_anchor.size(); ++a)
       if (beams.dropped_by_anchor[a] == report_.vertices)
@@ -454,9 +454,9 @@ class Compiler {
       fail("shape.tail", "the interpolation through " + std::to_string(report_.anchors) +
                              " anchors is singular (coinciding, or coplanar with tail = \"linear\"); use \"constant\" "
                              "or raise skeleton.anchors_min");
-    if (scene_.shape.interpolation != ShapeLaw::kDisplacementAngle) return;
+    if (scene_.shape.interpolation != ShapeLaw::kDisplacementAnglePaper) return;
     if (report_.anchors < 3)
-      fail("shape.interpolation", "\"displacement_angle\" needs 3 anchors and the body has " +
+      fail("shape.interpolation", "\"displacement_angle_paper\" needs 3 anchors and the body has " +
                                       std::to_string(report_.anchors) + "; raise skeleton.anchors_min");
     image_.patch = make_patches(mesh_.vertex_m, anchors, volume_centre_m(mesh_));
   }

@@ -24,7 +24,7 @@ std::string range_of(auto lowest, auto highest) {
 
 std::string image_markdown() {
   std::string text = "### Sizes\nAll 64-bit signed.\n\n| size | lowest | highest |\n|---|---|---|\n";
-#define PALPATE_FIELD(name, lowest, highest) \
+#define PALPATE_FIELD(name, lowest, highest, methods) \
   text += "| `" #name "` | " + std::to_string(lowest) + " | " + std::to_string(highest) + " |\n";
   PALPATE_MODEL_SIZES(PALPATE_FIELD)
 #undef PALPATE_FIELD

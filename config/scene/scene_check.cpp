@@ -120,8 +120,8 @@ void check_contact(const SceneDesc& scene) {
 void check_tips(const SceneDesc& scene) {
   if (!is_tip_law(scene.contact.law)) return;
   check_effect(scene, "contact", {"surface"}, {}, "with laws of whole tips, which always have the smooth surface");
-  if (scene.coupling.law == CouplingLaw::kTemporal)
-    fail(scene, "coupling.law", "\"temporal\" needs tool points with cubic springs; allowed none, coupled");
+  if (scene.coupling.law == CouplingLaw::kTemporalPaper)
+    fail(scene, "coupling.law", "\"temporal_paper\" needs tool points with cubic springs; allowed none, coupled");
   for (std::size_t i = 0; i < scene.piece.size(); ++i) {
     const PieceDesc& piece = scene.piece[i];
     const std::string label = "tool.piece[" + std::to_string(i) + "]";

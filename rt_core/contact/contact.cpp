@@ -7,12 +7,11 @@ namespace palpate {
 
 const ContactMethod& contact_method(Method method) PALPATE_RT {
   switch (method) {
-    case Method::kTips:
-      return tips_method;
-    case Method::kNodes:
-      return nodes_method;
-    case Method::kPoints:
-      break;
+#define PALPATE_METHOD(name, word) \
+  case Method::name:               \
+    return word##_method;
+    PALPATE_METHODS(PALPATE_METHOD)
+#undef PALPATE_METHOD
   }
   return points_method;
 }

@@ -21,10 +21,7 @@ bool clamp_length(Vec3& v, double limit) PALPATE_RT {
 // After a non-finite number anywhere: drop contact memory and start again from the handle's pose.
 void restart_contact(State& state) PALPATE_RT {
   state.tool_w = state.tool_previous_w = state.safety.tool_corrected_w = state.device_w;
-  for (double& k : state.contact_stiffness) k = 0;
-  for (PointState& point : state.point) point = PointState{};  // bound: kMaxToolPoints
-  for (Region& region : state.region) region = Region{};       // bound: kMaxRegions
-  state.nodal.reset();
+  forget_contact(state);
 }
 
 Wrench limited(const Model& model, Wrench wrench, Scratch& scratch) PALPATE_RT {

@@ -2,7 +2,7 @@
 
 #include <ccd/ccd.h>
 
-#include "rt_core/tool/support.h"
+#include "rt_core/tool/shapes.h"
 
 namespace palpate {
 

@@ -30,7 +30,7 @@ const char* method_text(const Model& model) {
 
 // What a stage has to do in this scene beyond its usual work.
 std::string stage_note(const Model& model, std::string_view stage) {
-  const bool temporal = model.params.coupling_law == CouplingLaw::kTemporal;
+  const bool temporal = model.params.coupling_law == CouplingLaw::kTemporalPaper;
   if (stage == "articulate")
     return is_articulated(model) ? fmt::format("{} joints", model.joint.size()) : "nothing: the tool is rigid";
   if ((stage == "force" || stage == "solve") && temporal)

@@ -102,7 +102,7 @@ std::string image_dump(const ImageHeader& header, const Model& model) {
 #undef PALPATE_GROUP
 #undef PALPATE_ROW
   text += "\nsizes\n";
-#define PALPATE_ROW(field, lowest, highest) fmt::format_to(out, "  {:<16}{:>10}\n", #field, model.sizes.field);
+#define PALPATE_ROW(field, lowest, highest, methods) fmt::format_to(out, "  {:<16}{:>10}\n", #field, model.sizes.field);
   PALPATE_MODEL_SIZES(PALPATE_ROW)
 #undef PALPATE_ROW
   text += "\narrays            elements       bytes  values                  frame  meaning\n";

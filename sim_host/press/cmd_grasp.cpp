@@ -81,7 +81,7 @@ void print_run(const Model& model, const GraspRun& run) {
 
 // How much the order of contact matters: thumb first against thumb last, everything else the same.
 void print_order(const Model& model, const SceneDesc& scene) {
-  for (const CouplingLaw law : {CouplingLaw::kCoupled, CouplingLaw::kTemporal}) {
+  for (const CouplingLaw law : {CouplingLaw::kCoupled, CouplingLaw::kTemporalPaper}) {
     Model varied = model;
     varied.params.coupling_law = law;
     varied.params.friction_law = FrictionLaw::kNone;

@@ -36,7 +36,7 @@ bool add_table_beams(const Model& model, const State& state, std::int32_t slot, 
 }
 
 bool add_straight_beams(const Model& model, const State& state, std::int32_t slot, AnchorField& field) {
-  const bool temporal = model.params.coupling_law == CouplingLaw::kTemporal;
+  const bool temporal = model.params.coupling_law == CouplingLaw::kTemporalPaper;
   std::vector<Vec3> offset;
   for (std::int32_t a = 0; temporal && a < field.count; ++a) offset.push_back(field.anchor[a].displacement_w);
   const Region& region = state.region[slot];

@@ -210,7 +210,8 @@ DeformedSurface deformed_surface(const Model& model, const State& state) {
 DeformedSurface refined_surface(const Model& model, const State& state, std::size_t most_triangles) {
   DeformedSurface surface = rest_surface(model);
   std::vector<TriangleNormals> corner = smooth_normals(surface.rest_m, surface.triangle);
-  const bool everywhere = method_of(model) != Method::kNodes && model.params.shape_law != ShapeLaw::kDisplacementAngle;
+  const bool everywhere =
+      method_of(model) != Method::kNodes && model.params.shape_law != ShapeLaw::kDisplacementAnglePaper;
   while (everywhere && 4 * surface.triangle.size() <= most_triangles) refine(surface, corner);
   displace(model, state, surface);
   finish(surface);

@@ -46,7 +46,7 @@ Real neighbourhood_blend(const Neighbourhood& n, Real distance_m) {
   if (distance_m <= n.contact_radius_m) return 1;
   Real g = 0;
   switch (n.law) {
-    case NeighbourhoodLaw::kLog:
+    case NeighbourhoodLaw::kLogPaper:
       g = n.log.a - n.log.b * math::log(distance_m);
       break;
     case NeighbourhoodLaw::kLogC1:

@@ -15,7 +15,7 @@ struct LogLaw {
 LogLaw log_law(Real contact_radius_m, Real reach_m, Real u_contact, Real u_far);
 
 // Blend factor g(r): 1 for r <= a (contact radius), 0 for r >= R (reach), continuous and falling between.
-//   kLog   g = ln(R/r) / ln(R/a): the paper's law, the plane (line-load) solution; kink at R.
+//   kLogPaper  g = ln(R/r) / ln(R/a): the paper's law, the plane (line-load) solution; kink at R.
 //   kLogC1 g = [ln(R/r) - (1 - r^2/R^2)/2] / [same at a]: the same without a kink at R.
 //   kPunch g = (asin(a/r) - asin(a/R)) / (pi/2 - asin(a/R)): the surface around a flat punch on a half space
 //          (Sneddon 1965), the solution in space; kink at R.
@@ -24,7 +24,7 @@ struct Neighbourhood {
   NeighbourhoodLaw law = NeighbourhoodLaw::kNone;
   Real contact_radius_m = 0;
   Real reach_m = 0;
-  LogLaw log;                   // kLog: g = A - B ln r
+  LogLaw log;                   // kLogPaper: g = A - B ln r
   Real at_reach = 0;            // kPunch: asin(a/R)
   Real inverse_at_contact = 0;  // kLogC1, kPunch: 1 / denominator
 };

@@ -6,7 +6,7 @@
 #include "config/hand/hand_model.h"
 #include "config/tool/piece_card.h"
 #include "rt_core/tool/articulate.h"
-#include "rt_core/tool/support.h"
+#include "rt_core/tool/shapes.h"
 #include "sim_host/view/hand_mesh.h"
 #include "sim_host/view/picture.h"
 

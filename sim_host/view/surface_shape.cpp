@@ -10,7 +10,7 @@
 namespace palpate {
 namespace {
 
-bool uses_angles(const Model& model) { return model.params.shape_law == ShapeLaw::kDisplacementAngle; }
+bool uses_angles(const Model& model) { return model.params.shape_law == ShapeLaw::kDisplacementAnglePaper; }
 
 // The patch of a vertex, or nullptr where the displacement-angle law cannot be used.
 const PatchWeight* patch_of(const Model& model, std::int32_t vertex) {

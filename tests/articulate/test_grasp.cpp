@@ -173,7 +173,7 @@ OrderDependence played_in_orders(const std::string& name, const std::vector<std:
     std::vector<double> delay_s(order.size());
     for (std::size_t k = 0; k < order.size(); ++k) delay_s[order[k]] = step_s * static_cast<double>(k);
     coupled.push_back(played_in_order(name, CouplingLaw::kCoupled, delay_s));
-    temporal.push_back(played_in_order(name, CouplingLaw::kTemporal, delay_s));
+    temporal.push_back(played_in_order(name, CouplingLaw::kTemporalPaper, delay_s));
     all.orders.insert(
         touched(scene_named(name).model(), *coupled.back().held, static_cast<std::int32_t>(order.size())));
     all.coupled = std::max(all.coupled, force_difference(coupled[0], coupled.back()));

@@ -73,10 +73,11 @@ void play(bool rocks) {
     const Output& output = scene.tick_at(handle.position_m, Drive::kDevice, handle.orientation);
     CALLGRIND_TOGGLE_COLLECT;
     int slips = 0;
-    for (int i = 0; i < scene.scratch().nodal->count; ++i) slips += scene.scratch().nodal->node[i].push.slips ? 1 : 0;
+    for (int i = 0; i < problem_of(scene.scratch()).count; ++i)
+      slips += problem_of(scene.scratch()).node[i].push.slips ? 1 : 0;
     char label[96];
     std::snprintf(label, sizeof(label), "tick %d contacts %d regions %d exchanges %d slipping %d", k, output.contacts,
-                  output.regions, scene.scratch().nodal->normal.pivots - 1, slips);
+                  output.regions, problem_of(scene.scratch()).normal.pivots - 1, slips);
     CALLGRIND_DUMP_STATS_AT(label);
   }
 }

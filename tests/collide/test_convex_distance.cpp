@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "rt_core/tool/support.h"
+#include "rt_core/tool/shapes.h"
 #include "tests/collide/pieces.h"
 
 namespace palpate::test {

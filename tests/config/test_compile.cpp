@@ -113,12 +113,12 @@ k = 2
 beta = 0.8
 mu_dynamic = 0.3
 [shape]
-interpolation = "displacement_angle"
+interpolation = "displacement_angle_paper"
 tail = "linear"
 neighbourhood = "log_c1"
 radius_mm = 9
 [coupling]
-law = "temporal"
+law = "temporal_paper"
 radius_mm = 4
 [device]
 period_ms = 2
@@ -144,9 +144,9 @@ turn_max_rad_per_s = 12
   EXPECT_EQ(p.friction_law, FrictionLaw::kMindlin);
   EXPECT_EQ(p.tangential_law, TangentialLaw::kRadial);
   EXPECT_EQ(p.skeleton_law, SkeletonLaw::kPaper);
-  EXPECT_EQ(p.shape_law, ShapeLaw::kDisplacementAngle);
+  EXPECT_EQ(p.shape_law, ShapeLaw::kDisplacementAnglePaper);
   EXPECT_EQ(p.neighbourhood_law, NeighbourhoodLaw::kLogC1);
-  EXPECT_EQ(p.coupling_law, CouplingLaw::kTemporal);
+  EXPECT_EQ(p.coupling_law, CouplingLaw::kTemporalPaper);
   EXPECT_EQ(p.rbf_tail, RbfTail::kLinear);
   EXPECT_EQ(p.silence_hold_ticks, 2);
   EXPECT_EQ(p.silence_passive_ticks, 6);
@@ -225,7 +225,7 @@ TEST(Compile, CouplingIsBoundedByTheDevice) {
 
 TEST(Compile, ImpossibleCombinationsAreRefused) {
   EXPECT_THAT(
-      error_of("[shape]\ninterpolation = \"displacement_angle\"\n[skeleton]\nanchors_min = 0\nanchors_max = 2\n"),
+      error_of("[shape]\ninterpolation = \"displacement_angle_paper\"\n[skeleton]\nanchors_min = 0\nanchors_max = 2\n"),
       HasSubstr("needs 3 anchors"));
   EXPECT_THAT(error_of("[shape]\ntail = \"linear\"\n[skeleton]\nanchors_min = 0\nanchors_max = 2\n"),
               HasSubstr("singular"));

@@ -4,7 +4,7 @@
 #include "config/bake/compile.h"
 #include "config/bake/image_rules.h"
 #include "config/scene/config_error.h"
-#include "rt_core/tool/piece_rules.h"
+#include "rt_core/image_check.h"
 
 namespace palpate {
 namespace {

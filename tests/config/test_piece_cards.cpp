@@ -8,7 +8,6 @@
 #include "config/scene/config_error.h"
 #include "config/tool/piece_card.h"
 #include "rt_core/tool/shapes.h"
-#include "rt_core/tool/support.h"
 #include "tests/support/baked_scene.h"
 
 namespace palpate {

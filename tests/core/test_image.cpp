@@ -105,7 +105,7 @@ const Damage kDamages[] = {
      [](ImageBytes& i) { i.array<double>(kRbf)[3] = kInfinity; }},
     {"rbf tail", ImageError::kCrossReference, "n_rbf", [](ImageBytes& i) { i.params().rbf_tail = RbfTail::kLinear; }},
     {"patches missing", ImageError::kCrossReference, "n_patch",
-     [](ImageBytes& i) { i.params().shape_law = ShapeLaw::kDisplacementAngle; }},
+     [](ImageBytes& i) { i.params().shape_law = ShapeLaw::kDisplacementAnglePaper; }},
     {"beams missing", ImageError::kCrossReference, "n_beam_stiffness",
      [](ImageBytes& i) { i.params().skeleton_law = SkeletonLaw::kCircular; }},
     {"ratios missing", ImageError::kCrossReference, "n_beam_ratio",

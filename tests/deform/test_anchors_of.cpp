@@ -85,7 +85,7 @@ TEST_F(AnchorsOf, SumsDisplacementsAndKeepsTheLargestStresses) {
 // Temporal order: the region born later stands on anchors the earlier one moved. The paper's property: swapping the
 // order changes the answer. Without temporal coupling it does not.
 TEST_F(AnchorsOf, TemporalOrderMattersOnlyInTemporalCoupling) {
-  for (const CouplingLaw law : {CouplingLaw::kNone, CouplingLaw::kCoupled, CouplingLaw::kTemporal}) {
+  for (const CouplingLaw law : {CouplingLaw::kNone, CouplingLaw::kCoupled, CouplingLaw::kTemporalPaper}) {
     set(law);
     run(top_, side_);
     const AnchorField early_top = field_;
@@ -96,7 +96,7 @@ TEST_F(AnchorsOf, TemporalOrderMattersOnlyInTemporalCoupling) {
     for (std::int32_t a = 0; a < anchors(); ++a) {
       difference = std::max(difference, norm(early_top.anchor[a].displacement_w - field_.anchor[a].displacement_w));
     }
-    if (law == CouplingLaw::kTemporal) {
+    if (law == CouplingLaw::kTemporalPaper) {
       EXPECT_GT(difference, 1e-7);
     } else {
       EXPECT_EQ(difference, 0);
@@ -105,7 +105,7 @@ TEST_F(AnchorsOf, TemporalOrderMattersOnlyInTemporalCoupling) {
 }
 
 TEST_F(AnchorsOf, TemporalOrderBuildsOnDisplacedAnchors) {
-  set(CouplingLaw::kTemporal);
+  set(CouplingLaw::kTemporalPaper);
   Region later_in_slot_0 = side_;
   run(later_in_slot_0, top_);  // top is born first but sits in slot 1: order is by birth, not by slot
   Skeleton s;

@@ -9,7 +9,7 @@ namespace palpate {
 namespace {
 
 constexpr double kA = 3e-3, kR = 10e-3;
-constexpr NeighbourhoodLaw kLaws[] = {NeighbourhoodLaw::kLog, NeighbourhoodLaw::kLogC1, NeighbourhoodLaw::kPunch};
+constexpr NeighbourhoodLaw kLaws[] = {NeighbourhoodLaw::kLogPaper, NeighbourhoodLaw::kLogC1, NeighbourhoodLaw::kPunch};
 
 double blend(NeighbourhoodLaw law, double r, double a = kA) {
   return neighbourhood_blend(make_neighbourhood(law, a, kR), r);
@@ -20,11 +20,11 @@ TEST(Neighbourhood, WorkedExampleOfTheLogLaw) {
   EXPECT_NEAR(law.b, 2.954967e-3, 6e-10);
   EXPECT_NEAR(law.a, -1.28081263e-2, 6e-11);
   EXPECT_NEAR(law.a - law.b * std::log(5e-3), 2.848227e-3, 6e-10);
-  EXPECT_NEAR(0.8e-3 + (4.3577e-3 - 0.8e-3) * blend(NeighbourhoodLaw::kLog, 5e-3), 2.848227e-3, 6e-10);
+  EXPECT_NEAR(0.8e-3 + (4.3577e-3 - 0.8e-3) * blend(NeighbourhoodLaw::kLogPaper, 5e-3), 2.848227e-3, 6e-10);
 }
 
 TEST(Neighbourhood, WorkedBlendsAtFiveMillimetres) {
-  EXPECT_NEAR(blend(NeighbourhoodLaw::kLog, 5e-3), .5757167, 6e-8);
+  EXPECT_NEAR(blend(NeighbourhoodLaw::kLogPaper, 5e-3), .5757167, 6e-8);
   EXPECT_NEAR(blend(NeighbourhoodLaw::kLogC1, 5e-3), .4247780, 6e-8);
   EXPECT_NEAR(blend(NeighbourhoodLaw::kPunch, 5e-3), .2675993, 6e-8);
 }
@@ -37,7 +37,8 @@ TEST(Neighbourhood, AgreesWithDefinitions) {
     const auto c1 = [&](long double x) { return std::log(big / x) - 0.5L * (1 - x * x / big / big); };
     const long double q = std::asin(a / big);
     const double at = static_cast<double>(r);
-    EXPECT_NEAR(blend(NeighbourhoodLaw::kLog, at), static_cast<double>(std::log(big / r) / std::log(big / a)), 1e-14);
+    EXPECT_NEAR(blend(NeighbourhoodLaw::kLogPaper, at), static_cast<double>(std::log(big / r) / std::log(big / a)),
+                1e-14);
     EXPECT_NEAR(blend(NeighbourhoodLaw::kLogC1, at), static_cast<double>(c1(r) / c1(a)), 1e-14);
     const long double half_pi = std::asin(1.0L);
     EXPECT_NEAR(blend(NeighbourhoodLaw::kPunch, at), static_cast<double>((std::asin(a / r) - q) / (half_pi - q)),
@@ -70,7 +71,7 @@ TEST(Neighbourhood, C1LawHasNoKinkAtTheReach) {
   const double h = 1e-6 * kR;
   const auto slope = [&](NeighbourhoodLaw law) { return blend(law, kR - h) / h * kR; };
   EXPECT_LT(slope(NeighbourhoodLaw::kLogC1), 3e-6);
-  EXPECT_GT(slope(NeighbourhoodLaw::kLog), 0.8);  // 1 / ln(R/a) = 0.83: the paper's law has one
+  EXPECT_GT(slope(NeighbourhoodLaw::kLogPaper), 0.8);  // 1 / ln(R/a) = 0.83: the paper's law has one
 }
 
 TEST(Neighbourhood, DegenerateRadiiSwitchTheLawOff) {

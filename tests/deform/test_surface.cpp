@@ -14,7 +14,7 @@ using deform_test::ellipsoid_point;
 using deform_test::make_region;
 using deform_test::Scene;
 
-constexpr NeighbourhoodLaw kLaws[] = {NeighbourhoodLaw::kNone, NeighbourhoodLaw::kLog, NeighbourhoodLaw::kLogC1,
+constexpr NeighbourhoodLaw kLaws[] = {NeighbourhoodLaw::kNone, NeighbourhoodLaw::kLogPaper, NeighbourhoodLaw::kLogC1,
                                       NeighbourhoodLaw::kPunch};
 
 // Vertices on a latitude-longitude grid, each in a patch spanned by the three anchors of its octant.
@@ -72,7 +72,7 @@ TEST_F(Surface, StandsStillWithoutContact) {
 }
 
 TEST_F(Surface, ContactPointMovesByTheDent) {
-  for (const ShapeLaw shape : {ShapeLaw::kRbf, ShapeLaw::kDisplacementAngle}) {
+  for (const ShapeLaw shape : {ShapeLaw::kRbf, ShapeLaw::kDisplacementAnglePaper}) {
     for (const NeighbourhoodLaw law : kLaws) {
       for (const int tail : {0, 1}) {
         set(law, shape);
@@ -143,7 +143,7 @@ TEST_F(Surface, ContinuousAlongAPathThroughTheContact) {
 // Regions superpose: each one's field alone, added. The displacement-angle law is applied per region, so it adds too.
 TEST_F(Surface, RegionsSuperpose) {
   const Vec3 points[2] = {ellipsoid_point(0.6, 0.7), ellipsoid_point(0.8, 3.5)};
-  for (const ShapeLaw shape : {ShapeLaw::kRbf, ShapeLaw::kDisplacementAngle}) {
+  for (const ShapeLaw shape : {ShapeLaw::kRbf, ShapeLaw::kDisplacementAnglePaper}) {
     for (const NeighbourhoodLaw law : kLaws) {
       set(law, shape);
       for (const std::int32_t vertex : {-1, 40, 100}) {
@@ -162,7 +162,7 @@ TEST_F(Surface, RegionsSuperpose) {
 }
 
 TEST_F(Surface, DisplacementAngleLawNeedsAPatchAndElseInterpolates) {
-  set(NeighbourhoodLaw::kLogC1, ShapeLaw::kDisplacementAngle);
+  set(NeighbourhoodLaw::kLogC1, ShapeLaw::kDisplacementAnglePaper);
   press(0, ellipsoid_point(0.6, 0.7));
   const Vec3 x = scene_.vertices[200];
   const Vec3 by_angle = at(x, 200), without = at(x, -1);
@@ -174,7 +174,7 @@ TEST_F(Surface, DisplacementAngleLawNeedsAPatchAndElseInterpolates) {
 
 TEST_F(Surface, ContactOnAnAnchor) {
   const Vec3 top{0, 0, 25e-3};
-  for (const ShapeLaw shape : {ShapeLaw::kRbf, ShapeLaw::kDisplacementAngle}) {
+  for (const ShapeLaw shape : {ShapeLaw::kRbf, ShapeLaw::kDisplacementAnglePaper}) {
     for (const NeighbourhoodLaw law : kLaws) {
       set(law, shape);
       press(0, top);

@@ -1,12 +1,12 @@
-// What later regions carry over to earlier ones through their skeletons: CouplingLaw::kTemporal.
+// What later regions carry over to earlier ones through their skeletons: CouplingLaw::kTemporalPaper.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 #include <vector>
 
+#include "rt_core/contact/points/point_laws.h"
 #include "rt_core/skeleton/skeleton.h"
-#include "rt_core/skeleton/transfer.h"
 #include "tests/deform/deform_scene.h"
 #include "tests/support/roomy.h"
 

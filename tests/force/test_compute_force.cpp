@@ -13,7 +13,6 @@
 #include "force_scene.h"
 #include "rt_core/contact/cubic_law.h"
 #include "rt_core/contact/points/point_laws.h"
-#include "rt_core/skeleton/transfer.h"
 
 namespace palpate {
 namespace {
@@ -395,7 +394,7 @@ struct TemporalScene : ForceScene {
     model.sizes.n_rbf2 = 49;
     model.params.rbf_tail = RbfTail::kConstant;
     model.params.skeleton_law = SkeletonLaw::kStiffness;
-    set_coupling(CouplingLaw::kTemporal);
+    set_coupling(CouplingLaw::kTemporalPaper);
     add_contact(0, {0, 0, 0.02}, kUp, 3e-3);
     add_contact(1, {0.015, 0, 0.02}, unit_or({0.2, 0, 1}, kUp), 2e-3);
   }
@@ -415,7 +414,7 @@ TEST(ComputeForce, TemporalCouplingAddsWhatLaterRegionsTransfer) {
     EXPECT_TRUE(add_transferred_forces(s.model, *s.state, order, 2, sum));
     const Real added = sum[0];
     EXPECT_GT(std::abs(added), 1e-3);  // the scene does couple
-    s.set_coupling(CouplingLaw::kTemporal);
+    s.set_coupling(CouplingLaw::kTemporalPaper);
     s.run();
     EXPECT_NEAR(s.state->region[first].normal_force_N, std::max(own[first] + added, 0.0), 1e-9);
     EXPECT_NEAR(s.state->region[later].normal_force_N, own[later], 1e-12);

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Effect gate, a mutation test of the tick: what changes nothing must not be in the tick. Every statement of tick() and
-# of contact(), the phases of every contact method one method at a time, and the skeletons of `temporal` coupling are
+# of contact(), the phases of every contact method one method at a time, and the skeletons of `temporal_paper` coupling are
 # left out in turn: a copy of the source without that line is compiled and linked before the library, whose own version
 # is then not taken. Some scene's outputs must change over the scripted hand's eight seconds, or the run must not end at
 # all. Proves itself by a planted stage that computes what nobody reads.
@@ -12,8 +12,12 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 flags="-std=c++20 -O2 -march=x86-64-v3 -ffp-contract=off -mno-fma -w -I$root -isystem /usr/include/eigen3"
 
+# Every method of contact, from their one list.
+methods=$(sed -n 's/^#define PALPATE_METHODS(X)//p' "$root/rt_core/laws.h" | grep -oE 'k[A-Z][A-Za-z]*')
+[ "$(wc -w <<<"$methods")" -ge 3 ] || { echo "the list of methods was not found in rt_core/laws.h"; exit 1; }
+
 # One scene of each method and kind, cheapest first: a run stops at the first one that changes.
-"$palpate" bake "$root/config/scenes/heart_compass.toml" --set coupling.law=temporal -o "$work/temporal.pal" \
+"$palpate" bake "$root/config/scenes/heart_compass.toml" --set coupling.law=temporal_paper -o "$work/temporal.pal" \
   >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
 scenes="$images/tools_on_layer.pal $images/ellipsoid_mallet.pal $work/temporal.pal $images/grasp_cylinder_2.pal"
 scenes+=" $images/pinch_block.pal"
@@ -61,7 +65,7 @@ without() {
   for line in $(statements "$root/$1" "$2"); do
     text=$(sed -n "${line}s/^ *//p" "$root/$1")
     if [[ $text == method.* ]]; then
-      for method in kPoints kTips kNodes; do
+      for method in $methods; do
         sed "${line}s/method\\./if (method_of(model) != Method::$method) method./" "$root/$1" >"$work/mutant.cpp"
         judge "$2: $text $method" "$work/mutant.cpp"
       done

@@ -45,7 +45,7 @@ class Watch {
   explicit Watch(double mu) : mu_(mu) {}
   void see(const NodalScene& scene) {
     const Output& o = scene.output();
-    const ContactProblem& p = *scene.scratch().nodal;
+    const ContactProblem& p = problem_of(scene.scratch());
     ASSERT_TRUE(is_finite(o.device_w.force_N) && is_finite(o.contact_w.force_N) && std::isfinite(o.residual_m));
     for (std::int32_t i = 0; i < p.count; ++i) {
       const Push& push = p.node[i].push;

@@ -39,7 +39,7 @@ Vec3 sphere_at(double depth_m, double x_m = 0) { return {x_m, kTop_m + 0.010 - d
 
 // What holds after every tick: nobody pulls, friction stays in its cone, gaps are closed, totals add up.
 void expect_sound(const NodalScene& scene, double mu, double residual_m = 15e-6) {
-  const ContactProblem& p = *scene.scratch().nodal;
+  const ContactProblem& p = problem_of(scene.scratch());
   const Output& output = scene.output();
   Vec3 force, torque;
   double product = 0;
@@ -64,8 +64,8 @@ TEST(NodalTick, PressesWithoutPullOrPenetration) {
   for (int k = 1; k <= 40; ++k) {
     scene.tick_at(sphere_at(1e-4 * k));
     expect_sound(scene, 0);
-    EXPECT_GE(scene.output().contact_w.force_N.y, last);  // harder as it goes deeper
-    EXPECT_LE(scene.scratch().nodal->normal.pivots, 3);   // three steps warm
+    EXPECT_GE(scene.output().contact_w.force_N.y, last);      // harder as it goes deeper
+    EXPECT_LE(problem_of(scene.scratch()).normal.pivots, 3);  // three steps warm
     last = scene.output().contact_w.force_N.y;
   }
   EXPECT_GT(last, 1.0);
@@ -99,8 +99,8 @@ TEST(NodalTick, FlatPunchOnSixtyRedundantNodes) {
     for (int k = 1; k <= 20; ++k) {
       scene.tick_at({0, kTop_m + 0.005 - 1e-4 * k, 0});
       expect_sound(scene, mu);
-      most = std::max(most, scene.scratch().nodal->count);
-      if (k > 1) pivots = std::max(pivots, scene.scratch().nodal->normal.pivots);
+      most = std::max(most, problem_of(scene.scratch()).count);
+      if (k > 1) pivots = std::max(pivots, problem_of(scene.scratch()).normal.pivots);
     }
     EXPECT_GE(most, 60);
     EXPECT_LE(pivots, mu == 0 ? 4 : 5);  // the edge of a flat face opens and closes; after friction once more
@@ -152,8 +152,8 @@ TEST(NodalTick, StickSlipDissipates) {
     work -= 0.5 * dot(force + last, to - at);
     last = force;
     at = to;
-    for (std::int32_t i = 0; i < scene.scratch().nodal->count; ++i)
-      slipped += scene.scratch().nodal->node[i].push.slips ? 1 : 0;
+    for (std::int32_t i = 0; i < problem_of(scene.scratch()).count; ++i)
+      slipped += problem_of(scene.scratch()).node[i].push.slips ? 1 : 0;
   }
   EXPECT_GT(slipped, 100);
   EXPECT_GT(work, 0);
@@ -256,8 +256,8 @@ TEST(NodalTick, DroppedNodesAreReported) {
   for (int k = 0; k < 10; ++k) {
     scene.tick_at({0, kTop_m + 0.004, 0});
     EXPECT_NE(scene.output().status & Status::kContactsDropped, 0u) << k;
-    EXPECT_LE(scene.scratch().nodal->count, kMaxContacts);
-    most = std::max(most, scene.scratch().nodal->count);
+    EXPECT_LE(problem_of(scene.scratch()).count, kMaxContacts);
+    most = std::max(most, problem_of(scene.scratch()).count);
   }
   EXPECT_GT(most, kMaxContacts - 8);
 }
@@ -277,7 +277,7 @@ TEST(NodalTick, LeavesOutOnlyNodesThatDoNotPenetrate) {
     if (k % 10 != 0) continue;
     scene.settle_at(tool, 3);
     EXPECT_EQ(scene.output().status & Status::kContactsDropped, 0u) << k;
-    const ContactProblem& p = *scene.scratch().nodal;
+    const ContactProblem& p = problem_of(scene.scratch());
     EXPECT_LT(p.count, kMaxContacts);
     near = 0;
     const Model& model = scene.model();
@@ -337,7 +337,7 @@ TEST(NodalTick, FrictionThatDoesNotConvergeIsReported) {
   NodalScene scene(block(0.45, {4, 2, 4}), {box_piece({0.060, 0.010, 0.060})}, soft(0.5));
   scene.tick_at({0, kTop_m + 0.005 - 0.003, 0});
   EXPECT_GT(scene.output().residual_m, 30e-6);
-  EXPECT_LT(scene.scratch().nodal->normal.residual_m, 1e-7);
+  EXPECT_LT(problem_of(scene.scratch()).normal.residual_m, 1e-7);
   EXPECT_NE(scene.output().status & Status::kNotConverged, 0u);
   scene.settle_at({0, kTop_m + 0.005 - 0.003, 0}, 20);
   EXPECT_EQ(scene.output().status & Status::kNotConverged, 0u);

@@ -21,9 +21,9 @@ namespace {
 class Count {
  public:
   void add(const Scratch& scratch, const Output& output) {
-    const int tried = scratch.nodal->normal.pivots;
-    contacts_ = std::max(contacts_, static_cast<int>(scratch.nodal->count));
-    if (warm_ && scratch.nodal->count > 0) {
+    const int tried = problem_of(scratch).normal.pivots;
+    contacts_ = std::max(contacts_, static_cast<int>(problem_of(scratch).count));
+    if (warm_ && problem_of(scratch).count > 0) {
       ticks_ += 1;
       sum_ += tried;
       most_ = std::max(most_, tried);

@@ -52,7 +52,7 @@ TEST(TipRefusals, NameKeyReasonAndRemedy) {
       {{.piece = cap + "touches = \"plus_z\"\npoints = 3\n"},
        {"tool.piece[0].points", "a tip has one point", "0 or 1"}},
       {{.friction = "law = \"return_map\"\n"}, {"friction.law", "springs of tool points", "presliding"}},
-      {{.rest = "[coupling]\nlaw = \"temporal\"\n"}, {"coupling.law", "cubic springs", "none, coupled"}},
+      {{.rest = "[coupling]\nlaw = \"temporal_paper\"\n"}, {"coupling.law", "cubic springs", "none, coupled"}},
       {{.rest = "[[contact.pair]]\npiece_a = 0\npiece_b = 0\n"},
        {"contact.pair[0].piece_a", "two different", "0 to 0"}},
       {{.rest = pairs + ball}, {"contact.pair", "29 pairs", "up to 28"}},

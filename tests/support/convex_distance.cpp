@@ -1,7 +1,7 @@
 #include "tests/support/convex_distance.h"
 
 #include "rt_core/surface/triangle.h"
-#include "rt_core/tool/support.h"
+#include "rt_core/tool/shapes.h"
 #include "tests/support/simplex.h"
 
 namespace palpate::test {

@@ -24,7 +24,7 @@ class Balance {
       : model_(model),
         state_(state),
         scratch_(scratch),
-        p_(*scratch.nodal),
+        p_(problem_of(scratch)),
         drift_(drift),
         before_(before),
         mu_(friction_coefficient(model)) {}

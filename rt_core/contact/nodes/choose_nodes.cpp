@@ -198,7 +198,7 @@ void take(const Model& model, const State& state, ContactProblem& p, const NearF
 
 // Leaves those that pushed last tick and those that join them.
 void reduce_near(const Model& model, const State& state, Scratch& scratch) PALPATE_RT {
-  ContactProblem& p = *scratch.nodal;
+  ContactProblem& p = problem_of(scratch);
   const auto length = static_cast<std::size_t>(3 * model.sizes.n_vertex);
   Deepest joining;
   joining.most = places_for(state.nodal.count);
@@ -224,7 +224,7 @@ std::uint32_t lanes_at(const NearFour& near, std::int32_t piece) PALPATE_RT {
 }  // namespace
 
 void choose_nodes(const Model& model, const State& state, Scratch& scratch) PALPATE_RT {
-  ContactProblem& p = *scratch.nodal;
+  ContactProblem& p = problem_of(scratch);
   std::int32_t near = 0;
   for (std::int32_t i = 0; i < p.near_count; ++i) near += std::popcount(p.near[i].lanes);  // bound: kMaxNearFours
   if (near > kMaxContacts) reduce_near(model, state, scratch);

@@ -21,7 +21,7 @@ class NodeSearch {
  public:
   NodeSearch(const Model& model, State& state, Scratch& scratch) PALPATE_RT : model_(model),
                                                                               state_(state),
-                                                                              problem_(*scratch.nodal),
+                                                                              problem_(problem_of(scratch)),
                                                                               near_(problem_.near),
                                                                               near_of_(problem_.near_of) {
     problem_.near_count = 0;

@@ -70,9 +70,13 @@ struct ContactProblem {
 };
 static_assert(kMaxContacts <= 127 && kMaxNodalVertices <= 32767, "numbered in 8 and 16 bits");
 
-// Room for the problem of a body with n_vertex nodes in the block of a Scratch, and the problem made there.
-void place_problem(const Model& model, NodalScratch& memory, Arena& arena) noexcept;
-ContactProblem* create_problem(NodalScratch& memory) noexcept;
+// In the block of a Scratch made for the method.
+inline ContactProblem& problem_of(Scratch& scratch) PALPATE_RT {
+  return *reinterpret_cast<ContactProblem*>(scratch.own.data());
+}
+inline const ContactProblem& problem_of(const Scratch& scratch) PALPATE_RT {
+  return *reinterpret_cast<const ContactProblem*>(scratch.own.data());
+}
 
 // What its push does to the body.
 inline Vec3 push_w(const ContactNode& node) PALPATE_RT {

@@ -55,16 +55,16 @@ struct Sums {
 };
 
 void add(const Model& model, const Scratch& scratch, const Contact& contact, Sums& s) PALPATE_RT {
-  const ContactNode& node = scratch.nodal->node[contact.row];
+  const ContactNode& node = problem_of(scratch).node[contact.row];
   const Vec3 on_tool = -node.force_w;
   s.centre += contact.force_N * contact.position_w;
   s.normal += contact.force_N * contact.normal_w;
   s.friction += on_tool - contact.force_N * contact.normal_w;
   s.force += on_tool;
   s.torque += cross(node.arm_w, on_tool);
-  s.carry += contact.force_N * motion_of(*scratch.nodal, contact.row);
+  s.carry += contact.force_N * motion_of(problem_of(scratch), contact.row);
   s.load += contact.force_N;
-  s.energy += 0.5 * dot(node.force_w, motion_of(*scratch.nodal, contact.row));
+  s.energy += 0.5 * dot(node.force_w, motion_of(problem_of(scratch), contact.row));
   s.area += model.nodal_vertex[static_cast<std::size_t>(node.vertex)].area_m2;
   s.slipping += node.push.slips ? 1 : 0;
   s.count += 1;
@@ -117,13 +117,13 @@ void label_nodes(State& state, Scratch& scratch, const Clusters& clusters) PALPA
   for (std::int32_t i = 0; i < scratch.contact_count; ++i) {  // bound: kMaxContacts
     const Contact& contact = scratch.contact[i];
     state.nodal.contact[i].region = contact.region;  // both list the pushing nodes in order
-    scratch.nodal->node[contact.row].region = contact.region;
+    problem_of(scratch).node[contact.row].region = contact.region;
   }
 }
 
 // How the surface around each region has moved as a whole: its nodes, and those near it that do not push.
 void fit_motions(const Model& model, State& state, const Scratch& scratch) PALPATE_RT {
-  const ContactProblem& p = *scratch.nodal;
+  const ContactProblem& p = problem_of(scratch);
   MotionFit fit[kMaxRegions];
   Real reach2[kMaxRegions] = {};
   std::int32_t touching[kMaxRegions], count = 0;

@@ -4,7 +4,9 @@
 
 #include "rt_core/cholesky.h"
 #include "rt_core/contact/contact.h"
+#include "rt_core/image_check.h"
 #include "rt_core/tool/articulate.h"
+#include "rt_core/tool/shapes.h"
 
 namespace palpate {
 
@@ -14,7 +16,7 @@ constexpr std::int32_t kDof = 6;
 
 // Where the tool goes: the handle's pull against the pushes, no faster than the handle itself and the limit.
 void place_tool(const Model& model, const State& state, Scratch& scratch, const Twist& drift) PALPATE_RT {
-  const ContactProblem& p = *scratch.nodal;
+  const ContactProblem& p = problem_of(scratch);
   Pose& tool = scratch.tool_corrected_w;
   if (scratch.driven) {
     tool = state.tool_w;
@@ -34,7 +36,7 @@ void place_tool(const Model& model, const State& state, Scratch& scratch, const 
 
 // Keeps the nodes that push: with what force, and where on the tool.
 void remember(const Model& model, State& state, const Scratch& scratch) PALPATE_RT {
-  const ContactProblem& p = *scratch.nodal;
+  const ContactProblem& p = problem_of(scratch);
   NodalContact before[kMaxContacts];
   for (std::int32_t m = 0; m < state.nodal.count; ++m) before[m] = state.nodal.contact[m];  // bound: kMaxContacts
   state.nodal.count = 0;
@@ -62,7 +64,7 @@ void remember(const Model& model, State& state, const Scratch& scratch) PALPATE_
 // normals' Jacobian. The factor at hand may contain the coupling's compliance; then S = G^T M^-1 G is K in series with
 // it, and K = (1 - S / K_coupling)^-1 S.
 void set_stiffness(State& state, const Scratch& scratch) PALPATE_RT {
-  const ContactProblem& p = *scratch.nodal;
+  const ContactProblem& p = problem_of(scratch);
   const ContactFactor& factor = p.normal.factor;
   if (p.normal.factored == 0 || factor.n == 0) return;
   FactorRow column[kContactStride];
@@ -102,7 +104,7 @@ void set_stiffness(State& state, const Scratch& scratch) PALPATE_RT {
 
 // Contacts for the later stages and telemetry: the nodes that push.
 void list_contacts(Scratch& scratch) PALPATE_RT {
-  const ContactProblem& p = *scratch.nodal;
+  const ContactProblem& p = problem_of(scratch);
   for (std::int32_t i = 0; i < p.count; ++i) {  // bound: kMaxContacts
     const ContactNode& node = p.node[i];
     if (!(node.push.normal_N > 0)) continue;
@@ -121,7 +123,7 @@ void list_contacts(Scratch& scratch) PALPATE_RT {
 
 // Total wrench on the tool and elastic energy of the body, f . C f / 2.
 void sum_up(Scratch& scratch) PALPATE_RT {
-  const ContactProblem& p = *scratch.nodal;
+  const ContactProblem& p = problem_of(scratch);
   Real work = 0;
   for (std::int32_t i = 0; i < p.count; ++i) {  // bound: kMaxContacts
     const Vec3 force = p.node[i].force_w;
@@ -196,21 +198,21 @@ Real largest_strain(const Model& model, const ContactProblem& p) PALPATE_RT {
 
 void check_strain(const Model& model, Scratch& scratch) PALPATE_RT {
   if (model.strain_gauge.empty()) return;
-  scratch.strain = largest_strain(model, *scratch.nodal);
+  scratch.strain = largest_strain(model, problem_of(scratch));
   if (scratch.strain > model.params.strain_limit) scratch.status |= Status::kStrainBeyondLinear;
 }
 
 void find_rows(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   scratch.contact_count = 0;
-  scratch.nodal->count = 0;
+  problem_of(scratch).count = 0;
   if (!is_finite(state.tool_w)) return;
   find_near_nodes(model, state, scratch);
   choose_nodes(model, state, scratch);
-  if (scratch.nodal->count > state.high_water.contacts) state.high_water.contacts = scratch.nodal->count;
+  if (problem_of(scratch).count > state.high_water.contacts) state.high_water.contacts = problem_of(scratch).count;
 }
 
 void solve(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
-  ContactProblem& p = *scratch.nodal;
+  ContactProblem& p = problem_of(scratch);
   p.per_N = scratch.driven ? 0.0 : 1.0 / model.params.coupling_N_per_m;
   p.per_Nm = scratch.driven ? 0.0 : 1.0 / model.params.coupling_Nm_per_rad;
   p.force_N = p.torque_Nm = {};
@@ -221,7 +223,7 @@ void solve(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
 }
 
 void account(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
-  if (scratch.nodal->count > 0) set_stiffness(state, scratch);
+  if (problem_of(scratch).count > 0) set_stiffness(state, scratch);
   remember(model, state, scratch);
   list_contacts(scratch);
   sum_up(scratch);
@@ -229,26 +231,70 @@ void account(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   find_nodal_regions(model, state, scratch);
 }
 
+// Pieces whose gap has a closed form.
+ImageResult check_tool(const Model& model) noexcept {
+  for (std::size_t i = 0; i < model.piece.size(); ++i)
+    if (!has_gap(model.piece[i].shape)) return not_together("piece.nodal_shape", i);
+  return {};
+}
+
+ImageResult check_vertices(const Model& model) noexcept {
+  for (std::size_t i = 0; i < model.nodal_vertex.size(); ++i) {
+    const NodalVertex& v = model.nodal_vertex[i];
+    if (!is_positive(v.area_m2)) return not_finite("nodal_vertex.area_m2", i);
+    if (v.is_free != 0 && v.is_free != 1) return broken("nodal_vertex.is_free", i);
+    if (!(v.round_m >= 0 && v.round_m < kHuge)) return not_finite("nodal_vertex.round_m", i);
+    if (v.round_m > 0 && !(is_unit(v.round_normal) && v.round_cosine >= 0 && v.round_cosine < 1))
+      return not_finite("nodal_vertex.round_normal", i);
+  }
+  return {};
+}
+
+// All of them, in one precision.
+ImageResult check_data(const Model& model) noexcept {
+  const ModelSizes& n = model.sizes;
+  if (n.n_nodal != n.n_vertex) return broken("n_nodal", 0);
+  if (n.n_vertex > kMaxNodalVertices) return broken("n_vertex", 0);
+  const std::int64_t entries = 9 * n.n_vertex * n.n_vertex;
+  if (n.n_compliance_f32 != 0 && n.n_compliance_f64 != 0) return broken("n_compliance_f64", 0);
+  if (n.n_compliance_f32 + n.n_compliance_f64 != entries) return broken("n_compliance_f32", 0);
+  if (n.n_strain_gauge % (18 * n.n_vertex) != 0) return broken("n_strain_gauge", 0);
+  if (n.n_strain_gauge > 18 * n.n_vertex * kMaxStrainGauges) return broken("n_strain_gauge", 0);
+  const ModelParams& p = model.params;
+  for (const double value : {p.contact_margin_m, p.wall_N_per_m, p.proxy_speed_max_m_per_s})
+    if (!(value > 0)) return broken("nodal parameters", 0);
+  for (const ImageResult& result :
+       {check_vertices(model), check_numbers(model.compliance_f32, "compliance_f32"),
+        check_numbers(model.compliance_f64, "compliance_f64"), check_numbers(model.strain_gauge, "strain_gauge")})
+    if (result.error != ImageError::kNone) return result;
+  return {};
+}
+
+// The problem, and behind it its three lists.
+struct ProblemLayout {
+  std::size_t near, memory_of, near_of, bytes;
+};
+ProblemLayout layout_of(const Model& model) noexcept {
+  const auto fours = static_cast<std::size_t>(whole_lanes(static_cast<std::int32_t>(model.sizes.n_vertex), 4) / 4);
+  static_assert(sizeof(ContactProblem) % alignof(NearFour) == 0);
+  const std::size_t near_of = sizeof(ContactProblem) + (fours + 1) * sizeof(NearFour);
+  const std::size_t memory_of = near_of + fours * sizeof(std::int16_t);
+  return {sizeof(ContactProblem), memory_of, near_of, memory_of + 4 * fours};
+}
+
+std::size_t problem_bytes(const Model& model) noexcept { return layout_of(model).bytes; }
+
+void create_problem(const Model& model, void* block) noexcept {
+  const ProblemLayout at = layout_of(model);
+  auto* bytes = static_cast<std::byte*>(block);
+  auto* problem = ::new (static_cast<void*>(block)) ContactProblem;
+  problem->near = reinterpret_cast<NearFour*>(bytes + at.near);
+  problem->memory_of = reinterpret_cast<std::int8_t*>(bytes + at.memory_of);
+  problem->near_of = reinterpret_cast<std::int16_t*>(bytes + at.near_of);
+}
+
 }  // namespace
 
-const ContactMethod nodes_method{find_rows, solve, account};
-
-void place_problem(const Model& model, NodalScratch& memory, Arena& arena) noexcept {
-  if (model.sizes.n_nodal == 0) return;
-  const std::int64_t fours = whole_lanes(static_cast<std::int32_t>(model.sizes.n_vertex), 4) / 4;
-  arena.place(memory.problem, 1);
-  arena.place(memory.near, fours + 1);
-  arena.place(memory.memory_of, 4 * fours);
-  arena.place(memory.near_of, fours);
-}
-
-ContactProblem* create_problem(NodalScratch& memory) noexcept {
-  if (memory.problem.size() == 0) return nullptr;
-  ContactProblem* problem = memory.problem.data();
-  problem->near = memory.near.data();
-  problem->memory_of = memory.memory_of.data();
-  problem->near_of = memory.near_of.data();
-  return problem;
-}
+const ContactMethod nodes_method{find_rows, solve, account, check_tool, check_data, problem_bytes, create_problem};
 
 }  // namespace palpate

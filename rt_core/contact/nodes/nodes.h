@@ -12,7 +12,7 @@
 namespace palpate {
 
 // Nodes near the tool (near_nodes.cpp), with gaps and normals where the body's far field has carried them:
-// scratch.nodal.near. Bound: n_vertex / 4 steps per piece.
+// problem.near. Bound: n_vertex / 4 steps per piece.
 void find_near_nodes(const Model& model, State& state, Scratch& scratch) PALPATE_RT;
 
 // When not all near nodes fit into a problem, as many join those that pushed as fill whole lanes: at least kMinJoining,
@@ -29,7 +29,7 @@ inline constexpr std::int32_t kMaxPredictions = 256;
 // pushed last tick and, of the others, the deepest where last tick's pushes have moved the body: a node that neither
 // pushes nor penetrates has no part in the problem, and one that does after this tick joins in the next. Where
 // kMaxPredictions is too few, they are for those of the smallest gap and, in turns, some of the others. Status:
-// kContactsDropped when one that penetrates is left out. Fills scratch.nodal.node. Bound: n_vertex steps and
+// kContactsDropped when one that penetrates is left out. Fills problem.node. Bound: n_vertex steps and
 // kMaxPredictions.
 void choose_nodes(const Model& model, const State& state, Scratch& scratch) PALPATE_RT;
 
@@ -45,7 +45,7 @@ void gather_normal(const Model& model, ContactProblem& problem) PALPATE_RT;
 void make_frames(const Model& model, ContactProblem& problem, Real mu) PALPATE_RT;
 
 // Solves the tick's problem, pushes of the nodes and the tool's place together: fills frames, compliances and gaps of
-// scratch.nodal's nodes, then finds their pushes. `drift` is how far the tool would move from state.tool_w if nothing
+// the problem's nodes, then finds their pushes. `drift` is how far the tool would move from state.tool_w if nothing
 // touched it: zero when it is held. Afterwards node.push, motion_m, force_N and torque_Nm hold the solution,
 // scratch.residual_m its residual.
 void solve_contacts(const Model& model, State& state, Scratch& scratch, const Twist& drift,

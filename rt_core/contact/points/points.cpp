@@ -4,7 +4,6 @@
 #include "rt_core/contact/contact.h"
 #include "rt_core/contact/points/point_laws.h"
 #include "rt_core/contact/regions.h"
-#include "rt_core/skeleton/transfer.h"
 
 namespace palpate {
 
@@ -123,7 +122,7 @@ void slide_on_points(const Model& model, const State& state, Scratch& scratch, s
 }
 
 void account(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
-  const bool temporal = model.params.coupling_law == CouplingLaw::kTemporal;
+  const bool temporal = model.params.coupling_law == CouplingLaw::kTemporalPaper;
   if (temporal) add_transferred(model, state, scratch);
   for (std::int32_t r = 0; r < scratch.rows.regions; ++r) {  // bound: kMaxRegions
     slide_on_points(model, state, scratch, r, state.region[scratch.rows.slot[r]]);
@@ -131,8 +130,11 @@ void account(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   sum_up(model, state, scratch);
 }
 
+// Any tool, and no arrays of its own.
+ImageResult accept(const Model&) noexcept { return {}; }
+
 }  // namespace
 
-const ContactMethod points_method{find_rows, solve, account};
+const ContactMethod points_method{find_rows, solve, account, accept, accept};
 
 }  // namespace palpate

@@ -1,5 +1,4 @@
-#include "rt_core/skeleton/transfer.h"
-
+#include "rt_core/contact/points/point_laws.h"
 #include "rt_core/skeleton/beam_table.h"
 #include "rt_core/skeleton/rbf.h"
 #include "rt_core/skeleton/skeleton.h"
