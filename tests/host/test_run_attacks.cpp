@@ -14,6 +14,7 @@
 #include <thread>
 
 #include "sim_host/bake/scene_image.h"
+#include "sim_host/exit_codes.h"
 #include "sim_host/run/controller_link.h"
 #include "sim_host/run/device_process.h"
 #include "tests/support/ball_run.h"
@@ -178,7 +179,7 @@ class EvilMailbox : public Attack {
     return {link.process().exit_code(), last.output.fault, last.output.device_w};
   }
   void expect_fault(const End& end, std::uint32_t fault, const char* attack) {
-    EXPECT_EQ(end.exit_code, 1) << attack;
+    EXPECT_EQ(end.exit_code, kExitFault) << attack;
     EXPECT_NE(end.fault & (fault | Fault::kOverrun | Fault::kDeviceSilent), 0u) << attack;  // this computer may be busy
     EXPECT_EQ(end.device_w, Wrench{}) << attack;
   }
