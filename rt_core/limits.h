@@ -63,8 +63,8 @@ inline constexpr std::int32_t kRegionMemoryTicks = 50;
 inline constexpr double kRegionMemoryDistance_m = 2e-3;
 // Largest change of the rendered force (and torque) in one tick, as a share of its limit: whatever happens to samples,
 // commands or numbers, the hand gets no impulse above it. At the coupling's 1.5 N/mm and 0.2 kg of hand and handle
-// (14 Hz) a swing needs 9.9 N before its slope meets 0.85 N a millisecond; a snap is faster: snap_in meets it, and its
-// swing grows from 20 to 28 N peak to peak (scripted hand, 2026-11-22).
+// (14 Hz) a swing needs 9.9 N before its slope meets 0.85 N a millisecond; a snap is faster where the coupling
+// is stiffer than the device holds: snap_in, thrown into its seat at 0.5 m/s, meets it for 10 ticks (2026-11-22).
 inline constexpr double kOutputStepShare = 0.10;
 // A tool that would push the hand harder than this the moment force may begin is not armed: Status::kStartsInside.
 inline constexpr double kArmForceMax_N = 1.0;
