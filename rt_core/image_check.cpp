@@ -1,6 +1,7 @@
 #include "rt_core/image_check.h"
 
 #include "rt_core/contact/contact.h"
+#include "rt_core/stage_cost.h"
 
 namespace palpate {
 
@@ -206,6 +207,16 @@ ImageResult check_corners(const Model& model) noexcept {
   return {};
 }
 
+// An image that claims less than its tick may take would pass where it does not fit. The longest period is 0.1 s.
+ImageResult check_cost(const Model& model) noexcept {
+  for (std::size_t i = 0; i < model.stage_cost.size(); ++i) {
+    const double claimed = model.stage_cost[i].instructions;
+    if (!(claimed >= least_stage_cost(model, static_cast<Stage>(i)) && claimed <= 1e9))
+      return {ImageError::kCombination, "stage_cost", static_cast<int64_t>(i)};
+  }
+  return {};
+}
+
 // Arrays of other methods than the scene's are empty.
 ImageResult check_owners(const Model& model) noexcept {
   const unsigned own = bit_of(method_of(model.params));
@@ -228,10 +239,11 @@ ImageResult check_method(const Model& model) noexcept {
 ImageResult check_arrays(const Model& model) noexcept {
   using Check = ImageResult (*)(const Model&) noexcept;
   constexpr Check kChecks[] = {check_owners, check_surface,      check_hierarchy, check_skeleton, check_beams,
-                               check_tool,   check_articulation, check_corners,   check_method};
+                               check_tool,   check_articulation, check_corners,   check_method,   check_cost};
   for (const Check check : kChecks)
     if (const ImageResult result = check(model); result.error != ImageError::kNone) return result;
-  return contact_method(method_of(model)).check_data(model);
+  const ImageResult data = contact_method(method_of(model)).check_data(model);
+  return data.error != ImageError::kNone ? data : check_cost(model);
 }
 
 }  // namespace palpate

@@ -25,6 +25,9 @@ inline constexpr std::int32_t kMaxFrictionVisits = 64;
 inline constexpr std::int32_t kMaxNodalVertices = 5461;
 // Points of a finite-element body whose strain is watched: each costs 6 numbers per contact and tick. Refused at bake.
 inline constexpr std::int32_t kMaxStrainGauges = 16;
+// Boxes and triangles of the surface that one tick looks at where the image states no less: 2.5e6 instructions.
+// Overflow: what is left waits for the next tick, Status::kPointsHeld.
+inline constexpr std::int32_t kMaxSurfaceWork = 16384;
 // Contact regions at once: 15 finger parts and a palm. Overflow: the deepest are kept, Status::kRegionsDropped.
 inline constexpr std::int32_t kMaxRegions = 16;
 // Skeleton anchors of one body. Refused at bake (the baker keeps the most persistent).

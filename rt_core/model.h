@@ -8,6 +8,7 @@
 #include "rt_core/base.h"
 #include "rt_core/laws.h"
 #include "rt_core/limits.h"
+#include "rt_core/status.h"
 #include "rt_core/vec.h"
 
 namespace palpate {
@@ -16,11 +17,13 @@ namespace palpate {
 // choice is its table (rt_core/choice.h).
 #define PALPATE_CHOICE_PARAM(X, Enum, name, meaning) X(Enum, name, "-", Enum{}, last_choice<Enum>(), meaning)
 // The tick, and which method finds contact.
-#define PALPATE_METHOD_PARAMS(X)                                                      \
-  X(double, period_s, "s", 1e-5, 1e-1, "tick period")                                 \
-  PALPATE_CHOICE_PARAM(X, Backend, backend, "who measures contact and makes force")   \
-  PALPATE_CHOICE_PARAM(X, ResponseLaw, response_law, "what carries the normal force") \
-  PALPATE_CHOICE_PARAM(X, Articulation, articulation, "whether pieces of the tool move by joints")
+#define PALPATE_METHOD_PARAMS(X)                                                                   \
+  X(double, period_s, "s", 1e-5, 1e-1, "tick period")                                              \
+  PALPATE_CHOICE_PARAM(X, Backend, backend, "who measures contact and makes force")                \
+  PALPATE_CHOICE_PARAM(X, ResponseLaw, response_law, "what carries the normal force")              \
+  PALPATE_CHOICE_PARAM(X, Articulation, articulation, "whether pieces of the tool move by joints") \
+  X(std::int32_t, surface_work_max, "-", 0, kMaxSurfaceWork,                                       \
+    "boxes and triangles a tick looks at, at most; 0: kMaxSurfaceWork")
 // The body.
 #define PALPATE_BODY_PARAMS(X)                                                                 \
   X(double, youngs_modulus_Pa, "Pa", 1, 1e13, "E")                                             \
@@ -251,6 +254,10 @@ struct TipPair {
 struct CornerNormals {
   Vec3 normal[3];
 };
+// What one stage of the tick may take at most, in instructions (rt_core/stage_cost.h).
+struct StageCost {
+  double instructions;
+};
 // Tabulated force at one knot of one curve; slope is that of the force over the table's variable.
 struct ResponseKnot {
   double force_N;
@@ -306,7 +313,8 @@ struct BeamResponse {
   X(TipPair, tip_pair, n_tip_pair, "-", "coupling of pairs of pieces; others use the far field")                \
   X(double, knot, n_knot, "m or sqrt(m)", "depths (or their roots) of all curves, ascending from 0")            \
   X(ResponseKnot, response, n_response, "-", "curves, n_knot entries each (tables only)")                       \
-  X(std::int32_t, vertex_response, n_vertex_response, "-", "curve of each vertex")
+  X(std::int32_t, vertex_response, n_vertex_response, "-", "curve of each vertex")                              \
+  X(StageCost, stage_cost, n_stage, "instructions", "the worst tick, by stage in its order")
 
 // X(name, lowest, highest, methods that have such an array; in a scene of another it is empty)
 #define PALPATE_MODEL_SIZES(X)               \
@@ -335,7 +343,8 @@ struct BeamResponse {
   X(n_tip_pair, 0, kMaxTipPairs, kOfTips)    \
   X(n_knot, 0, kMaxResponseKnots, kOfTips)   \
   X(n_response, 0, 1 << 26, kOfTips)         \
-  X(n_vertex_response, 0, 1 << 26, kOfTips)
+  X(n_vertex_response, 0, 1 << 26, kOfTips)  \
+  X(n_stage, kStageCount, kStageCount, kOfAll)
 
 struct ModelSizes {
 #define PALPATE_FIELD(name, lowest, highest, methods) std::int64_t name;

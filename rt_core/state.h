@@ -200,16 +200,17 @@ struct HighWater {
 
 using Matrix6 = double[36];
 
-#define PALPATE_STATE_FIELDS(X)                                                                   \
-  X(std::uint64_t, tick, 0, "ticks since reset")                                                  \
-  X(Pose, device_w, {}, "of the last accepted sample")                                            \
-  X(Pose, device_previous_w, {}, "of the one before")                                             \
-  X(Pose, tool_w, {}, "at which this tick's contact was evaluated")                               \
-  X(Pose, tool_previous_w, {}, "and the last tick's")                                             \
-  X(Matrix6, contact_stiffness, {}, "tangent (force, torque about the tool's origin), row-major") \
-  X(std::int32_t, started, 0, "0: the next sample is the first")                                  \
-  X(std::int32_t, rejected_ticks, 0, "consecutive samples found implausible")                     \
-  X(std::uint32_t, next_region_id, 1, "of the next region to be born")                            \
+#define PALPATE_STATE_FIELDS(X)                                                                                 \
+  X(std::uint64_t, tick, 0, "ticks since reset")                                                                \
+  X(Pose, device_w, {}, "of the last accepted sample")                                                          \
+  X(Pose, device_previous_w, {}, "of the one before")                                                           \
+  X(Pose, tool_w, {}, "at which this tick's contact was evaluated")                                             \
+  X(Pose, tool_previous_w, {}, "and the last tick's")                                                           \
+  X(Matrix6, contact_stiffness, {}, "tangent (force, torque about the tool's origin), row-major")               \
+  X(std::int32_t, started, 0, "0: the next sample is the first")                                                \
+  X(std::int32_t, rejected_ticks, 0, "consecutive samples found implausible")                                   \
+  X(std::uint32_t, next_region_id, 1, "of the next region to be born")                                          \
+  X(std::int32_t, first_point, 0, "tool point with which the search begins: where the last tick's share ended") \
   X(SafetyState, safety, {}, "memory of the last gate")
 #define PALPATE_STATE_POOLS(X)                                                            \
   X(PointState, point, model.sizes.n_tool_point, point.size(), "one for each tool point") \
@@ -260,14 +261,15 @@ struct Scratch {
   Wrench contact_wrench_w;  // sum over regions, on the tool, about the tool's origin
   double energy_J = 0;
   double residual_m = 0;
-  RowsByRegion rows;           // points, tips: written by solve
-  RegionSystem system;         // of the region solver
-  ContactStiffness stiffness;  // of normal loads so far
-  std::int32_t driven = 0;     // the tool's pose is given, nobody holds it by a spring
-  double strain = 0;           // largest at the gauges (nodal)
-  Pose tool_corrected_w;       // where the tool balances
-  Pool<std::byte> own;         // of the scene's method, as it lays it out (contact/contact.h)
-  std::uint64_t bytes = 0;     // of the block that this begins
+  std::int32_t surface_work = 0;  // boxes and triangles this tick looked at
+  RowsByRegion rows;              // points, tips: written by solve
+  RegionSystem system;            // of the region solver
+  ContactStiffness stiffness;     // of normal loads so far
+  std::int32_t driven = 0;        // the tool's pose is given, nobody holds it by a spring
+  double strain = 0;              // largest at the gauges (nodal)
+  Pose tool_corrected_w;          // where the tool balances
+  Pool<std::byte> own;            // of the scene's method, as it lays it out (contact/contact.h)
+  std::uint64_t bytes = 0;        // of the block that this begins
 };
 
 // Hash of every name and size in the tables: two builds that disagree about one of them have different hashes.

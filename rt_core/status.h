@@ -44,7 +44,10 @@ namespace palpate {
   X(kCommandsUnheard, 18, "the device does not show that commands reach it; force is let go until it does",            \
     "check the bus towards the device: palpate device-test")                                                           \
   X(kStartsInside, 19, "arming refused: the tool starts inside the body and would push with more than 1 N",            \
-    "move the handle out of the body, then arm again")
+    "move the handle out of the body, then arm again")                                                                 \
+  X(kPointsHeld, 20,                                                                                                   \
+    "a tick's share of surface work was spent; the other tool points keep their last place of contact",                \
+    "fewer tool points (tool.piece.points), or a mesh without fans of thin triangles")
 
 // X(name, bit, cause, remedy)
 #define PALPATE_FAULT_BITS(X)                                                                                        \

@@ -8,6 +8,7 @@
 #include "config/bake/image_rules.h"
 #include "config/bake/rbf_system.h"
 #include "config/bake/tool_points.h"
+#include "config/bake/worst_tick.h"
 #include "config/body/anchors.h"
 #include "config/body/body.h"
 #include "config/body/patches.h"
@@ -42,6 +43,7 @@ class Compiler {
     bake_response(scene_, image_, report_.response, report_.warnings);
     add_device();
     add_skeleton();
+    add_costs();
     report_.array = array_bytes(image_);
     CompileResult result{write_image(image_), std::move(report_)};
     check_bytes(scene_, result.bytes);
@@ -443,6 +445,14 @@ class Compiler {
       warn("no anchor lies on the fixed base; raise body.fixed.base_height_mm if the body should rest on it");
     if (report_.fixed_anchors == report_.anchors)
       warn("every anchor is fixed, so the drawn shape moves only near contacts; lower body.fixed.base_height_mm");
+  }
+
+  void add_costs() {
+    state_costs(kMaxSurfaceWork, image_);
+    if (!is_nodal()) check_bytes(scene_, write_image(image_));  // what is not sound must not be ticked
+    report_.cost = bake_costs(image_);
+    if (const std::string wrong = cost_refusal(report_.cost, image_.params.period_s); !wrong.empty())
+      fail("device.period_ms", wrong);
   }
 
   void add_interpolation(const std::vector<AnchorPoint>& anchors) {

@@ -7,6 +7,7 @@
 
 #include "config/bake/contact_fit.h"
 #include "config/bake/image_writer.h"
+#include "config/bake/worst_tick.h"
 #include "config/beams/beam_table_build.h"
 #include "config/response/tip_bake.h"
 #include "config/scene/progress.h"
@@ -41,6 +42,7 @@ struct CompileReport {
   std::vector<ArrayBytes> array;                // of the image, in its order
   std::int32_t joints = 0, parts_touching = 0;  // of a hand: parts in contact when closed
   double clearance_m = 0;                       // of the open hand on its way in
+  TickCost cost;
   std::vector<std::string> warnings;
 };
 // The report as lines for a terminal.

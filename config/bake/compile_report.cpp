@@ -87,6 +87,10 @@ std::string report_text(const CompileReport& r) {
   if (r.parts_touching > 0)
     line(text, "hand       %d parts touch when closed; open it clears the body by %.3g mm", r.parts_touching,
          1e3 * r.clearance_m);
+  if (r.cost.surface_work > 0)
+    line(text, "surface    an adversary made a tick look at %d boxes and triangles; allowed %d", r.cost.surface_work,
+         r.cost.surface_work_max);
+  line(text, "worst tick at most %.0f instructions", r.cost.instructions);
   size_lines(text, r);
   for (const std::string& warning : r.warnings) text += "warning    " + warning + '\n';
   return text;

@@ -71,25 +71,34 @@ class Collider {
                                                                             scratch_(scratch),
                                                                             now_(state.tool_w),
                                                                             before_(state.tool_previous_w),
-                                                                            root_(root_box(model)) {
+                                                                            root_(root_box(model)),
+                                                                            share_(surface_work_share(model.params)) {
     smooth_ = !model.corner_normal.empty();
   }
 
-  void visit(std::size_t index) PALPATE_RT {
+  // The points of a piece from `from` on, or before it.
+  void visit(std::size_t index, std::int32_t from, bool before) PALPATE_RT {
     const ToolPiece& piece = model_.piece[index];
     if (is_articulated(model_)) {
       now_ = RigidFrame(carrier_w(model_, state_, static_cast<std::int32_t>(index)));
       before_ = RigidFrame(carrier_previous_w(model_, state_, static_cast<std::int32_t>(index)));
     }
     const Real gap = distance_to(root_, out_of(now_, piece.pose_tool.position_m)) - piece.bounding_radius_m;
-    const std::int32_t end = piece.first_point + piece.point_count;
-    for (std::int32_t i = piece.first_point; i < end; ++i) {  // bound: kMaxToolPoints over all pieces
+    const std::int32_t last = piece.first_point + piece.point_count;
+    const std::int32_t begin = before || piece.first_point > from ? piece.first_point : from;
+    const std::int32_t end = before && from < last ? from : last;
+    for (std::int32_t i = begin; i < end; ++i) {  // bound: kMaxToolPoints over all pieces
       if (gap > kSearchMargin_m + kRefreshMargin_m) {
         skip(state_.point[i], gap);
       } else {
         visit_point(i);
       }
     }
+  }
+
+  void finish() PALPATE_RT {
+    state_.first_point = next_first_ < 0 ? 0 : next_first_;
+    scratch_.surface_work = share_ - left_;
   }
 
  private:
@@ -108,7 +117,31 @@ class Collider {
       const Real gap = distance_to(root_, p) - model_.tool_point[static_cast<std::size_t>(index)].margin_m;
       if (gap > kSearchMargin_m + kRefreshMargin_m) return skip(point, gap);
     }
-    measure(index, p);
+    if (left_ > 0) return measure(index, p);
+    if (next_first_ < 0) next_first_ = index;
+    hold(index, p);
+  }
+
+  // The tick's share of work is spent. A point in contact stays on its plane (a god-object); another's gap has shrunk
+  // by its motion at most.
+  void hold(std::int32_t index, Vec3 p) PALPATE_RT {
+    scratch_.status |= Status::kPointsHeld;
+    PointState& point = state_.point[index];
+    const ToolPoint& tool_point = model_.tool_point[static_cast<std::size_t>(index)];
+    const bool touched = point.gap_m < 0 && point.triangle >= 0;
+    const Real gap =
+        touched ? dot(p - point.closest_w, point.normal_w) - tool_point.margin_m : point.gap_bound_m - moved(index, p);
+    if (!touched && gap > 0) return skip(point, gap);
+    if (!touched || !(gap < 0)) return forget(point);
+    point.gap_m = point.gap_bound_m = gap;
+    if (smooth_) {
+      SurfaceFoot& foot = scratch_.foot[tool_point.piece];
+      foot = {};
+      foot.centre_w = p;
+      foot.triangle = point.triangle;
+      facet_weights(model_, point.triangle, point.closest_w, foot.weight);
+    }
+    keep(index, point, tool_point);
   }
 
   Real moved(std::int32_t index, Vec3 p) const PALPATE_RT {
@@ -119,6 +152,7 @@ class Collider {
     const ToolPoint& tool_point = model_.tool_point[static_cast<std::size_t>(index)];
     PointState& point = state_.point[index];
     const SurfacePoint surface = closest_surface_point(model_, p, kHuge, point.triangle);
+    left_ -= surface.looked;
     if (surface.stack_high_water > state_.high_water.traversal_stack) {
       state_.high_water.traversal_stack = surface.stack_high_water;
     }
@@ -189,7 +223,7 @@ class Collider {
     if (point.gap_m < 0) keep(index, point, tool_point);
   }
 
-  // Appends a contact; when the pool is full the shallowest goes (ties: the higher index). Order stays by index.
+  // Adds a contact; when the pool is full the shallowest goes (ties: the higher index). Order stays by index.
   void keep(std::int32_t index, const PointState& point, const ToolPoint& tool_point) PALPATE_RT {
     if (scratch_.contact_count == kMaxContacts) {
       scratch_.status |= Status::kContactsDropped;
@@ -203,7 +237,11 @@ class Collider {
       }
       scratch_.contact_count -= 1;
     }
-    Contact& contact = scratch_.contact[scratch_.contact_count++];
+    std::int32_t at = scratch_.contact_count++;
+    for (; at > 0 && scratch_.contact[at - 1].row > index; --at) {  // bound: kMaxContacts
+      scratch_.contact[at] = scratch_.contact[at - 1];
+    }
+    Contact& contact = scratch_.contact[at];
     contact = Contact{};
     contact.row = contact.point = index;
     contact.piece = tool_point.piece;
@@ -221,6 +259,9 @@ class Collider {
   RigidFrame now_, before_;  // of the piece being visited
   const Box root_;
   bool smooth_ = false;
+  const std::int32_t share_;  // of surface work
+  std::int32_t left_ = share_;
+  std::int32_t next_first_ = -1;  // first point held
 };
 
 // Tool point whose last surface point is nearest to where the region was, within the memory distance; or -1.
@@ -243,12 +284,19 @@ std::int32_t point_at(const Model& model, const State& state, const Region& regi
 
 void collide(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   scratch.contact_count = 0;
+  scratch.surface_work = 0;
   if (!is_finite(state.tool_w)) {
     for (PointState& point : state.point) forget(point);  // bound: kMaxToolPoints
     return;
   }
   Collider collider(model, state, scratch);
-  for (std::size_t i = 0; i < model.piece.size(); ++i) collider.visit(i);  // bound: kMaxPieces
+  // Where the last tick's share ended goes first, so that nobody waits twice.
+  const std::int32_t from = state.first_point;
+  for (const bool before : {false, true}) {  // bound: 2
+    if (before && from == 0) break;
+    for (std::size_t i = 0; i < model.piece.size(); ++i) collider.visit(i, from, before);  // bound: kMaxPieces
+  }
+  collider.finish();
   HighWater& high_water = state.high_water;
   if (scratch.contact_count > high_water.contacts) high_water.contacts = scratch.contact_count;
 }

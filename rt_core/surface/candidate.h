@@ -23,6 +23,7 @@ struct Candidate {
   Vec3 outward{};
   double ceiling = -1;
   std::int32_t shared[2] = {-1, -1};  // vertices of the edge or vertex the closest point lies on
+  std::int32_t looked = 0;            // boxes and triangles looked at
 
   // Single-precision bound no admissible box may exceed: 2^-20 covers the rounding of box_distance2 and of this
   // conversion, the constant (0.1 nm squared) the rounding of the exact distances themselves for bodies up to 100 m.
@@ -45,6 +46,7 @@ void raise_ceiling(const Surface& surface, Vec3 p, Candidate& best) PALPATE_RT;
 // Measures one triangle and keeps it when it is nearer, or as near with a lower index. Returns whether it was kept; the
 // ceiling is then out of date.
 inline bool keep_nearer(const Surface& surface, const Vec3& p, std::int32_t index, Candidate& best) PALPATE_RT {
+  best.looked += 1;
   const Triangle& t = surface.triangle[index];
   const Vec3* vertex = surface.vertex;
   const TrianglePoint at = closest_on_triangle(p, vertex[t.vertex[0]], vertex[t.vertex[1]], vertex[t.vertex[2]]);
@@ -71,6 +73,7 @@ inline void consider(const Surface& surface, const Vec3& p, std::int32_t index, 
   if (dot(surface.vertex[t.vertex[0]], n) <= ceiling && dot(surface.vertex[t.vertex[1]], n) <= ceiling &&
       dot(surface.vertex[t.vertex[2]], n) <= ceiling &&
       !(has_vertex(t, best.shared[0]) && has_vertex(t, best.shared[1]))) {
+    best.looked += 1;
     return;
   }
   measure(surface, p, index, best);
@@ -89,7 +92,8 @@ struct DescentResult {
 bool land(const Model& model, const Surface& surface, Vec3 p, Candidate& best) PALPATE_RT;
 
 // Improves `best`, whose distance2 bounds the search and whose ceiling is up to date, until no triangle is nearer.
-// Bound: kMaxQueryNodes nodes of four children, kMaxTraversalStack pending nodes.
+// Bound: kMaxQueryNodes nodes of four children, kMaxQueryTriangles and one node's triangles, kMaxTraversalStack pending
+// nodes.
 DescentResult descend(const Model& model, const Surface& surface, Vec3 p, Candidate& best) PALPATE_RT;
 
 }  // namespace palpate

@@ -120,10 +120,11 @@ bool search_ring(const Surface& surface, Vec3 p, Candidate& best) PALPATE_RT {
 
 // Improves `best`, which holds a measured triangle (its ceiling need not be up to date; it is afterwards when kNone is
 // returned). The proof rests on Triangle::clear_*: see measure_clearance in the scene compiler. The price does not
-// depend on the size of the mesh. Bound: kMaxWalk fans and two rings.
+// depend on the size of the mesh. Bound: kMaxWalk fans and two rings, kMaxWalkWork.
 Proof walk(const Surface& surface, Vec3 p, Candidate& best) PALPATE_RT {
   bool searched = false;  // a ring, without a certificate: dear, so a walk that needs a second gives up
-  for (std::int32_t step = 0; step < kMaxWalk; ++step) {
+  const std::int32_t most_looked = best.looked + kMaxWalkWork;
+  for (std::int32_t step = 0; step < kMaxWalk && best.looked < most_looked; ++step) {
     const std::int32_t centre = best.triangle;
     const Certificate found = certificate(surface, p, best);
     const bool convex = found == Certificate::kConvexOutside;
@@ -206,12 +207,14 @@ SurfacePoint closest_surface_point(const Model& model, Vec3 p, double search_rad
   if (proof == Proof::kNone) {
     const DescentResult descent = descend(model, surface, p, best);
     result.nodes = descent.nodes;
+    best.looked += descent.nodes;
     result.stack_high_water = descent.stack_high_water;
     result.lower_bound_m = descent.lower_bound_m;
     result.truncated = descent.truncated;
   } else {
     result.lower_bound_m = square_root(best.distance2);
   }
+  result.looked = best.looked;
   if (best.triangle != INT32_MAX) report(model, p, best, proof == Proof::kOutside, result);
   return result;
 }

@@ -13,12 +13,25 @@ namespace palpate {
 // equally far, need more. Past the cap the nearest point so far is returned, marked truncated:
 // Status::kTraversalTruncated.
 inline constexpr std::int32_t kMaxQueryNodes = 512;
+// Triangles one search of the hierarchy may look at. A fan of slivers puts thousands into boxes that all hold its
+// centre: on the axis of a cylinder of 600 thousand triangles a query took 240,128 instructions (2026-11-22).
+inline constexpr std::int32_t kMaxQueryTriangles = 512;
+// Triangles a walk over neighbours may look at before it gives up: 20 steps of ordinary fans.
+inline constexpr std::int32_t kMaxWalkWork = 256;
+// Boxes and triangles one query looks at in all: two walks and the fan or ring in which each gives up (3 kMaxFan), the
+// way down to a leaf, and the search with its last node's 16 triangles: 2 (256 + 72) + 68 + 512 + 512 + 16.
+inline constexpr std::int32_t kMaxQueryWork = 2048;
 // Distance below which p - closest is too short to have a direction: the pseudo-normal is used instead.
 inline constexpr double kDirectionFloor_m = 1e-9;
 
 // A closest point whose smallest barycentric weight exceeds this is safely inside its face or edge: rounding cannot put
 // it on a neighbour. The scene compiler checks it against each triangle before it sets Triangle::ring_convex.
 inline constexpr double kSafeInset = 1e-3;
+
+// What a tick of a scene may look at.
+inline std::int32_t surface_work_share(const ModelParams& params) PALPATE_RT {
+  return params.surface_work_max > 0 ? params.surface_work_max : kMaxSurfaceWork;
+}
 
 struct SurfacePoint {
   Vec3 closest_w;  // on the rest surface
@@ -28,6 +41,7 @@ struct SurfacePoint {
   std::int32_t triangle = -1;    // the lowest index among equally near triangles
   Feature feature = Feature::kFace;
   std::int32_t nodes = 0;             // hierarchy nodes searched; 0 when the neighbourhood gave the proof
+  std::int32_t looked = 0;            // boxes and triangles looked at, at most kMaxQueryWork
   std::int32_t stack_high_water = 0;  // traversal stack entries used
   bool found = false;                 // a surface point lies within search_radius_m
   bool truncated = false;             // stopped by a cap: a closer point may have been missed
@@ -36,7 +50,7 @@ struct SurfacePoint {
 // Closest rest-surface point within search_radius_m (any value; larger than 1e9 means unlimited) of p (world, m).
 // `warm_triangle` (or -1) only saves work: unless truncated, the answer is a function of p alone, because equally near
 // triangles are decided by index and no box or cone that could hold one is skipped. Sign by angle-weighted
-// pseudo-normals (Baerentzen & Aanaes 2005). A p that is not finite is not found. Bound: kMaxQueryNodes nodes.
+// pseudo-normals (Baerentzen & Aanaes 2005). A p that is not finite is not found. Bound: kMaxQueryWork.
 SurfacePoint closest_surface_point(const Model& model, Vec3 p, double search_radius_m,
                                    std::int32_t warm_triangle) PALPATE_RT;
 

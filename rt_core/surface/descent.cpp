@@ -109,8 +109,9 @@ class Descent {
     DescentResult result;
     Pending next{0, 0};
     std::int32_t opened = 0;
+    const std::int32_t most_looked = best_.looked + kMaxQueryTriangles;
     do {  // bound: kMaxQueryNodes
-      if (opened == kMaxQueryNodes) {
+      if (opened == kMaxQueryNodes || best_.looked >= most_looked) {
         overflow_distance2_ = min_of(overflow_distance2_, static_cast<double>(next.distance2));
         break;
       }
@@ -200,6 +201,7 @@ bool land(const Model& model, const Surface& surface, Vec3 p, Candidate& best) P
   for (std::int32_t level = 0; level < kMaxTraversalStack; ++level) {  // a level per step
     const BvhNode& node = model.bvh[static_cast<std::size_t>(at)];
     const Float4 distance2 = box_distance2(node, query);
+    best.looked += 1;
     int nearest = 0;
     for (int k = 1; k < 4; ++k) nearest = distance2[k] < distance2[nearest] ? k : nearest;  // bound: 4
     at = node.child[nearest];

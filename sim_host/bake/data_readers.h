@@ -20,6 +20,7 @@ namespace palpate {
   X(neighbourhood_law, "sim_host/view/surface_shape.cpp")      \
   X(neighbourhood_radius_m, "sim_host/view/surface_shape.cpp") \
   X(surface_size_m, "sim_host/view/rbf_surface.cpp")           \
+  X(stage_cost, "rt_core/stage_cost.cpp")                      \
   X(late_ticks_max, "hal/loop/loop.h")                         \
   X(stall_max_s, "hal/loop/loop.h")
 

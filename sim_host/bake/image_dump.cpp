@@ -38,6 +38,7 @@ void extend(Range& range, const BvhNode& node) {
   }
 }
 void extend(Range& range, const Anchor& a) { range.add(a.position_m); }
+void extend(Range& range, const StageCost& s) { range.add(s.instructions); }
 void extend(Range& range, const PatchWeight& p) {
   for (const double w : p.weight) range.add(w);
 }

@@ -113,6 +113,8 @@ StateFault check_articulation(const ArticulationState& a) noexcept {
 
 StateFault check_state(const Model& model, const State& state) noexcept {
   if (!is_laid_out_for(model, state)) return {"layout"};
+  if (state.first_point < 0 || (state.first_point > 0 && state.first_point >= model.sizes.n_tool_point))
+    return {"first_point"};
   const StateFault faults[] = {
       check_poses(state),        check_points(model, state), check_regions(state),
       check_nodes(model, state), check_safety(state.safety), check_articulation(state.articulation),

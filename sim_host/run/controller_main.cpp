@@ -21,11 +21,13 @@
 #include "hal/system/rt_linux.h"
 #include "hal/system/shared_memory.h"
 #include "rt_core/image.h"
+#include "rt_core/stage_cost.h"
 #include "sim_host/build_id.h"
 #include "sim_host/exit_codes.h"
 #include "sim_host/run/crash_file.h"
 #include "sim_host/run/heap_count.h"
 #include "sim_host/run/host_port.h"
+#include "sim_host/run/tick_fit.h"
 #include "sim_host/tick_memory.h"
 
 namespace palpate {
@@ -350,6 +352,17 @@ void print_usage(const LoopUsage& usage) {
   if (usage.heap_calls < 0) std::fprintf(stderr, "heap calls not counted\n");
 }
 
+// A real device is not driven by a machine on which the worst tick does not fit.
+void check_tick_fits(const Model& model, bool real) {
+  const TickFit fit{worst_tick_instructions(model), measure_instruction_ns(model), model.params.period_s};
+  std::fprintf(stderr, "%s\n", tick_fit_text(fit).c_str());
+  if (!fit.fits() && real) {
+    throw Failure{kUnavailable,
+                  "refused: the scene's worst tick does not fit its period on this machine; bake it with "
+                  "fewer tool.piece.points, a coarser body or a longer device.period_ms"};
+  }
+}
+
 int run(int argc, char** argv) {
   Arguments arguments = parse(argc, argv);
   const std::atomic<bool>& interrupted = install_stop_signals();
@@ -364,6 +377,7 @@ int run(int argc, char** argv) {
   DeviceBus bus(*transport, address.profile, address.node);
   const bool real = address.kind != TransportKind::kLoopback;
   arguments.require_rt = (arguments.require_rt || real) && !arguments.allow_no_rt && !arguments.virtual_time();
+  if (!arguments.virtual_time()) check_tick_fits(model, real);
   LoopUsage usage;
   MonotonicClock clock;
   const LoopSummary summary =

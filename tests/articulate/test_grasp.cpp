@@ -9,6 +9,7 @@
 #include <set>
 
 #include "config/hand/hand_model.h"
+#include "config/scene/config_error.h"
 #include "rt_core/tool/articulate.h"
 #include "sim_host/bake/scene_model.h"
 #include "sim_host/press/grasp_run.h"
@@ -355,7 +356,8 @@ stop_force_N = 100
 // Both pools overflow in one tick: far more points touch than contacts are kept, and those that are kept belong to
 // more jaws than there are regions. Two runs, one on dirty scratch memory, agree in every bit of every tick.
 TEST(GraspOverflow, ThousandsOfPointsAndTooManyRegionsDegradeDeterministically) {
-  const BakedScene scene(crowd(0.002, 10));
+  EXPECT_THROW(BakedScene{crowd(0.002, 10)}, ConfigError) << "the worst tick of so many does not fit a period of 1 ms";
+  const BakedScene scene(crowd(0.002, 10) + "[device]\nperiod_ms = 2\n");
   const Model& model = scene.model();
   ASSERT_EQ(model.sizes.n_tool_point, 2000);
   Bench a(model), b(model);

@@ -22,6 +22,10 @@ void play(const char* path) {
   const auto scratch = make_scratch(model);
   reset(*state);
   Output output;
+#define PALPATE_STAGE(name, function, shown, what) \
+  std::printf("bound %s %.0f\n", #function, model.stage_cost[static_cast<int>(Stage::name)].instructions);
+  PALPATE_STAGES(PALPATE_STAGE)
+#undef PALPATE_STAGE
   ScriptedHand hand(model);
   for (int i = 0; i < kScriptTicks; ++i) {
     const Input input = hand.next(output);

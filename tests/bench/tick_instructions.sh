@@ -45,6 +45,14 @@ count() {
   [ "$in_contact" -gt $((ticks / least_contact)) ] || { echo "only $in_contact of $ticks ticks touch the body: this proves nothing"; exit 1; }
 }
 
+# What the image states of each stage holds for every tick just counted; an image that states nothing proves nothing.
+within_bounds() {
+  awk '$1 == "bound" { bound[$2] = $3; next }
+    $1 in bound && $3 > bound[$1] { print "OVER THE IMAGE: " $1 " took " $3 ", it states " bound[$1]; bad = 1 }
+    $1 in bound { seen++ }
+    END { if (seen < 7) print "only " seen + 0 " stages have a bound"; exit bad || seen < 7 }' "$work/log" "$work/table"
+}
+
 status=0 least_contact=2
 if [ "$mode" = paths ]; then
   images=${3:?$usage} scenes=${4:?$usage} least_contact=3
@@ -62,6 +70,7 @@ elif [ "$mode" = scenes ]; then
     scene=$(basename "$file" .toml) budget=$(budget_of "$file")
     echo "== $scene"
     count "$images/$scene.pal"
+    within_bounds || status=1
     if [ "$worst" -le "$budget" ]; then verdict=ok; else verdict="OVER BUDGET" status=1; fi
     echo "worst tick $worst of $budget instructions: $verdict"
   done

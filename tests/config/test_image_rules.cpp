@@ -53,6 +53,20 @@ TEST(ImageRules, WhatOnlyTheLoaderChecksIsRefusedToo) {
   expect_words(refusal([&] { return scene; }), {"s.toml", "friction_beta", "outside its range"});
 }
 
+// A period has room for 3 instructions a nanosecond; what may take more is refused with both numbers.
+TEST(ImageRules, AWorstTickThatCannotFitItsPeriodIsRefused) {
+  const auto scene_of = [](const std::string& period_ms) {
+    return parse_scene(
+        "name = \"s\"\n[body]\nshape = \"sphere\"\n[[tool.piece]]\nshape = \"sphere\"\nradius_mm = 8\n"
+        "[device]\nperiod_ms = " +
+            period_ms + "\n",
+        "s.toml");
+  };
+  EXPECT_EQ(refusal([&] { return scene_of("1"); }), "accepted");
+  expect_words(refusal([&] { return scene_of("0.05"); }),
+               {"s.toml", "device.period_ms", "worst tick", "150000", "longer period"});
+}
+
 // The rules themselves, over a model.
 TEST(ImageRules, MethodsTakeTheirOwnFrictionAndPieces) {
   ToolPiece piece{};

@@ -8,9 +8,11 @@
 #include <fstream>
 #include <numbers>
 
+#include "config/body/body.h"
 #include "config/body/mesh_io.h"
 #include "config/body/self_intersection.h"
 #include "config/scene/config_error.h"
+#include "config/scene/scene.h"
 
 namespace palpate {
 namespace {
@@ -92,6 +94,34 @@ TEST(SelfIntersection, ASpikeThroughTheOppositeWallIsFound) {
   add_sphere(mesh, {}, 0.03, 20);
   mesh.vertex_m[400] = 1.2 * Vec3{-mesh.vertex_m[400].x, -mesh.vertex_m[400].y, -mesh.vertex_m[400].z};
   EXPECT_GT(find_self_intersections(mesh).pairs, 0);
+}
+
+// The baker refuses it, and says where: the spike leaves the sphere opposite its own vertex.
+TEST(SelfIntersection, ABodyThatGoesThroughItselfIsRefusedWithThePlace) {
+  SurfaceMesh mesh;
+  add_sphere(mesh, {}, 0.03, 20);
+  const auto scene_of = [&](const char* file) {
+    const std::string path = testing::TempDir() + file;
+    std::ofstream out(path);
+    for (const Vec3& v : mesh.vertex_m) out << "v " << v.x << ' ' << v.y << ' ' << v.z << '\n';
+    for (const Corners& t : mesh.triangle) out << "f " << t[0] + 1 << ' ' << t[1] + 1 << ' ' << t[2] + 1 << '\n';
+    SceneDesc scene = parse_scene("name = \"s\"\n[body]\nshape = \"mesh\"\nscale = 1.0\nmesh = \"" + path +
+                                      "\"\n[[tool.piece]]\nshape = \"sphere\"\nradius_mm = 8\n",
+                                  "s.toml");
+    return scene;
+  };
+  std::vector<std::string> warnings;
+  EXPECT_NO_THROW(make_body(scene_of("whole.obj"), warnings));
+  const Vec3 tip = 1.2 * -mesh.vertex_m[400];
+  mesh.vertex_m[400] = tip;
+  try {
+    make_body(scene_of("spike.obj"), warnings);
+    FAIL() << "a body that goes through itself was taken";
+  } catch (const ConfigError& error) {
+    const std::string text = error.what();
+    for (const char* word : {"s.toml:", "body.mesh", "goes through itself at (", "mm, triangle ", "mesh editor"})
+      EXPECT_NE(text.find(word), std::string::npos) << word << " in: " << text;
+  }
 }
 
 TEST(SelfIntersection, ASpentBudgetIsSaid) {

@@ -126,6 +126,13 @@ const Damage kDamages[] = {
      [](ImageBytes& i) { i.array<ToolPoint>(kToolPoint)->piece = 1; }},
     {"tool point weight", ImageError::kNotFinite, "tool_point",
      [](ImageBytes& i) { i.array<ToolPoint>(kToolPoint)->weight = kNan; }},
+    {"bound below what the tick may take", ImageError::kCombination, "stage_cost",
+     [](ImageBytes& i) { i.array<StageCost>(k_stage_cost)[static_cast<int>(Stage::kFindRows)].instructions *= 0.99; }},
+    {"bound of no number", ImageError::kCombination, "stage_cost",
+     [](ImageBytes& i) { i.array<StageCost>(k_stage_cost)[0].instructions = kNan; }},
+    {"share of work below its bound", ImageError::kCombination, "stage_cost",
+     [](ImageBytes& i) { i.params().surface_work_max = 1024, i.array<StageCost>(k_stage_cost)[2].instructions = 6e5; }},
+    {"stages missing", ImageError::kSizeRange, "n_stage", [](ImageBytes& i) { i.sizes().n_stage = 6; }},
     {"tool point place", ImageError::kNotFinite, "tool_point.position_tool_m",
      [](ImageBytes& i) { i.array<ToolPoint>(kToolPoint)->position_tool_m.x = 1e13; }},
 };

@@ -8,6 +8,7 @@
 
 #include "config/bake/nodal_body.h"
 #include "config/bake/tool_points.h"
+#include "config/bake/worst_tick.h"
 #include "config/fem/tet_procedural.h"
 #include "rt_core/contact/nodes/node_problem.h"
 #include "rt_core/image.h"
@@ -62,6 +63,7 @@ class NodalScene {
     image.piece = tool.piece;
     image.tool_point = tool.point;
     image.hull_vertex_m = tool.hull_vertex_m;
+    state_costs(0, image);
     const std::vector<std::byte> bytes = write_image(image);
     bytes_ = std::make_unique<ImageBytes>(bytes.size());
     std::memcpy(bytes_->bytes().data(), bytes.data(), bytes.size());

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "rt_core/image.h"
+#include "rt_core/stage_cost.h"
 
 namespace palpate::test {
 
@@ -92,6 +93,7 @@ inline ImageBytes tiny_image(bool nodal = false) {
     sizes.n_compliance_f64 = 144;
     sizes.n_strain_gauge = 72;
   }
+  sizes.n_stage = kStageCount;
   sizes.n_vertex = 4;
   sizes.n_triangle = 4;
   sizes.n_bvh = 1;
@@ -145,6 +147,12 @@ inline ImageBytes tiny_image(bool nodal = false) {
     }
     for (int i = 0; i < 9; ++i) image.array<double>(kCompliance64)[13 * i] = 1e-4;
     for (int i = 0; i < 72; ++i) image.array<float>(kStrainGauge)[i] = 1e-3f;
+  }
+  Model model;
+  model.params = image.params();
+  model.sizes = image.sizes();
+  for (int i = 0; i < kStageCount; ++i) {
+    image.array<StageCost>(k_stage_cost)[i] = {least_stage_cost(model, static_cast<Stage>(i))};
   }
   image.seal();
   return image;
