@@ -239,7 +239,7 @@ ImageResult check_method(const Model& model) noexcept {
 ImageResult check_arrays(const Model& model) noexcept {
   using Check = ImageResult (*)(const Model&) noexcept;
   constexpr Check kChecks[] = {check_owners, check_surface,      check_hierarchy, check_skeleton, check_beams,
-                               check_tool,   check_articulation, check_corners,   check_method,   check_cost};
+                               check_tool,   check_articulation, check_corners,   check_method};
   for (const Check check : kChecks)
     if (const ImageResult result = check(model); result.error != ImageError::kNone) return result;
   const ImageResult data = contact_method(method_of(model)).check_data(model);
