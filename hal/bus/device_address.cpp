@@ -1,6 +1,7 @@
 #include "hal/bus/device_address.h"
 
 #include <charconv>
+#include <cstdlib>
 
 #include "hal/bus/loopback.h"
 #include "hal/bus/socketcan.h"
@@ -72,6 +73,13 @@ std::optional<DeviceAddress> parse_device_address(const std::string& text, std::
   }
   line += address.profile == WireProfile::kFd ? ", CAN FD frames" : ", classic CAN frames";
   return address;
+}
+
+std::string lock_name(const DeviceAddress& address) {
+  if (address.kind == TransportKind::kLoopback) return "";
+  if (address.kind == TransportKind::kCan) return "can-" + address.name + "-node" + std::to_string(address.node);
+  const std::unique_ptr<char, void (*)(void*)> full(realpath(address.name.c_str(), nullptr), std::free);
+  return "usb" + std::string(full ? full.get() : address.name.c_str());
 }
 
 std::unique_ptr<Transport> open_transport(const DeviceAddress& address, DeviceSide side, int timeout_ms,

@@ -23,6 +23,10 @@ struct DeviceAddress {
 // is allowed; otherwise `line` says in one line what was chosen and why.
 std::optional<DeviceAddress> parse_device_address(const std::string& text, std::string& line, std::string& error);
 
+// What tells it from every other device of this computer, for DeviceLock (hal/system/device_lock.h); "" for the
+// loopback, whose socket is exclusive by itself.
+std::string lock_name(const DeviceAddress& address);
+
 // kObserver: as the controller, but on CAN every frame of the bus is received, to say what came instead of a sample.
 enum class DeviceSide : int { kController = 0, kDevice = 1, kObserver = 2 };
 

@@ -7,6 +7,7 @@
 
 #include "hal/bus/device_address.h"
 #include "hal/loop/clock.h"
+#include "hal/system/device_lock.h"
 #include "sim_host/cli.h"
 #include "sim_host/doctor/device_test.h"
 
@@ -19,6 +20,14 @@ int run_device_test(const std::string& device) {
   const std::optional<DeviceAddress> address = parse_device_address(device, line, error);
   if (!address) throw std::runtime_error(error);
   fmt::print("{}\n", line);
+  DeviceLock lock;  // two that command one node are both obeyed, in turn
+  if (const std::string name = lock_name(*address); !name.empty()) {
+    lock = DeviceLock::take(name, error);
+    if (!lock) {
+      fmt::print(stderr, "palpate: {}\n", error);
+      return kExitUnavailable;
+    }
+  }
   constexpr int kTimeout_ms = 10'000;
   const std::unique_ptr<Transport> transport = open_transport(*address, DeviceSide::kController, kTimeout_ms, error);
   if (!transport) {

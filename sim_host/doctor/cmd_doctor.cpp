@@ -32,7 +32,9 @@ int print_summary(const std::vector<DoctorItem>& items) {
 void add_doctor_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("doctor", "Check this machine and the device's bus for hard real time");
-  command->add_option("--device", options->device, "device address: loopback, can:IFACE, usb:/dev/hidrawN")
+  command
+      ->add_option("--device", options->device,
+                   "device address: loopback, can:IFACE, usb:/dev/hidrawN, with ,classic and ,node=N")
       ->capture_default_str();
   command->add_option("--cpu", options->cpu, "CPU the controller will run on");
   command->add_option("--priority", options->priority, "SCHED_FIFO priority of the loop")

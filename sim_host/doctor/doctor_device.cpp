@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include <fmt/format.h>
+#include "hal/bus/device_address.h"
 #include "sim_host/doctor/doctor.h"
 #include "sim_host/doctor/doctor_files.h"
 
@@ -50,7 +51,7 @@ bool is_interface_name(const std::string& name) {
   });
 }
 
-std::vector<DoctorItem> examine_can(const DoctorSources& s, const std::string& name) {
+std::vector<DoctorItem> examine_can(const DoctorSources& s, const std::string& name, WireProfile profile) {
   if (!is_interface_name(name)) return {judged("CAN interface", false, name, "give an interface name such as can0")};
   const json links = json::parse(s.run(fmt::format("ip -details -json link show {}", name)), nullptr, false);
   if (!links.is_array() || links.empty()) {
@@ -70,9 +71,10 @@ std::vector<DoctorItem> examine_can(const DoctorSources& s, const std::string& n
   items.push_back(
       judged("queue discipline", qdisc == "pfifo_fast" || qdisc == "noqueue", qdisc.empty() ? "none" : qdisc,
              fmt::format("tc qdisc replace dev {} root pfifo_fast   (fq_codel drops frames silently)", name)));
-  items.push_back(judged("MTU for CAN FD", mtu == 72 ? std::optional(true) : std::nullopt, fmt::format("{}", mtu),
-                         "classic frames only: " + down +
-                             fmt::format("ip link set {} up type can bitrate 1000000 dbitrate 5000000 fd on", name)));
+  if (profile == WireProfile::kFd)
+    items.push_back(judged("MTU for CAN FD", mtu == 72 ? std::optional(true) : std::nullopt, fmt::format("{}", mtu),
+                           "classic frames only (can:IFACE,classic): " + down +
+                               fmt::format("ip link set {} up type can bitrate 1000000 dbitrate 5000000 fd on", name)));
   if (is_virtual) return items;
   const long bitrate = data.value("/bittiming/bitrate"_json_pointer, 0L);
   const long restart = data.value("restart_ms", 0L);
@@ -99,8 +101,11 @@ std::vector<DoctorItem> examine_usb(const DoctorSources& s, const std::string& p
 }  // namespace
 
 std::vector<DoctorItem> examine_device(const DoctorSources& s, const std::string& device) {
-  if (device.rfind("can:", 0) == 0) return examine_can(s, device.substr(4));
-  if (device.rfind("usb:", 0) == 0) return examine_usb(s, device.substr(4));
+  std::string line, error;
+  const std::optional<DeviceAddress> address = parse_device_address(device, line, error);
+  if (!address) return {judged("device " + device, false, error, "palpate run --help")};
+  if (address->kind == TransportKind::kCan) return examine_can(s, address->name, address->profile);
+  if (address->kind == TransportKind::kUsb) return examine_usb(s, address->name);
   return {judged("device " + device, true, "simulated: nothing to check on a bus", "")};
 }
 

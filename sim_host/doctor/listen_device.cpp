@@ -3,6 +3,7 @@
 #include "hal/bus/device_address.h"
 #include "hal/bus/link_report.h"
 #include "hal/loop/clock.h"
+#include "hal/system/device_lock.h"
 #include "sim_host/doctor/doctor.h"
 
 namespace palpate {
@@ -11,6 +12,11 @@ std::vector<DoctorItem> listen_to_device(const std::string& device) {
   std::string line, error;
   const std::optional<DeviceAddress> address = parse_device_address(device, line, error);
   if (!address || (address->kind == TransportKind::kLoopback && address->name == DeviceAddress{}.name)) return {};
+  DeviceLock lock;
+  if (const std::string name = lock_name(*address); !name.empty()) {
+    lock = DeviceLock::take(name, error);
+    if (!lock) return {{"device answers", Verdict::kUnknown, error, "ask again when nothing drives it"}};
+  }
   constexpr int kTimeout_ms = 2000;
   const std::unique_ptr<Transport> transport = open_transport(*address, DeviceSide::kObserver, kTimeout_ms, error);
   if (!transport) return {{"device answers", Verdict::kFail, error, "palpate device-test says more once it opens"}};

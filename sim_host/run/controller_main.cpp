@@ -165,19 +165,6 @@ void check_bus(const DeviceAddress& address, double period_s) {
   if (!verdict.fits) throw Failure{kUnavailable, "the bus cannot carry this traffic in every period"};
 }
 
-// A real device has one controller at a time.
-DeviceLock lock_device(const DeviceAddress& address) {
-  if (address.kind == TransportKind::kLoopback) return {};
-  const std::unique_ptr<char, void (*)(void*)> full(realpath(address.name.c_str(), nullptr), std::free);
-  const std::string name = address.kind == TransportKind::kCan
-                               ? "can-" + address.name + "-node" + std::to_string(address.node)
-                               : "usb" + std::string(full ? full.get() : address.name.c_str());
-  std::string error;
-  DeviceLock lock = DeviceLock::take(name, error);
-  if (!lock) throw Failure{kUnavailable, error};
-  return lock;
-}
-
 std::unique_ptr<Transport> connect_device(const Arguments& arguments, double period_s, DeviceAddress& address,
                                           DeviceLock& lock) {
   std::string line, error;
@@ -186,7 +173,11 @@ std::unique_ptr<Transport> connect_device(const Arguments& arguments, double per
   address = *parsed;
   std::fprintf(stderr, "%s\n", line.c_str());
   check_bus(address, period_s);
-  lock = lock_device(address);
+  // A real device has one controller at a time.
+  if (const std::string name = lock_name(address); !name.empty()) {
+    lock = DeviceLock::take(name, error);
+    if (!lock) throw Failure{kUnavailable, error};
+  }
   std::unique_ptr<Transport> transport =
       arguments.device_fd >= 0 ? adopt_loopback(arguments.device_fd, error)
                                : open_transport(address, DeviceSide::kController, 5 * kSocketTimeout_ms, error);

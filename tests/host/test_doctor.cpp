@@ -3,6 +3,8 @@
 
 #include <fstream>
 
+#include "hal/bus/device_address.h"
+#include "hal/system/device_lock.h"
 #include "sim_host/doctor/doctor.h"
 
 namespace palpate::test {
@@ -117,6 +119,35 @@ TEST_F(MadeUpMachine, CanCardOfTheLoopIsJudged) {
   for (const char* name : {"CAN interface can0", "queue discipline", "bit rate",
                            "stays bus-off until the operator acts", "short transmit queue"})
     EXPECT_EQ(find(items, name)->verdict, Verdict::kFail) << name;
+}
+
+// An address as `palpate run` takes it; classic frames need no FD.
+TEST_F(MadeUpMachine, TheAddressMayHaveOptions) {
+  for (const char* address : {"can:can0,classic", "can:can0,classic,node=3", "can:can0,node=15"}) {
+    const std::vector<DoctorItem> items = examine_device(sources_, address);
+    EXPECT_EQ(find(items, "CAN interface can0")->verdict, Verdict::kPass) << address;
+    EXPECT_EQ(find(items, "MTU for CAN FD") == nullptr, std::string(address).find("classic") != std::string::npos);
+  }
+  const std::vector<DoctorItem> wrong = examine_device(sources_, "can:can0,clasic");
+  EXPECT_EQ(wrong[0].verdict, Verdict::kFail);
+  EXPECT_NE(wrong[0].found.find("clasic"), std::string::npos) << wrong[0].found;
+}
+
+// Two that command one node are both obeyed: whoever has the device keeps it.
+TEST(DeviceInUse, IsSaidByDoctorAndDeviceTest) {
+  std::string error;
+  const DeviceLock held = DeviceLock::take("can-palpatetest0-node7", error);
+  ASSERT_TRUE(held) << error;
+  const std::vector<DoctorItem> heard = listen_to_device("can:palpatetest0,node=7");
+  ASSERT_EQ(heard.size(), 1u);
+  EXPECT_EQ(heard[0].verdict, Verdict::kUnknown);
+  EXPECT_NE(heard[0].found.find("is in use by"), std::string::npos) << heard[0].found;
+  EXPECT_EQ(listen_to_device("can:palpatetest0,node=6")[0].found.find("is in use by"), std::string::npos);
+  DeviceAddress usb;
+  usb.kind = TransportKind::kUsb;
+  usb.name = "/dev/./null";
+  EXPECT_EQ(lock_name(usb), "usb/dev/null") << "one lock for every name of a device";
+  EXPECT_EQ(lock_name({}), "");
 }
 
 TEST_F(MadeUpMachine, UnknownInterfacesAndNamesThatAreNoneFail) {
