@@ -2,52 +2,24 @@
 // Usage: output_hash IMAGE...
 #include <cstdint>
 #include <cstdio>
-#include <cstring>
 #include <exception>
 #include <memory>
 
 #include "rt_core/tick.h"
 #include "sim_host/tick_memory.h"
 #include "tests/support/image_file.h"
+#include "tests/support/output_hash.h"
 #include "tests/support/scripted_hand.h"
 
 namespace palpate::test {
 namespace {
-
-class Hash {
- public:
-  void add(std::uint64_t word) {
-    value_ = (value_ ^ word) * 0x9E3779B97F4A7C15ull;
-    value_ ^= value_ >> 29;
-  }
-  void add(Real value) {
-    std::uint64_t word = 0;
-    std::memcpy(&word, &value, sizeof(word));
-    add(word);
-  }
-  void add(const Vec3& v) { add(v.x), add(v.y), add(v.z); }
-  void add(const Wrench& w) { add(w.force_N), add(w.torque_Nm); }
-  std::uint64_t value() const { return value_; }
-
- private:
-  std::uint64_t value_ = 0;
-};
-
-void add(const Output& o, Hash& hash) {
-  for (const Wrench& w : {o.device_w, o.contact_w, o.palm_w}) hash.add(w);
-  hash.add(o.tool_w.position_m);
-  for (const Real x : {o.penetration_m, o.energy_J, o.residual_m, o.strain, o.ramp}) hash.add(x);
-  hash.add(static_cast<std::uint64_t>(o.status) << 32 | o.fault);
-  hash.add(static_cast<std::uint64_t>(o.mode));
-  hash.add(static_cast<std::uint64_t>(o.regions) << 32 | static_cast<std::uint32_t>(o.contacts));
-}
 
 std::uint64_t play(const Model& model) {
   const StatePtr state = make_state(model);
   const ScratchPtr scratch = make_scratch(model);
   Output output;
   ScriptedHand hand(model);
-  Hash hash;
+  OutputHash hash;
   for (int i = 0; i < kScriptTicks; ++i) {
     tick(model, *state, *scratch, hand.next(output), output);
     add(output, hash);

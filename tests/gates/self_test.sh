@@ -64,6 +64,30 @@ source_gate pass links docs/a.md '[a](a.md) [b](https://example.org/x.md) [c](a.
 source_gate fail links docs/a.md '[a](missing.md)\n'
 source_gate fail links rt_core/a.cpp '// see docs/missing.md\n'
 
+documented() { # FAULTS.MD ROW, SECURITY.MD ROW, EXIT_CODES.MD ROW: a tree with one test, one fault, one verdict
+  tree sample tests/hal/a.cpp 'TEST(Silence, Latches) { run("0.8 silence 1"); EXPECT(Fault::kSilent); }\n'
+  mkdir -p "$work/sample/docs" "$work/sample/hal" "$work/sample/sim_host/run"
+  printf '#define PALPATE_FAULT_BITS(X) X(kSilent, 1)\n\n' >"$work/sample/rt_core/status.h"
+  printf 'raise(Fault::kSilent);\n' >"$work/sample/hal/b.cpp"
+  printf '{"stale", share(a, b)}\n' >"$work/sample/sim_host/run/verdict.cpp"
+  printf '%s\n' "$1" >"$work/sample/docs/faults.md"
+  printf '| attack | answer | test |\n|---|---|---|\n%s\n\n' "$2" >"$work/sample/docs/security.md"
+  printf '%s\n' "$3" >"$work/sample/docs/exit_codes.md"
+}
+fault_row='| cable out (`silence 1`) | `kSilent` |' attack_row='| silence | a fault | `Silence.Latches` |' verdict_row='| `stale` | 1 % |'
+documented "$fault_row" "$attack_row" "$verdict_row"
+expect pass "doc_tests on documents that agree" "$gates/doc_tests.sh" "$work/sample"
+documented "$fault_row" '| silence | a fault | `Silence.Lasts` |' "$verdict_row"
+expect fail "doc_tests on a test that does not exist" "$gates/doc_tests.sh" "$work/sample"
+documented "$fault_row" '| silence | a fault | none |' "$verdict_row"
+expect fail "doc_tests on an attack without a test" "$gates/doc_tests.sh" "$work/sample"
+documented '| cable out (`deaf 2`) | `kSilent` |' "$attack_row" "$verdict_row"
+expect fail "doc_tests on a script nobody plays" "$gates/doc_tests.sh" "$work/sample"
+documented '| cable out (`silence 1`) | a fault |' "$attack_row" "$verdict_row"
+expect fail "doc_tests on a fault nobody explains" "$gates/doc_tests.sh" "$work/sample"
+documented "$fault_row" "$attack_row" ''
+expect fail "doc_tests on a verdict nobody explains" "$gates/doc_tests.sh" "$work/sample"
+
 compile() { "$compiler" -std=c++20 -O1 -fPIC "$@"; }
 archive() { # NAME TEXT
   printf '%b' "$2" >"$work/$1.cpp"

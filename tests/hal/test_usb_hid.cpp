@@ -4,6 +4,7 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -76,6 +77,30 @@ TEST(UsbHid, AFullQueueIsReportedAsOverflow) {
   Frame got[kMaxFramesPerReceive];
   EXPECT_EQ(controller.receive(got), kHidrawQueue);
   EXPECT_EQ(controller.counters().overflow, 1u);
+}
+
+// The two halves of a command belong together: after the first was refused the second stays here too. A pending error
+// of a socket makes exactly one write fail.
+TEST(UsbHid, TheSecondHalfIsNotSentWhenTheFirstFailed) {
+  const int sender = socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK, 0), probe = socket(AF_INET, SOCK_DGRAM, 0);
+  sockaddr_in at{};
+  at.sin_family = AF_INET;
+  at.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof at;
+  ASSERT_EQ(bind(probe, reinterpret_cast<sockaddr*>(&at), size), 0);
+  ASSERT_EQ(getsockname(probe, reinterpret_cast<sockaddr*>(&at), &size), 0);
+  close(probe);  // nobody listens at this port for a moment
+  ASSERT_EQ(connect(sender, reinterpret_cast<const sockaddr*>(&at), sizeof at), 0);
+  ASSERT_EQ(write(sender, "x", 1), 1);  // answered by "refused", which the next write reports
+  const int listener = socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK, 0);
+  ASSERT_EQ(bind(listener, reinterpret_cast<const sockaddr*>(&at), sizeof at), 0);
+  UsbHid controller(sender, UsbSide::kController);
+  const Frame halves[2] = {frame_of(0x101, 16), frame_of(0x102, 16)};
+  EXPECT_EQ(controller.send(halves), 0);
+  EXPECT_EQ(controller.counters().send_dropped, 2u);
+  std::uint8_t report[100];
+  EXPECT_EQ(read(listener, report, sizeof report), -1) << "a half command went out";
+  close(listener);
 }
 
 TEST(UsbHid, UnpluggingIsNoticedOnBothSides) {

@@ -234,14 +234,22 @@ TEST(Recording, FullDiskIsReportedAndDoesNotStopTheRun) {
   ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &tight), 0);
   TickRecord record = record_of(2);
   for (int i = 0; i < 1000; ++i) ring.write(record);
-  recorder.start();
+  testing::internal::CaptureStderr();
+  recorder.drain();
+  const std::string at_once = testing::internal::GetCapturedStderr();
+  testing::internal::CaptureStderr();
+  for (int i = 0; i < 1000; ++i) ring.write(record);
   recorder.stop();
+  const std::string later = testing::internal::GetCapturedStderr();
   setrlimit(RLIMIT_FSIZE, &before);
   std::signal(SIGXFSZ, old_handler);
   EXPECT_FALSE(std::filesystem::exists(path)) << "only a complete recording gets its name";
   std::filesystem::remove(path + kPartSuffix);
   EXPECT_NE(recorder.error().find("cannot write"), std::string::npos) << recorder.error();
-  EXPECT_EQ(recorder.records(), 1000u);  // it kept listening
+  EXPECT_EQ(recorder.records(), 2000u);  // it kept listening
+  EXPECT_NE(at_once.find("recording stops here, the run goes on: "), std::string::npos) << "'" << at_once << "'";
+  EXPECT_NE(at_once.find("cannot write"), std::string::npos) << at_once;
+  EXPECT_EQ(later, "") << "said once";
 }
 
 }  // namespace

@@ -113,6 +113,20 @@ TEST(Verdict, OneLostRecordFails) {
   EXPECT_EQ(failing(run_with([](std::uint64_t, TickRecord&) {}), {1, true, false}), "lost");
 }
 
+// The figure that README and laboratory quote: from the planned wake-up, not from the late one.
+TEST(RunSummaryTimes, DeadlineToSentBeginsAtTheDeadline) {
+  const RunSummary summary = run_with([](std::uint64_t, TickRecord& r) {
+    r.timing = {};
+    r.timing.wake_latency_ns = 100'000;
+    r.timing.receive_ns = 10'000;
+    r.timing.compute_ns = 20'000;
+    r.timing.transmit_ns = 5'000;
+    r.timing.publish_ns = 1'000'000;  // after it was sent
+  });
+  EXPECT_EQ(summary.sent.max_ns, 135'000);
+  EXPECT_EQ(summary.wake.max_ns, 100'000);
+}
+
 TEST(Verdict, TextNamesShareAndLimit) {
   const RunSummary summary = run_with([](std::uint64_t i, TickRecord& r) { r.input.stale_ticks = i % 2; });
   EXPECT_THAT(

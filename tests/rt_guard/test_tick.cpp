@@ -22,6 +22,8 @@ namespace palpate::test {
 namespace {
 
 constexpr int kTicks = 100000;
+constexpr const char* kScenes[] = {"ellipsoid_mallet", "heart_compass", "tools_on_cylinder",
+                                   "snap_in",          "pinch_block",   "grasp_cylinder_5"};
 
 // All the memory of a controller, allocated and touched before the first tick.
 struct Bench {
@@ -69,13 +71,29 @@ TEST_P(EveryScene, TicksWithoutHeapLockOrPageFault) {
   EXPECT_GT(in_contact, kTicks / 2) << "the script must touch the body most of the time to prove anything";
 }
 
+// Every method of contact and every kind of tool is among them: a method that none of these scenes has is unguarded.
+TEST(GuardedScenes, HaveEveryMethodAndEveryKindOfTool) {
+  unsigned methods = 0, tools = 0;
+  for (const char* scene : kScenes) {
+    const ImageFile image(std::string(PALPATE_IMAGE_DIR) + "/" + scene + ".pal");
+    methods |= bit_of(method_of(image.model().params));
+    tools |= 1u << static_cast<unsigned>(image.model().params.articulation);
+  }
+  unsigned all = 0;
+#define PALPATE_METHOD(name, word) all |= bit_of(Method::name);
+  PALPATE_METHODS(PALPATE_METHOD)
+#undef PALPATE_METHOD
+  EXPECT_EQ(methods, all);
+  EXPECT_EQ(tools, (1u << ChoiceOf<Articulation>::kCount) - 1);
+}
+
 TEST_P(EveryScene, TicksWithoutSystemCall) {
   Bench bench(GetParam());
   const int call = first_system_call([&bench] { bench.play(kTicks); });
   EXPECT_EQ(call, -1) << "first system call, by number (see ausyscall or asm/unistd_64.h)";
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, EveryScene, testing::Values("ellipsoid_mallet", "heart_compass"),
+INSTANTIATE_TEST_SUITE_P(Scenes, EveryScene, testing::ValuesIn(kScenes),
                          [](const auto& scene) { return std::string(scene.param); });
 
 TEST(Guard, CountsHeapUse) {
