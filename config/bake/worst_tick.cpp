@@ -93,6 +93,12 @@ class Adversary {
     for (int t = 0; t < ticks; ++t) {
       tick(model_, state_, scratch_, input, output);
       if (t > 1) most = std::max(most, scratch_.surface_work);
+      // As deep as the law reaches, and back: what the hand holds deeper may wait a tick.
+      if (output.penetration_m > model_.params.max_depth_m) {
+        drift = -drift;
+        input.pose_w.position_m += (2 * step_m) * drift;
+        continue;
+      }
       if (random_() % 8 == 0) drift = direction();
       if (random_() % 8 == 0) spin = direction();
       input.pose_w.position_m += (step_m * uniform(0, 1)) * drift;

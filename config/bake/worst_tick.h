@@ -20,7 +20,8 @@ struct TickCost {
 void state_costs(std::int32_t worst_work, ImageContents& image);
 
 // The same for what an adversary finds who moves the tool: touching and inside the body, along its edges and towards
-// its middle, as fast as the scene's device may move. Fixed seed. The image must be sound and allow kMaxSurfaceWork.
+// its middle, as deep as the contact law reaches and as fast as the scene's device may move. Fixed seed. The image must
+// be sound and allow kMaxSurfaceWork.
 TickCost bake_costs(ImageContents& image);
 
 // Why no ordinary computer can tick this scene in its period; "" when one can.

@@ -345,7 +345,7 @@ void print_usage(const LoopUsage& usage) {
 
 // A real device is not driven by a machine on which the worst tick does not fit.
 void check_tick_fits(const Model& model, bool real) {
-  const TickFit fit{worst_tick_instructions(model), measure_instruction_ns(model), model.params.period_s};
+  const TickFit fit{worst_tick_instructions(model), measure_slowest_tick_ns(model), model.params.period_s};
   std::fprintf(stderr, "%s\n", tick_fit_text(fit).c_str());
   if (!fit.fits() && real) {
     throw Failure{kUnavailable,
