@@ -88,6 +88,25 @@ expect fail "doc_tests on a fault nobody explains" "$gates/doc_tests.sh" "$work/
 documented "$fault_row" "$attack_row" ''
 expect fail "doc_tests on a verdict nobody explains" "$gates/doc_tests.sh" "$work/sample"
 
+figures() { # DAY MEASURED, DAY OF THE CODE, COMMAND IN THE README: a checkout with one figure
+  rm -rf "$work/figures"
+  mkdir -p "$work/figures/rt_core" "$work/figures/tests/bench"
+  printf '| what it guarantees | measured | by |\n|---|---|---|\n| fast | 3 us | `%s` |\n\n' "$3" >"$work/figures/README.md"
+  printf '3 us | %s | ./run bench | rt_core\n' "$1" >"$work/figures/tests/bench/figures.txt"
+  printf 'int x;\n' >"$work/figures/rt_core/a.cpp"
+  (cd "$work/figures" && git init -q && git add -A &&
+    GIT_COMMITTER_DATE="$2T12:00:00" git -c user.name=gate -c user.email=gate@example.org commit -q -m figures)
+}
+figures 2026-01-02 2026-01-01 './run bench'
+expect pass "figures on a figure younger than its code" "$gates/../bench/figures.sh" "$work/figures"
+figures 2026-01-01 2026-01-02 './run bench'
+expect fail "figures on a figure older than its code" "$gates/../bench/figures.sh" "$work/figures"
+figures 2026-01-02 2026-01-01 'a stopwatch'
+expect fail "figures on a figure without its command" "$gates/../bench/figures.sh" "$work/figures"
+figures 2026-01-02 2026-01-01 './run bench'
+printf 'int y;\n' >"$work/figures/rt_core/a.cpp"
+expect fail "figures on code changed since" "$gates/../bench/figures.sh" "$work/figures"
+
 compile() { "$compiler" -std=c++20 -O1 -fPIC "$@"; }
 archive() { # NAME TEXT
   printf '%b' "$2" >"$work/$1.cpp"
