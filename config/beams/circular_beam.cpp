@@ -251,12 +251,6 @@ PolarStress arc_stress_paper(const ArcSection& section, Real f1_N, Real f2_N, Re
   return {f.radial_per_m * amplitude, f.hoop_per_m * amplitude, 0};
 }
 
-PolarStrain polar_strain(const BeamMaterial& material, const PolarStress& stress) PALPATE_RT {
-  const Real per_e = 1.0 / material.youngs_modulus_Pa, nu = material.poisson_ratio;
-  return {per_e * (stress.radial_Pa - nu * stress.hoop_Pa), per_e * (stress.hoop_Pa - nu * stress.radial_Pa),
-          2.0 * (1.0 + nu) * per_e * stress.shear_Pa};
-}
-
 PolarVector arc_displacement(const ArcSection& section, const BeamMaterial& material, Real angle, const ArcLoad& load,
                              Real r_m, Real theta) PALPATE_RT {
   if (!(is_usable(section) && r_m > 0 && material.youngs_modulus_Pa > 0)) return {};

@@ -34,9 +34,6 @@ inline ArcLoad tip_force(Real radial_N, Real tangential_N, Real radius_m) PALPAT
 struct PolarStress {
   Real radial_Pa = 0, hoop_Pa = 0, shear_Pa = 0;
 };
-struct PolarStrain {
-  Real radial = 0, hoop = 0, shear = 0;  // shear = gamma = 2 epsilon_r_theta
-};
 struct PolarVector {
   Real radial_m = 0, tangential_m = 0;
 };
@@ -65,9 +62,6 @@ PolarStress arc_stress(const ArcSection& section, const ArcLoad& load, Real r_m,
 // The stresses as printed in the circular-beam paper (2009, section III.A): those of a force through the centre, with
 // the sign of its tangential part reversed, no shear, no couple. Per unit thickness there; divided by t here.
 PolarStress arc_stress_paper(const ArcSection& section, Real f1_N, Real f2_N, Real r_m, Real theta) PALPATE_RT;
-
-// Plane-stress strains. (The paper's first radial strain prints D1/(r (1 - nu)) for (1 - nu) D1/r.)
-PolarStrain polar_strain(const BeamMaterial& material, const PolarStress& stress) PALPATE_RT;
 
 // Displacement at (r, theta) with the clamp of Timoshenko & Goodier: u = v = dv/dr = 0 at the middle radius of the
 // section theta = angle. Strains follow from it by eps_r = du/dr, eps_theta = u/r + (dv/dtheta)/r, gamma =

@@ -88,9 +88,6 @@ std::size_t tet_edge(std::size_t corner_a, std::size_t corner_b) {
   return 0;
 }
 
-bool Tet::is_linear() const {
-  return std::all_of(node.begin() + 4, node.end(), [](std::int32_t i) { return i < 0; });
-}
 bool Tet::is_quadratic() const {
   return std::all_of(node.begin() + 4, node.end(), [](std::int32_t i) { return i >= 0; });
 }

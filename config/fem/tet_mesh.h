@@ -26,7 +26,6 @@ std::size_t tet_edge(std::size_t corner_a, std::size_t corner_b);
 // Nodes 0-3: corners, with (1-0) x (2-0) . (3-0) > 0. Node 4+e: the middle node of edge e, or -1.
 struct Tet {
   std::array<std::int32_t, 10> node{-1, -1, -1, -1, -1, -1, -1, -1, -1, -1};
-  bool is_linear() const;
   bool is_quadratic() const;
 };
 

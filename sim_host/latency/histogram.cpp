@@ -17,17 +17,5 @@ std::int64_t percentile_ns(const Histogram& histogram, double fraction) {
   return histogram.max_ns;  // the rank lies among the overflows
 }
 
-void merge(Histogram& to, const Histogram& from) {
-  if (from.total == 0) return;
-  for (std::int32_t bucket = 0; bucket < kHistogramBuckets; ++bucket) to.count[bucket] += from.count[bucket];
-  to.min_ns = to.total == 0 ? from.min_ns : std::min(to.min_ns, from.min_ns);
-  if (to.total == 0 || from.max_ns > to.max_ns) {
-    to.max_ns = from.max_ns;
-    to.cycle_of_max = from.cycle_of_max;
-  }
-  to.sum_ns += from.sum_ns;
-  to.overflow += from.overflow;
-  to.total += from.total;
-}
 
 }  // namespace palpate

@@ -66,7 +66,5 @@ inline void add(Histogram& histogram, std::int64_t value_ns, std::uint64_t cycle
 // Smallest value not below `fraction` (0..1) of all values, within one bucket width: the upper edge of its bucket, kept
 // within [min, max]. 0 for an empty histogram. Nearest-rank definition: rank = ceil(fraction * total), at least 1.
 std::int64_t percentile_ns(const Histogram& histogram, double fraction);
-// Adds all of `from` to `to`.
-void merge(Histogram& to, const Histogram& from);
 
 }  // namespace palpate

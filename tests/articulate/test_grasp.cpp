@@ -13,9 +13,9 @@
 #include "rt_core/tool/articulate.h"
 #include "sim_host/bake/scene_model.h"
 #include "sim_host/press/grasp_run.h"
-#include "sim_host/record/state_dump.h"
 #include "tests/support/baked_scene.h"
 #include "tests/support/roomy.h"
+#include "tests/support/state_difference.h"
 
 namespace palpate::test {
 namespace {

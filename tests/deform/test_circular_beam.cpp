@@ -10,6 +10,17 @@
 namespace palpate {
 namespace {
 
+// Plane stress; shear = gamma = 2 epsilon_r_theta. (The paper's first radial strain prints D1/(r (1 - nu)) for
+// (1 - nu) D1/r.)
+struct PolarStrain {
+  double radial = 0, hoop = 0, shear = 0;
+};
+PolarStrain polar_strain(const BeamMaterial& material, const PolarStress& stress) {
+  const double per_e = 1.0 / material.youngs_modulus_Pa, nu = material.poisson_ratio;
+  return {per_e * (stress.radial_Pa - nu * stress.hoop_Pa), per_e * (stress.hoop_Pa - nu * stress.radial_Pa),
+          2.0 * (1.0 + nu) * per_e * stress.shear_Pa};
+}
+
 const BeamMaterial kRubber{3e6, 0.47};
 // The worked example: a = 30 mm, b = 40 mm, t = 10 mm.
 const ArcSection kExample{30e-3, 40e-3, 10e-3};

@@ -70,21 +70,5 @@ TEST(Histogram, CountsWhatItCannotHold) {
   EXPECT_EQ(percentile_ns(*std::make_unique<Histogram>(), 0.5), 0);
 }
 
-TEST(Histogram, MergingEqualsAddingAll) {
-  auto a = std::make_unique<Histogram>(), b = std::make_unique<Histogram>(), all = std::make_unique<Histogram>();
-  std::mt19937_64 random(7);
-  for (std::uint64_t i = 0; i < 3000; ++i) {
-    const auto value = static_cast<std::int64_t>(random() % 100'000);
-    add(i % 3 == 0 ? *a : *b, value, i);
-    add(*all, value, i);
-  }
-  merge(*a, *b);
-  EXPECT_TRUE(std::equal(std::begin(a->count), std::end(a->count), std::begin(all->count)));
-  EXPECT_EQ(a->total, all->total);
-  EXPECT_EQ(a->min_ns, all->min_ns);
-  EXPECT_EQ(a->max_ns, all->max_ns);
-  EXPECT_EQ(a->sum_ns, all->sum_ns);
-}
-
 }  // namespace
 }  // namespace palpate

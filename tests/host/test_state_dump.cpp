@@ -4,6 +4,7 @@
 
 #include "sim_host/record/state_dump.h"
 #include "tests/support/roomy.h"
+#include "tests/support/state_difference.h"
 
 namespace palpate {
 namespace {
@@ -12,11 +13,11 @@ TEST(StateDump, NamesTheFirstFieldThatDiffers) {
   const StatePtr a = test::roomy_state();
   a->region[3].id = 7;
   a->nodal.count = 3;
-  EXPECT_EQ(first_state_difference(*a, *copy_of(*a)), "");
+  EXPECT_EQ(test::first_state_difference(*a, *copy_of(*a)), "");
   const auto named = [&](auto change) {
     const StatePtr b = copy_of(*a);
     change(*b);
-    return first_state_difference(*a, *b);
+    return test::first_state_difference(*a, *b);
   };
   EXPECT_EQ(named([](State& s) { s.tick += 1; }), "tick");
   EXPECT_EQ(named([](State& s) { s.device_previous_w.position_m.z = 1e-300; }), "device_previous_w");
