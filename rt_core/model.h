@@ -96,18 +96,18 @@ namespace palpate {
   X(std::int32_t, late_ticks_max, "ticks", 2, 1000, "ticks in a row that each missed deadlines: a fault")     \
   X(double, stall_max_s, "s", 1e-3, 1, "deadlines missed at one go for so long: a fault")
 
-// G(title, parameters): the groups, for dumps and documents.
-#define PALPATE_PARAM_GROUPS(G)                                           \
-  G("the tick, and which method finds contact", PALPATE_METHOD_PARAMS)    \
-  G("the body", PALPATE_BODY_PARAMS)                                      \
-  G("tool points with springs", PALPATE_POINT_PARAMS)                     \
-  G("whole tips and tables", PALPATE_TIP_PARAMS)                          \
-  G("nodes of a finite-element body", PALPATE_NODE_PARAMS)                \
-  G("friction", PALPATE_FRICTION_PARAMS)                                  \
-  G("regions, and how they influence one another", PALPATE_REGION_PARAMS) \
-  G("the shape as drawn, and beams", PALPATE_SKELETON_PARAMS)             \
-  G("articulated tools", PALPATE_JOINT_PARAMS)                            \
-  G("coupling to the device, and safety", PALPATE_DEVICE_PARAMS)
+// G(title, parameters, methods that read them): the groups, for dumps and documents.
+#define PALPATE_PARAM_GROUPS(G)                                                    \
+  G("the tick, and which method finds contact", PALPATE_METHOD_PARAMS, kOfAll)     \
+  G("the body", PALPATE_BODY_PARAMS, kOfAll)                                       \
+  G("tool points with springs", PALPATE_POINT_PARAMS, kOfPoints)                   \
+  G("whole tips and tables", PALPATE_TIP_PARAMS, kOfTips)                          \
+  G("nodes of a finite-element body", PALPATE_NODE_PARAMS, kOfNodes)               \
+  G("friction", PALPATE_FRICTION_PARAMS, kOfAll)                                   \
+  G("regions, and how they influence one another", PALPATE_REGION_PARAMS, kOfAll)  \
+  G("the shape as drawn, and beams", PALPATE_SKELETON_PARAMS, kOfPoints | kOfTips) \
+  G("articulated tools", PALPATE_JOINT_PARAMS, kOfAll)                             \
+  G("coupling to the device, and safety", PALPATE_DEVICE_PARAMS, kOfAll)
 #define PALPATE_MODEL_PARAMS(X) \
   PALPATE_METHOD_PARAMS(X)      \
   PALPATE_BODY_PARAMS(X)        \

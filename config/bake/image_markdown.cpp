@@ -31,7 +31,7 @@ std::string image_markdown() {
   text += "\n### Parameters\n";
 #define PALPATE_FIELD(type, name, unit, lowest, highest, meaning) \
   text += "| `" #name "` | " #type " | " unit " | " + range_of<type>(lowest, highest) + " | " meaning " |\n";
-#define PALPATE_GROUP(title, PARAMS)                                                                   \
+#define PALPATE_GROUP(title, PARAMS, methods)                                                          \
   text += "\nOf " title ":\n\n| parameter | type | unit | range | meaning |\n|---|---|---|---|---|\n"; \
   PARAMS(PALPATE_FIELD)
   PALPATE_PARAM_GROUPS(PALPATE_GROUP)

@@ -6,6 +6,8 @@
 #include <iterator>
 #include <string_view>
 
+#include "rt_core/contact/contact.h"
+#include "rt_core/stage_cost.h"
 #include "rt_core/state.h"
 #include "rt_core/tool/articulate.h"
 #include "sim_host/bake/data_readers.h"
@@ -38,16 +40,26 @@ std::string stage_note(const Model& model, std::string_view stage) {
   return "";
 }
 
+// What a declared reader reads besides, a tick of this scene reads too: triangles where tool points are measured on
+// them, beams and anchors where coupling asks for skeletons.
+bool is_read_by_tick(const Model& model, std::string_view name) {
+  if (name == "triangle") return method_of(model) != Method::kNodes;
+  const bool of_skeleton = name == "anchor" || name == "rbf_inverse" || name.starts_with("beam_");
+  return of_skeleton && model.params.coupling_law == CouplingLaw::kTemporalPaper;
+}
+
 // Who reads an array: the tick, unless the table of readers names another.
-std::string readers_of(const char* name) {
+std::string readers_of(const Model& model, const char* name) {
   for (const DataReader& r : kDataReaders)
-    if (std::strcmp(r.name, name) == 0) return std::string("host: ") + r.reader;
+    if (std::strcmp(r.name, name) == 0)
+      return fmt::format("{}{}", is_read_by_tick(model, name) ? "tick, " : "host: ", r.reader);
   return "tick";
 }
 
-std::string array_row(const char* name, std::size_t elements, std::size_t bytes, const char* meaning) {
+std::string array_row(const Model& model, const char* name, std::size_t elements, std::size_t bytes,
+                      const char* meaning) {
   if (elements == 0) return "";
-  return fmt::format("  {:<16}{:>10}{:>12}  {:<36}{}\n", name, elements, bytes, readers_of(name), meaning);
+  return fmt::format("  {:<16}{:>10}{:>12}  {:<42}{}\n", name, elements, bytes, readers_of(model, name), meaning);
 }
 
 // A choice by its word, where it has words.
@@ -65,7 +77,7 @@ std::string law_row(const char* name, T value, const char* unit, double highest,
   constexpr double kMostChoices = 8;
   if constexpr (std::is_same_v<T, double>) return "";
   if (std::strcmp(unit, "-") != 0 || highest > kMostChoices) return "";
-  return fmt::format("  {:<18}{:<18}{}\n", name, value_text(value), meaning);
+  return fmt::format("  {:<18}{:<26}{}\n", name, value_text(value), meaning);
 }
 
 }  // namespace
@@ -75,19 +87,29 @@ std::string explain(const Model& model, std::int32_t budget_instructions) {
       "scene   {}: {} triangles, {} pieces with {} points, {} anchors\nmethod  {}\n\nstages\n", model.name,
       model.triangle.size(), model.piece.size(), model.tool_point.size(), model.anchor.size(), method_text(model));
   const auto out = std::back_inserter(text);
+  fmt::format_to(out, "  {:<12}{:>12}\n", "", "at most");
   for (std::int32_t i = 0; i < kStageCount; ++i) {
     const char* name = stage_name(static_cast<Stage>(i));
-    fmt::format_to(out, "  {:<12}{}\n", name, stage_note(model, name));
+    fmt::format_to(out, "  {:<12}{:>12.0f}  {}\n", name, model.stage_cost[static_cast<std::size_t>(i)].instructions,
+                   stage_note(model, name));
   }
+  fmt::format_to(out, "  {:<12}{:>12.0f}  instructions: the bound that baker, loader and controller hold it to\n",
+                 "tick", worst_tick_instructions(model));
   text += "\nlaws and choices\n";
+  const unsigned own = bit_of(method_of(model));
 #define PALPATE_ROW(type, field, unit, lowest, highest, meaning) \
   text += law_row(#field, model.params.field, unit, static_cast<double>(highest), meaning);
-  PALPATE_MODEL_PARAMS(PALPATE_ROW)
+#define PALPATE_GROUP(title, PARAMS, methods) \
+  if (((methods)&own) != 0) {                 \
+    PARAMS(PALPATE_ROW)                       \
+  }
+  PALPATE_PARAM_GROUPS(PALPATE_GROUP)
+#undef PALPATE_GROUP
 #undef PALPATE_ROW
   std::size_t bytes = 0;
-  text += "\narrays            elements       bytes  read by                             meaning\n";
-#define PALPATE_ROW(type, field, count, frame, meaning)                             \
-  text += array_row(#field, model.field.size(), model.field.size_bytes(), meaning); \
+  text += "\narrays            elements       bytes  read by                                   meaning\n";
+#define PALPATE_ROW(type, field, count, frame, meaning)                                    \
+  text += array_row(model, #field, model.field.size(), model.field.size_bytes(), meaning); \
   bytes += model.field.size_bytes();
   PALPATE_MODEL_ARRAYS(PALPATE_ROW)
 #undef PALPATE_ROW

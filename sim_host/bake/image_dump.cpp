@@ -96,8 +96,8 @@ std::string image_dump(const ImageHeader& header, const Model& model) {
   const auto out = std::back_inserter(text);
 #define PALPATE_ROW(type, field, unit, lowest, highest, meaning) \
   fmt::format_to(out, "  {:<26}{:>18}  {:<11}{}\n", #field, value_text(model.params.field), unit, meaning);
-#define PALPATE_GROUP(title, PARAMS)      \
-  fmt::format_to(out, " of {}\n", title); \
+#define PALPATE_GROUP(title, PARAMS, methods) \
+  fmt::format_to(out, " of {}\n", title);     \
   PARAMS(PALPATE_ROW)
   PALPATE_PARAM_GROUPS(PALPATE_GROUP)
 #undef PALPATE_GROUP
