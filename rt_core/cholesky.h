@@ -1,5 +1,7 @@
 // In-place Cholesky factorisation of small symmetric positive definite systems. Own code rather than Eigen's because
-// Eigen 3.4's blocked solvers reach its allocating stack-buffer path, which the non-blocking analysis refuses.
+// Eigen 3.4's blocked solvers reach its allocating stack-buffer path, which the non-blocking analysis refuses. Inner
+// loops are unrolled: a tick solves two systems of six, and half of them was counting (700 to 1,100 instructions a
+// tick, 2026-11-22). The order of the sums, and so the bits, stay.
 #pragma once
 
 #include <cstdint>
@@ -14,6 +16,7 @@ inline bool cholesky_factor(Real* a, std::int32_t n) PALPATE_RT {
   for (std::int32_t j = 0; j < n; ++j) {
     Real diagonal = a[j * n + j];
     const Real scale = diagonal;
+#pragma GCC unroll 6
     for (std::int32_t k = 0; k < j; ++k) diagonal -= a[j * n + k] * a[j * n + k];
     if (!(diagonal > 1e-14 * scale && diagonal < kHuge * kHuge)) return false;
     const Real pivot = square_root(diagonal);
@@ -21,6 +24,7 @@ inline bool cholesky_factor(Real* a, std::int32_t n) PALPATE_RT {
     const Real inverse = 1.0 / pivot;
     for (std::int32_t i = j + 1; i < n; ++i) {
       Real sum = a[i * n + j];
+#pragma GCC unroll 6
       for (std::int32_t k = 0; k < j; ++k) sum -= a[i * n + k] * a[j * n + k];
       a[i * n + j] = sum * inverse;
     }
@@ -32,11 +36,13 @@ inline bool cholesky_factor(Real* a, std::int32_t n) PALPATE_RT {
 inline void cholesky_solve(const Real* factor, Real* b, std::int32_t n) PALPATE_RT {
   for (std::int32_t i = 0; i < n; ++i) {
     Real sum = b[i];
+#pragma GCC unroll 6
     for (std::int32_t k = 0; k < i; ++k) sum -= factor[i * n + k] * b[k];
     b[i] = sum / factor[i * n + i];
   }
   for (std::int32_t i = n - 1; i >= 0; --i) {
     Real sum = b[i];
+#pragma GCC unroll 6
     for (std::int32_t k = i + 1; k < n; ++k) sum -= factor[k * n + i] * b[k];
     b[i] = sum / factor[i * n + i];
   }

@@ -17,8 +17,8 @@ bool usable(const State& state, const Contact& contact) PALPATE_RT {
   return contact.depth_m > 0 && contact.depth_m + size <= kHuge;
 }
 
-// A region out of contact exerts nothing but remembers its stretch until its slot is freed (a bounce keeps its friction
-// history); an empty slot remembers nothing.
+// A region without a usable contact exerts nothing but remembers its stretch until its slot is freed (a bounce keeps
+// its friction history). Empty slots hold nothing and are left alone.
 void clear_force(Region& region) PALPATE_RT {
   region.normal_force_N = 0;
   region.friction_force_w = {};
@@ -26,20 +26,6 @@ void clear_force(Region& region) PALPATE_RT {
   region.depth_equivalent_m = 0;
   region.energy_J = 0;
   region.tangent_N_per_m = 0;
-  if (region.id != 0) return;
-  region.stretch_w = {};
-  region.tangential_k_N_per_m = 0;
-  region.friction = FrictionMode::kFree;
-  region.lean_normal_tool = {};
-}
-
-// Regions without a usable contact exert nothing.
-void clear_idle_regions(State& state, const RowsByRegion& rows) PALPATE_RT {
-  bool busy[kMaxRegions] = {};
-  for (std::int32_t r = 0; r < rows.regions; ++r) busy[rows.slot[r]] = true;  // bound: kMaxRegions
-  for (std::int32_t s = 0; s < kMaxRegions; ++s) {                            // bound: kMaxRegions
-    if (!busy[s]) clear_force(state.region[s]);
-  }
 }
 
 // Distance along `normal` from `centre` to the rest surface, seen from one of its points: on a sphere or a plane the
@@ -120,7 +106,9 @@ void sort_rows(State& state, Scratch& scratch) PALPATE_RT {
   for (std::int32_t i = 0; i < contacts; ++i) {  // bound: kMaxContacts
     if (region_of[i] >= 0) rows.index[next_in[region_of[i]]++] = i;
   }
-  clear_idle_regions(state, rows);
+  for (std::int32_t s = 0; s < kMaxRegions; ++s) {  // bound: kMaxRegions
+    if (count_in[s] == 0 && state.region[s].is_live()) clear_force(state.region[s]);
+  }
 }
 
 RegionCentre region_centre(const RegionRows& rows, Vec3 fallback_normal) PALPATE_RT {

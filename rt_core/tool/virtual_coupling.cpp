@@ -14,7 +14,7 @@ bool solve(const Model& model, const double (&contact_stiffness)[36], const Wren
   const Vec3 f = wrench.force_N, m = wrench.torque_Nm;
   Real x[kDof] = {f.x, f.y, f.z, m.x, m.y, m.z};
   Real matrix[kDof * kDof];
-  for (std::int32_t i = 0; i < kDof * kDof; ++i) matrix[i] = contact_stiffness[i];
+  __builtin_memcpy(matrix, contact_stiffness, sizeof matrix);
   for (std::int32_t i = 0; i < 3; ++i) {
     matrix[i * (kDof + 1)] += model.params.coupling_N_per_m;
     matrix[(i + 3) * (kDof + 1)] += model.params.coupling_Nm_per_rad;
