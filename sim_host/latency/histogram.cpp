@@ -17,5 +17,4 @@ std::int64_t percentile_ns(const Histogram& histogram, double fraction) {
   return histogram.max_ns;  // the rank lies among the overflows
 }
 
-
 }  // namespace palpate

@@ -22,7 +22,7 @@ status=0
 for name in "$@"; do
   work=$(mktemp -d)
   log=$work/log
-  # A second a run is a hang; 2 GiB is a leak.
+  # 20 seconds over one input is a hang; 2 GiB is a leak.
   "$root/build/fuzz/tests/fuzz/fuzz_$name" -max_total_time="$seconds" -timeout=20 -rss_limit_mb=2048 -verbosity=1 \
     -artifact_prefix="$findings/$name-" -print_final_stats=1 "$work" "$here/corpus/$name" >"$log" 2>&1
   code=$?
