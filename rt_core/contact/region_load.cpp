@@ -182,6 +182,17 @@ void slide(const Model& model, const State& state, Scratch& scratch, const Frict
   add_tangential_stiffness(scratch.stiffness, friction, region.normal_w, arm);
 }
 
+void rub_tips(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
+  for (std::int32_t r = 0; r < scratch.rows.regions; ++r) {  // bound: kMaxRegions
+    Region& region = state.region[scratch.rows.slot[r]];
+    region.depth_equivalent_m = region.depth_max_m;
+    FrictionLoad rub;
+    rub.tangent_N_per_m = region.tangent_N_per_m;
+    slide(model, state, scratch, friction_parameters(model.params), rows_of(scratch, r), rub, region);
+  }
+  sum_up(model, state, scratch);
+}
+
 void sum_up(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   for (std::int32_t r = 0; r < scratch.rows.regions; ++r) {  // bound: kMaxRegions
     const Region& region = state.region[scratch.rows.slot[r]];

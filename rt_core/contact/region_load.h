@@ -110,6 +110,9 @@ void press_regions(const Laws& laws, State& state, Scratch& scratch) PALPATE_RT 
 void slide(const Model& model, const State& state, Scratch& scratch, const FrictionParameters& parameters,
            const RegionRows& rows, FrictionLoad& load, Region& region) PALPATE_RT;
 
+// Friction of whole tips, region by region, with the spring of their normal stiffness; then sum_up.
+void rub_tips(const Model& model, State& state, Scratch& scratch) PALPATE_RT;
+
 // Sums of all regions in contact: wrench, energy, tangent stiffness; and where the tool goes under them.
 void sum_up(const Model& model, State& state, Scratch& scratch) PALPATE_RT;
 

@@ -74,6 +74,9 @@ void group_points(const Model& model, State& state, Scratch& scratch, StillTouch
 
 // Rows of points and tips: tool points on the rest surface, as a god-object's proxies (touch.cpp).
 
+// A point whose gap is below this is measured every tick, so that its first contact starts warm; a point farther off is
+// measured again only once it can have come this close.
+inline constexpr double kSearchMargin_m = 0.5e-3;
 // Closest rest-surface point of every tool point that can have reached it. Writes state.point (but region),
 // scratch.contact, contact_count, foot. Bound: n_tool_point hierarchy queries. Status: kContactsDropped,
 // kTraversalTruncated, kFootHeld.

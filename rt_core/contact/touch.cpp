@@ -1,5 +1,6 @@
 #include "rt_core/contact/regions.h"
 
+#include "rt_core/surface/body_box.h"
 #include "rt_core/surface/closest_point.h"
 #include "rt_core/surface/overlap.h"
 #include "rt_core/surface/smooth_foot.h"
@@ -9,9 +10,6 @@ namespace palpate {
 
 namespace {
 
-// A point whose gap is below this is measured every tick, so that its first contact starts warm; a point farther off is
-// measured again only once it can have come this close.
-constexpr double kSearchMargin_m = 0.5e-3;
 // Points up to this much farther off are measured in turn, one of kTurns each tick. A tool that comes near moves all
 // its points by the same distance, and without turns they would all be due, and cold, in the same tick.
 constexpr double kRefreshMargin_m = 2e-3;
@@ -19,29 +17,6 @@ constexpr std::uint64_t kTurns = 8;
 // Cosine of the largest turn of the normal in one tick that still counts as the same face: a tip at 0.5 m/s turns by
 // less than a degree per tick even on a body of 20 mm.
 constexpr double kSameFace = 0.5;
-
-struct Box {
-  Vec3 lower, upper;
-};
-
-Box root_box(const Model& model) PALPATE_RT {
-  Box box{{kHuge, kHuge, kHuge}, {-kHuge, -kHuge, -kHuge}};
-  const BvhNode& root = model.bvh[0];
-  for (int k = 0; k < 4; ++k) {  // bound: 4
-    if (root.child[k] < 0 && root.count[k] == 0) continue;
-    const auto low = [&](int axis) PALPATE_RT { return static_cast<Real>(root.lower_m[axis][k]); };
-    const auto high = [&](int axis) PALPATE_RT { return static_cast<Real>(root.upper_m[axis][k]); };
-    box.lower = {min_of(box.lower.x, low(0)), min_of(box.lower.y, low(1)), min_of(box.lower.z, low(2))};
-    box.upper = {max_of(box.upper.x, high(0)), max_of(box.upper.y, high(1)), max_of(box.upper.z, high(2))};
-  }
-  return box;
-}
-
-Real distance_to(const Box& box, Vec3 p) PALPATE_RT {
-  return norm({max_of(max_of(box.lower.x - p.x, p.x - box.upper.x), 0.0),
-               max_of(max_of(box.lower.y - p.y, p.y - box.upper.y), 0.0),
-               max_of(max_of(box.lower.z - p.z, p.z - box.upper.z), 0.0)});
-}
 
 // The last surface measurement does not hold: measure at the next opportunity.
 void forget(PointState& point) PALPATE_RT {

@@ -3,6 +3,7 @@
 #include "rt_core/contact/contact.h"
 #include "rt_core/contact/region_load.h"
 #include "rt_core/contact/regions.h"
+#include "rt_core/contact/tips/tip_check.h"
 #include "rt_core/contact/tips/travel.h"
 #include "rt_core/image_check.h"
 
@@ -154,26 +155,46 @@ void solve(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   press_regions(load, state, scratch);
 }
 
-void account(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
-  for (std::int32_t r = 0; r < scratch.rows.regions; ++r) {  // bound: kMaxRegions
-    Region& region = state.region[scratch.rows.slot[r]];
-    region.depth_equivalent_m = region.depth_max_m;
-    FrictionLoad rub;
-    rub.tangent_N_per_m = region.tangent_N_per_m;
-    slide(model, state, scratch, friction_parameters(model.params), rows_of(scratch, r), rub, region);
+// Curves: knots strictly ascending from zero, whole rows, forces that start at zero and never fall.
+ImageResult check_tables(const Model& model) noexcept {
+  const std::size_t knots = model.knot.size();
+  if (knots < 2 || model.knot[0] != 0) return broken("knot", 0);
+  for (std::size_t i = 1; i < knots; ++i)
+    if (!(model.knot[i] > model.knot[i - 1] && model.knot[i] < kHuge)) return not_finite("knot", i);
+  if (model.response.empty() || model.response.size() % knots != 0) return broken("n_response", 0);
+  const bool root = model.params.response_root == 1;
+  for (std::size_t i = 0; i < model.response.size(); ++i) {
+    const ResponseKnot& r = model.response[i];
+    const bool first = i % knots == 0;
+    if (!(r.force_N >= 0 && r.force_N < kHuge && r.slope >= 0 && r.slope < kHuge && is_finite(r.energy_J)))
+      return not_finite("response", i);
+    // In the root of the depth a slope at zero would be an infinite stiffness.
+    if (first ? r.force_N != 0 || (root && r.slope != 0) : r.force_N < model.response[i - 1].force_N)
+      return broken("response", i);
   }
-  sum_up(model, state, scratch);
+  if (model.vertex_response.size() != model.vertex_m.size()) return broken("vertex_response", 0);
+  for (std::size_t i = 0; i < model.vertex_response.size(); ++i)
+    if (!in_range(model.vertex_response[i], model.response.size() / knots)) return broken("vertex_response", i);
+  return {};
 }
 
-// One point a piece: the room the steps have.
-ImageResult check_tool(const Model& model) noexcept {
+ImageResult check_data(const Model& model) noexcept {
+  if (model.params.response_law == ResponseLaw::kTip) return check_tip_laws(model);
+  if (model.corner_normal.empty()) return broken("n_corner", 0);
+  return check_tables(model);
+}
+
+}  // namespace
+
+ImageResult check_tip_points(const Model& model) noexcept {
   for (std::size_t i = 0; i < model.piece.size(); ++i)
     if (model.piece[i].point_count > 1) return not_together("piece.tip_points", i);
   return {};
 }
 
-// Factor tables and the range of each tip law, so that the tick may index and divide.
 ImageResult check_tip_laws(const Model& model) noexcept {
+  if (model.corner_normal.empty()) return broken("n_corner", 0);
+  if (model.tip_law.size() != model.piece.size()) return broken("n_tip_law", 0);
   for (std::size_t i = 0; i < model.tip_law.size(); ++i) {
     const TipLaw& law = model.tip_law[i];
     if (law.half_power < 2 || law.half_power > 4) return broken("tip_law.half_power", i);
@@ -199,38 +220,6 @@ ImageResult check_tip_laws(const Model& model) noexcept {
   return {};
 }
 
-// Curves: knots strictly ascending from zero, whole rows, forces that start at zero and never fall.
-ImageResult check_tables(const Model& model) noexcept {
-  const std::size_t knots = model.knot.size();
-  if (knots < 2 || model.knot[0] != 0) return broken("knot", 0);
-  for (std::size_t i = 1; i < knots; ++i)
-    if (!(model.knot[i] > model.knot[i - 1] && model.knot[i] < kHuge)) return not_finite("knot", i);
-  if (model.response.empty() || model.response.size() % knots != 0) return broken("n_response", 0);
-  const bool root = model.params.response_root == 1;
-  for (std::size_t i = 0; i < model.response.size(); ++i) {
-    const ResponseKnot& r = model.response[i];
-    const bool first = i % knots == 0;
-    if (!(r.force_N >= 0 && r.force_N < kHuge && r.slope >= 0 && r.slope < kHuge && is_finite(r.energy_J)))
-      return not_finite("response", i);
-    // In the root of the depth a slope at zero would be an infinite stiffness.
-    if (first ? r.force_N != 0 || (root && r.slope != 0) : r.force_N < model.response[i - 1].force_N)
-      return broken("response", i);
-  }
-  if (model.vertex_response.size() != model.vertex_m.size()) return broken("vertex_response", 0);
-  for (std::size_t i = 0; i < model.vertex_response.size(); ++i)
-    if (!in_range(model.vertex_response[i], model.response.size() / knots)) return broken("vertex_response", i);
-  return {};
-}
-
-ImageResult check_data(const Model& model) noexcept {
-  if (model.corner_normal.empty()) return broken("n_corner", 0);
-  if (model.params.response_law != ResponseLaw::kTip) return check_tables(model);
-  if (model.tip_law.size() != model.piece.size()) return broken("n_tip_law", 0);
-  return check_tip_laws(model);
-}
-
-}  // namespace
-
-const ContactMethod tips_method{find_rows, solve, account, check_tool, check_data};
+const ContactMethod tips_method{find_rows, solve, rub_tips, check_tip_points, check_data};
 
 }  // namespace palpate

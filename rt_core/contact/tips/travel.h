@@ -18,6 +18,7 @@ struct Tip {
   TableLaw table;
   bool tabulated = false;
   Real depth_m = 0;  // travel
+  Real scale = 1;    // of the local law: a curved body's place is softer or stiffer
 };
 
 LawPoint tip_at(const Tip& tip, Real e_m) PALPATE_RT;

@@ -1,0 +1,146 @@
+// The search behind smooth_foot(), for any surface with the mesh's triangles: at rest, or carried by an elastic body.
+#pragma once
+
+#include "rt_core/limits.h"
+#include "rt_core/surface/smooth_foot.h"
+
+namespace palpate::foot {
+
+// An area coordinate this far below zero still counts as on the edge.
+inline constexpr Real kOutside = 1e-9;
+// Newton has converged when neither the foot nor the height moves by more than this: far below an atom.
+inline constexpr Real kStill_m = 1e-14;
+
+struct Corners {
+  Vec3 v[3], u[3];
+};
+
+// Place on one triangle: area coordinates 1 - b - c, b, c, and distance t along the mixed normal.
+struct Place {
+  Real b = 0, c = 0, t = 0;
+};
+
+// One linearisation of the projection, and the step that solves it.
+struct Step {
+  bool usable = false;
+  Vec3 normal, along_b, along_c;  // gradients of b and c with respect to p
+  Real db = 0, dc = 0, dt = 0;
+};
+
+inline Step newton_step(const Corners& k, Vec3 p, const Place& at) PALPATE_RT {
+  const Vec3 e1 = k.v[1] - k.v[0], e2 = k.v[2] - k.v[0], u1 = k.u[1] - k.u[0], u2 = k.u[2] - k.u[0];
+  Step step;
+  step.normal = k.u[0] + at.b * u1 + at.c * u2;
+  const Vec3 rest = k.v[0] + at.b * e1 + at.c * e2 - at.t * step.normal - p;
+  const Vec3 x = e1 - at.t * u1, y = e2 - at.t * u2, xy = cross(x, y);
+  const Real jacobian = dot(xy, step.normal), flat = dot(cross(e1, e2), step.normal);
+  if (!(flat > 0 && jacobian > kLeastJacobian * flat)) return step;
+  const Real inverse = 1.0 / jacobian;
+  step.along_b = inverse * cross(y, step.normal);
+  step.along_c = inverse * cross(step.normal, x);
+  step.db = -dot(rest, step.along_b);
+  step.dc = -dot(rest, step.along_c);
+  step.dt = inverse * dot(rest, xy);
+  step.usable = true;
+  return step;
+}
+
+// Edge to cross: that of the most negative coordinate; -1 when the foot is inside. Edge k joins corners k and k + 1, so
+// it is left through the coordinate of corner k + 2.
+inline int edge_to_cross(const Place& at) PALPATE_RT {
+  const Real a = 1.0 - at.b - at.c;
+  const Real least = min_of(min_of(a, at.b), at.c);
+  if (least >= -kOutside) return -1;
+  return least == at.c ? 0 : least == a ? 1 : 2;
+}
+
+// The triangle across an edge, or -1 where the smooth surface ends there: its normals differ on the two sides.
+inline std::int32_t across(const Model& model, std::int32_t triangle, int edge) PALPATE_RT {
+  const Triangle& t = model.triangle[static_cast<std::size_t>(triangle)];
+  const CornerNormals& here = model.corner_normal[static_cast<std::size_t>(triangle)];
+  const std::int32_t next = t.adjacent[edge];
+  if (next < 0) return -1;
+  const Triangle& n = model.triangle[static_cast<std::size_t>(next)];
+  const CornerNormals& normals = model.corner_normal[static_cast<std::size_t>(next)];
+  for (int end = 0; end < 2; ++end) {  // bound: 2 x 3
+    const int corner = (edge + end) % 3;
+    for (int k = 0; k < 3; ++k) {
+      if (n.vertex[k] == t.vertex[corner] && !(normals.normal[k] == here.normal[corner])) return -1;
+    }
+  }
+  return next;
+}
+
+// Area coordinates on another triangle of the point nearest to `foot` in its plane.
+inline Place place_on(const Corners& k, Vec3 foot, Real t) PALPATE_RT {
+  const Vec3 e1 = k.v[1] - k.v[0], e2 = k.v[2] - k.v[0], d = foot - k.v[0], n = cross(e1, e2);
+  const Real square = squared_norm(n);
+  if (!(square > 0)) return {1.0 / 3, 1.0 / 3, t};
+  return {dot(cross(d, e2), n) / square, dot(cross(e1, d), n) / square, t};
+}
+
+inline Vec3 flat_foot(const Corners& k, const Place& at) PALPATE_RT {
+  return k.v[0] + at.b * (k.v[1] - k.v[0]) + at.c * (k.v[2] - k.v[0]);
+}
+
+inline SmoothFoot foot_at(const Corners& k, std::int32_t triangle, const Place& at, const Step& step) PALPATE_RT {
+  SmoothFoot foot;
+  const Real length = norm(step.normal);
+  if (!(length > 0.5)) return foot;
+  foot.state = FootState::kFound;
+  foot.triangle = triangle;
+  foot.weight[0] = 1.0 - at.b - at.c;
+  foot.weight[1] = at.b;
+  foot.weight[2] = at.c;
+  foot.gradient_per_m[1] = step.along_b;
+  foot.gradient_per_m[2] = step.along_c;
+  foot.gradient_per_m[0] = -(step.along_b + step.along_c);
+  const Vec3 flat = flat_foot(k, at);
+  Real sag = 0;
+  for (int i = 0; i < 3; ++i) sag += 0.5 * foot.weight[i] * dot(k.v[i] - flat, k.u[i]);  // bound: 3
+  foot.normal_w = (1.0 / length) * step.normal;
+  foot.foot_w = flat + sag * foot.normal_w;
+  foot.height_m = -(at.t * length + sag);
+  return foot;
+}
+
+// As smooth_foot(), on the surface whose corners `corners_of(triangle)` gives.
+template <class CornersOf>
+SmoothFoot search(const Model& model, const CornersOf& corners_of, Vec3 p, std::int32_t triangle) PALPATE_RT {
+  if (triangle < 0 || static_cast<std::size_t>(triangle) >= model.corner_normal.size() || !is_finite(p)) return {};
+  Corners corners = corners_of(triangle);
+  Place at = place_on(corners, p, 0.0);
+  at.t = dot(flat_foot(corners, at) - p, corners.u[0]);
+  std::int32_t walked = 0, on_this = 0;
+  for (std::int32_t i = 0; i < kFootNewtonSteps; ++i) {  // bound: kFootNewtonSteps
+    const Step step = newton_step(corners, p, at);
+    if (!step.usable) return {};
+    const Real size = norm(corners.v[1] - corners.v[0]) + norm(corners.v[2] - corners.v[0]);
+    const bool still = size * (abs_of(step.db) + abs_of(step.dc)) + abs_of(step.dt) <= kStill_m;
+    at.b += step.db;
+    at.c += step.dc;
+    at.t += step.dt;
+    on_this += 1;
+    if (!still && on_this < 3) continue;
+    const int edge = edge_to_cross(at);
+    if (edge < 0) {
+      if (still) return foot_at(corners, triangle, at, step);
+      continue;
+    }
+    const std::int32_t next = walked < kFootWalk ? across(model, triangle, edge) : -1;
+    if (next < 0) {
+      SmoothFoot lost;
+      lost.state = walked < kFootWalk ? FootState::kEdge : FootState::kFar;
+      return lost;
+    }
+    const Vec3 foot = flat_foot(corners, at);
+    triangle = next;
+    corners = corners_of(triangle);
+    at = place_on(corners, foot, at.t);
+    walked += 1;
+    on_this = 0;
+  }
+  return {};
+}
+
+}  // namespace palpate::foot
