@@ -133,8 +133,14 @@ void account(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
 // Any tool, and no arrays of its own.
 ImageResult accept(const Model&) noexcept { return {}; }
 
+double least_cost(const Model& model, const SceneSizes& n, Stage stage) noexcept {
+  if (stage == Stage::kFindRows) return find_points_cost(model, n);
+  if (stage == Stage::kAccount) return rub_regions_cost(n);
+  return 3000 + 600 * n.contacts + 1500 * n.regions + 20 * n.regions * n.regions * n.regions;
+}
+
 }  // namespace
 
-const ContactMethod points_method{find_rows, solve, account, accept, accept};
+const ContactMethod points_method{find_rows, solve, account, accept, accept, least_cost};
 
 }  // namespace palpate

@@ -184,6 +184,12 @@ ImageResult check_data(const Model& model) noexcept {
   return check_tables(model);
 }
 
+double least_cost(const Model& model, const SceneSizes& n, Stage stage) noexcept {
+  if (stage == Stage::kFindRows) return find_points_cost(model, n);
+  if (stage == Stage::kAccount) return rub_regions_cost(n);
+  return 5000 + 10000 * n.regions + 600 * n.regions * n.regions;
+}
+
 }  // namespace
 
 ImageResult check_tip_points(const Model& model) noexcept {
@@ -220,6 +226,6 @@ ImageResult check_tip_laws(const Model& model) noexcept {
   return {};
 }
 
-const ContactMethod tips_method{find_rows, solve, rub_tips, check_tip_points, check_data};
+const ContactMethod tips_method{find_rows, solve, rub_tips, check_tip_points, check_data, least_cost};
 
 }  // namespace palpate
