@@ -10,8 +10,9 @@ namespace palpate {
 PALPATE_CHOICE(ContactWeight, PALPATE_CONTACT_WEIGHTS);
 
 // Who finds contact and makes force: springs at the tool's points; one law per whole tip, or curves tabulated over the
-// surface; nodes of a finite-element body. X(enumerator, word): the method itself is WORD_method (contact/contact.h).
-#define PALPATE_METHODS(X) X(kPoints, points) X(kTips, tips) X(kNodes, nodes)
+// surface; nodes of a finite-element body; whole tips on the surface of a body that gives as its modes do.
+// X(enumerator, word): the method itself is WORD_method (contact/contact.h).
+#define PALPATE_METHODS(X) X(kPoints, points) X(kTips, tips) X(kNodes, nodes) X(kElastic, elastic)
 PALPATE_CHOICE(Method, PALPATE_METHODS);
 
 // To say which of them takes a law or an array.
@@ -19,16 +20,17 @@ constexpr unsigned bit_of(Method method) { return 1u << static_cast<unsigned>(me
 inline constexpr unsigned kOfPoints = bit_of(Method::kPoints);
 inline constexpr unsigned kOfTips = bit_of(Method::kTips);
 inline constexpr unsigned kOfNodes = bit_of(Method::kNodes);
+inline constexpr unsigned kOfElastic = bit_of(Method::kElastic);
 inline constexpr unsigned kOfAll = ~0u;
 
 // X(enumerator, word, methods that take it): those of points alone stretch the springs of tool points.
-#define PALPATE_FRICTION_LAWS(X)                  \
-  X(kNone, none, kOfPoints | kOfTips | kOfNodes)  \
-  X(kReturnMap, return_map, kOfPoints)            \
-  X(kPaper, paper, kOfPoints)                     \
-  X(kMindlin, mindlin, kOfPoints | kOfTips)       \
-  X(kCoulomb, coulomb, kOfNodes)                  \
-  X(kPresliding, presliding, kOfPoints | kOfTips) \
+#define PALPATE_FRICTION_LAWS(X)                               \
+  X(kNone, none, kOfPoints | kOfTips | kOfNodes | kOfElastic)  \
+  X(kReturnMap, return_map, kOfPoints)                         \
+  X(kPaper, paper, kOfPoints)                                  \
+  X(kMindlin, mindlin, kOfPoints | kOfTips | kOfElastic)       \
+  X(kCoulomb, coulomb, kOfNodes)                               \
+  X(kPresliding, presliding, kOfPoints | kOfTips | kOfElastic) \
   X(kPreslidingPaper, presliding_paper, kOfPoints | kOfTips)
 PALPATE_CHOICE(FrictionLaw, PALPATE_FRICTION_LAWS);
 
@@ -72,8 +74,9 @@ PALPATE_CHOICE(CouplingLaw, PALPATE_COUPLING_LAWS);
 PALPATE_CHOICE(Articulation, PALPATE_ARTICULATIONS);
 
 // Who measures contact and makes force. Response: tool points on the rest surface, one law per region. Nodal: surface
-// nodes of a finite-element body against the tool's pieces (rt_core/contact/nodes).
-#define PALPATE_BACKENDS(X) X(kResponse, response) X(kNodal, nodal)
+// nodes of a finite-element body against the tool's pieces (rt_core/contact/nodes). Elastic: whole tips on a body that
+// gives as its modes do (rt_core/contact/elastic).
+#define PALPATE_BACKENDS(X) X(kResponse, response) X(kNodal, nodal) X(kElastic, elastic)
 PALPATE_CHOICE(Backend, PALPATE_BACKENDS);
 
 #define PALPATE_NODAL_SOLVERS(X) X(kPivoting, pivoting) X(kGaussSeidel, gauss_seidel)

@@ -54,6 +54,11 @@ namespace palpate {
   X(double, wall_N_per_m, "N/m", 0, 1e9, "stiffness of the body's held nodes")                        \
   X(double, strain_limit, "-", 0, 10, "largest strain for which the linear body is trusted")          \
   X(double, proxy_speed_max_m_per_s, "m/s", 0, 100, "fastest motion of the tool in contact")
+// Elastic body.
+#define PALPATE_ELASTIC_PARAMS(X)                                                                      \
+  X(std::int32_t, elastic_soft, "-", 0, kMaxSoftModes, "soft modes: nonlinear")                        \
+  X(std::int32_t, elastic_linear, "-", 0, kMaxLinearModes, "linear modes: through which regions meet") \
+  X(double, elastic_radius_rootJ, "J^1/2", 0, 1e6, "the soft energy is a quartic up to here, then goes on by tangents")
 // Friction.
 #define PALPATE_FRICTION_PARAMS(X)                                                                    \
   PALPATE_CHOICE_PARAM(X, FrictionLaw, friction_law, "limit and motion of friction")                  \
@@ -103,6 +108,7 @@ namespace palpate {
   G("tool points with springs", PALPATE_POINT_PARAMS, kOfPoints)                   \
   G("whole tips and tables", PALPATE_TIP_PARAMS, kOfTips)                          \
   G("nodes of a finite-element body", PALPATE_NODE_PARAMS, kOfNodes)               \
+  G("elastic body", PALPATE_ELASTIC_PARAMS, kOfElastic)                            \
   G("friction", PALPATE_FRICTION_PARAMS, kOfAll)                                   \
   G("regions, and how they influence one another", PALPATE_REGION_PARAMS, kOfAll)  \
   G("the shape as drawn, and beams", PALPATE_SKELETON_PARAMS, kOfPoints | kOfTips) \
@@ -114,6 +120,7 @@ namespace palpate {
   PALPATE_POINT_PARAMS(X)       \
   PALPATE_TIP_PARAMS(X)         \
   PALPATE_NODE_PARAMS(X)        \
+  PALPATE_ELASTIC_PARAMS(X)     \
   PALPATE_FRICTION_PARAMS(X)    \
   PALPATE_REGION_PARAMS(X)      \
   PALPATE_SKELETON_PARAMS(X)    \
@@ -128,6 +135,7 @@ struct ModelParams {
 
 inline Method method_of(const ModelParams& params) PALPATE_RT {
   if (params.backend == Backend::kNodal) return Method::kNodes;
+  if (params.backend == Backend::kElastic) return Method::kElastic;
   return params.response_law == ResponseLaw::kPoints ? Method::kPoints : Method::kTips;
 }
 
@@ -305,6 +313,10 @@ struct BeamResponse {
   X(double, compliance_f64, n_compliance_f64, "world", "the same in double precision; one of the two is empty") \
   X(float, strain_gauge, n_strain_gauge, "world",                                                               \
     "strain per newton: 3 n_vertex rows of 6 components (xx yy zz xy yz zx) per gauge")                         \
+  X(float, elastic_vertex, n_elastic_vertex, "world",                                                           \
+    "elastic body: what a vertex of the surface shows of its modes (rt_core/contact/elastic/elastic_layout.h)") \
+  X(double, elastic_cubic, n_elastic_cubic, "-", "its cubic energy, J^-1/2: elastic_soft columns of pairs")     \
+  X(double, elastic_quartic, n_elastic_quartic, "-", "its quartic energy, 1/J: one column per pair")            \
   X(Joint, joint, n_joint, "tool", "joints of an articulated tool, parents first")                              \
   X(Pose, grasp_w, n_grasp, "world", "tool pose for which the closed joint positions were made: 0 or 1")        \
   X(CornerNormals, corner_normal, n_corner, "world", "smooth normals; empty where the facets are touched")      \
@@ -317,33 +329,36 @@ struct BeamResponse {
   X(StageCost, stage_cost, n_stage, "instructions", "the worst tick, by stage in its order")
 
 // X(name, lowest, highest, methods that have such an array; in a scene of another it is empty)
-#define PALPATE_MODEL_SIZES(X)               \
-  X(n_vertex, 4, 1 << 26, kOfAll)            \
-  X(n_triangle, 4, 1 << 26, kOfAll)          \
-  X(n_bvh, 1, 1 << 26, kOfAll)               \
-  X(n_anchor, 0, kMaxAnchors, kOfAll)        \
-  X(n_rbf, 0, kMaxAnchors + 4, kOfAll)       \
-  X(n_rbf2, 0, 1 << 12, kOfAll)              \
-  X(n_patch, 0, 1 << 26, kOfAll)             \
-  X(n_beam_stiffness, 0, 1 << 26, kOfAll)    \
-  X(n_beam_ratio, 0, 1 << 26, kOfAll)        \
-  X(n_beam_response, 0, 1 << 26, kOfAll)     \
-  X(n_piece, 1, kMaxPieces, kOfAll)          \
-  X(n_tool_point, 1, kMaxToolPoints, kOfAll) \
-  X(n_hull, 0, 1 << 16, kOfAll)              \
-  X(n_nodal, 0, 1 << 26, kOfNodes)           \
-  X(n_compliance_f32, 0, 1 << 28, kOfNodes)  \
-  X(n_compliance_f64, 0, 1 << 28, kOfNodes)  \
-  X(n_strain_gauge, 0, 1 << 26, kOfNodes)    \
-  X(n_joint, 0, kMaxJoints, kOfAll)          \
-  X(n_grasp, 0, 1, kOfAll)                   \
-  X(n_corner, 0, 1 << 26, kOfAll)            \
-  X(n_tip_law, 0, kMaxPieces, kOfTips)       \
-  X(n_factor, 0, 1 << 16, kOfTips)           \
-  X(n_tip_pair, 0, kMaxTipPairs, kOfTips)    \
-  X(n_knot, 0, kMaxResponseKnots, kOfTips)   \
-  X(n_response, 0, 1 << 26, kOfTips)         \
-  X(n_vertex_response, 0, 1 << 26, kOfTips)  \
+#define PALPATE_MODEL_SIZES(X)                      \
+  X(n_vertex, 4, 1 << 26, kOfAll)                   \
+  X(n_triangle, 4, 1 << 26, kOfAll)                 \
+  X(n_bvh, 1, 1 << 26, kOfAll)                      \
+  X(n_anchor, 0, kMaxAnchors, kOfAll)               \
+  X(n_rbf, 0, kMaxAnchors + 4, kOfAll)              \
+  X(n_rbf2, 0, 1 << 12, kOfAll)                     \
+  X(n_patch, 0, 1 << 26, kOfAll)                    \
+  X(n_beam_stiffness, 0, 1 << 26, kOfAll)           \
+  X(n_beam_ratio, 0, 1 << 26, kOfAll)               \
+  X(n_beam_response, 0, 1 << 26, kOfAll)            \
+  X(n_piece, 1, kMaxPieces, kOfAll)                 \
+  X(n_tool_point, 1, kMaxToolPoints, kOfAll)        \
+  X(n_hull, 0, 1 << 16, kOfAll)                     \
+  X(n_nodal, 0, 1 << 26, kOfNodes)                  \
+  X(n_compliance_f32, 0, 1 << 28, kOfNodes)         \
+  X(n_compliance_f64, 0, 1 << 28, kOfNodes)         \
+  X(n_strain_gauge, 0, 1 << 26, kOfNodes)           \
+  X(n_elastic_vertex, 0, 1 << 28, kOfElastic)       \
+  X(n_elastic_cubic, 0, 1 << 16, kOfElastic)        \
+  X(n_elastic_quartic, 0, 1 << 16, kOfElastic)      \
+  X(n_joint, 0, kMaxJoints, kOfAll)                 \
+  X(n_grasp, 0, 1, kOfAll)                          \
+  X(n_corner, 0, 1 << 26, kOfAll)                   \
+  X(n_tip_law, 0, kMaxPieces, kOfTips | kOfElastic) \
+  X(n_factor, 0, 1 << 16, kOfTips | kOfElastic)     \
+  X(n_tip_pair, 0, kMaxTipPairs, kOfTips)           \
+  X(n_knot, 0, kMaxResponseKnots, kOfTips)          \
+  X(n_response, 0, 1 << 26, kOfTips)                \
+  X(n_vertex_response, 0, 1 << 26, kOfTips)         \
   X(n_stage, kStageCount, kStageCount, kOfAll)
 
 struct ModelSizes {

@@ -216,8 +216,24 @@ using Matrix6 = double[36];
   X(PointState, point, model.sizes.n_tool_point, point.size(), "one for each tool point") \
   X(Region, region, kMaxRegions, region.size(), "by slot")
 
+#define PALPATE_ELASTIC_STATE(X)                             \
+  X(std::int32_t, moved, 0, "1: some amplitude is not zero") \
+  X(std::int32_t, reserved, 0, "-")
+#define PALPATE_ELASTIC_POOLS(X) \
+  X(double, soft_rootJ, model.params.elastic_soft, soft_rootJ.size(), "amplitudes of the soft modes")
+
+// Shape of an elastic body: where the next tick begins.
+struct ElasticFields {
+  PALPATE_STATE_FIELDS_OF(PALPATE_ELASTIC_STATE)
+};
+struct ElasticState : ElasticFields {
+  PALPATE_STATE_GROUP_OF(ElasticFields, PALPATE_ELASTIC_POOLS)
+};
+
 // X(type, name, meaning): memory of the methods of contact, and of the tool.
-#define PALPATE_METHOD_STATES(X) X(NodalState, nodal, "memory of the nodes' method")
+#define PALPATE_METHOD_STATES(X)                      \
+  X(NodalState, nodal, "memory of the nodes' method") \
+  X(ElasticState, elastic, "memory of the elastic method")
 #define PALPATE_STATE_GROUPS(X) \
   PALPATE_METHOD_STATES(X)      \
   X(ArticulationState, articulation, "joints of the tool")

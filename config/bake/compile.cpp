@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "config/bake/bvh_build.h"
+#include "config/bake/elastic_image.h"
 #include "config/bake/fem_body.h"
 #include "config/bake/image_rules.h"
 #include "config/bake/rbf_system.h"
@@ -38,6 +39,7 @@ class Compiler {
     } else {
       add_surface();
     }
+    if (is_elastic()) report_.elastic = add_elastic_body(scene_, image_, report_.warnings, progress_);
     add_articulation();
     add_distances();
     bake_response(scene_, image_, report_.response, report_.warnings);
@@ -58,6 +60,8 @@ class Compiler {
   void warn(const std::string& text) { report_.warnings.push_back(text); }
 
   bool is_nodal() const { return scene_.contact.backend == Backend::kNodal; }
+
+  bool is_elastic() const { return scene_.contact.backend == Backend::kElastic; }
 
   // Contact on finite elements: what the response back-end would use is left out.
   void add_nodal_laws() {
@@ -142,6 +146,11 @@ class Compiler {
     if (scene_.contact.law == ContactLaw::kTool) p.response_law = ResponseLaw::kTip;
     if (scene_.contact.law == ContactLaw::kTable) p.response_law = ResponseLaw::kTable;
     if (is_nodal()) add_nodal_laws();
+    if (!is_elastic()) return;
+    p.backend = Backend::kElastic;
+    p.skeleton_law = SkeletonLaw::kNone;
+    p.neighbourhood_law = NeighbourhoodLaw::kNone;
+    p.coupling_law = CouplingLaw::kNone;
   }
 
   void add_surface() {
@@ -375,7 +384,7 @@ class Compiler {
   }
 
   void add_skeleton() {
-    if (is_nodal() || scene_.skeleton.law == SkeletonLaw::kNone) return;
+    if (image_.params.skeleton_law == SkeletonLaw::kNone) return;
     report_.exact_anchors = scene_.skeleton.anchors == AnchorSource::kShape && has_exact_anchors(scene_.body.shape) &&
                             scene_.body.axis != BodyAxis::kX;
     std::vector<AnchorPoint> anchors = report_.exact_anchors ? exact_anchors(scene_.body) : mesh_anchors(mesh_);

@@ -15,6 +15,14 @@
 
 namespace palpate {
 
+// An elastic body, in short.
+struct ElasticReport {
+  std::int64_t nodes = 0, elements = 0;  // 0: none
+  std::int32_t soft = 0, linear = 0, samples = 0;
+  double radius_rootJ = 0;
+  double softest_N_per_m = 0;  // stiffness of the softest mode against its largest motion
+};
+
 struct CompileReport {
   std::string name;
   std::size_t image_bytes = 0;
@@ -23,6 +31,7 @@ struct CompileReport {
   std::int32_t fem_gauges = 0;
   std::size_t compliance_bytes = 0;
   bool single_precision = false;
+  ElasticReport elastic;
   double precision_error = 0;  // relative, of a press's force, by rounding the table to single precision
   double volume_m3 = 0, surface_m2 = 0, mass_kg = 0;
   std::int32_t bvh_nodes = 0, bvh_depth = 0, traversal_stack = 0;

@@ -57,6 +57,13 @@ std::string report_text(const CompileReport& r) {
        r.mass_kg);
   line(text, "hierarchy  %d nodes, %d levels, traversal stack at most %d of %d", r.bvh_nodes, r.bvh_depth,
        r.traversal_stack, kMaxTraversalStack);
+  if (r.elastic.nodes > 0)
+    line(text,
+         "elastic    %lld nodes, %lld tetrahedra; %d soft modes up to %.3g J, the softest %.4g N/m; %d linear; "
+         "%d samples",
+         static_cast<long long>(r.elastic.nodes), static_cast<long long>(r.elastic.elements), r.elastic.soft,
+         0.5 * r.elastic.radius_rootJ * r.elastic.radius_rootJ, r.elastic.softest_N_per_m, r.elastic.linear,
+         r.elastic.samples);
   if (r.fem_nodes > 0) {
     line(text, "elements   %lld nodes, %lld tetrahedra, %d strain gauges", static_cast<long long>(r.fem_nodes),
          static_cast<long long>(r.fem_elements), r.fem_gauges);

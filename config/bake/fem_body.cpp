@@ -41,14 +41,6 @@ std::vector<char> zone_elements(const SceneDesc& scene, const TetMesh& mesh, std
   return quadratic;
 }
 
-Supports supports_of(const SceneDesc& scene, const TetMesh& mesh) {
-  if (const auto supports = card_of(scene.body.shape).supports; supports != nullptr) return supports(mesh);
-  double lowest = kHuge;
-  for (const Vec3& x : mesh.node_m) lowest = std::min(lowest, x.y);
-  const double base = lowest + scene.fixed.base_height_m + 1e-9;
-  return hold_where(mesh, [base](Vec3 x) { return x.y <= base; });
-}
-
 void add_gauges(const SceneDesc& scene, const LinearBody& solver, FemBody& body, const Progress& progress) {
   if (scene.fem.strain_gauges == 0) return;
   const StrainGauges gauges = place_strain_gauges(solver, body.mesh, body.condensed,
@@ -58,6 +50,14 @@ void add_gauges(const SceneDesc& scene, const LinearBody& solver, FemBody& body,
 }
 
 }  // namespace
+
+Supports supports_of(const SceneDesc& scene, const TetMesh& mesh) {
+  if (const auto supports = card_of(scene.body.shape).supports; supports != nullptr) return supports(mesh);
+  double lowest = kHuge;
+  for (const Vec3& x : mesh.node_m) lowest = std::min(lowest, x.y);
+  const double base = lowest + scene.fixed.base_height_m + 1e-9;
+  return hold_where(mesh, [base](Vec3 x) { return x.y <= base; });
+}
 
 double tet_edge_m(const SceneDesc& scene, Vec3 size_m) {
   return is_auto(scene.fem.edge_m) ? std::max({size_m.x, size_m.y, size_m.z}) / 8 : scene.fem.edge_m;

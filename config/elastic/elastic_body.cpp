@@ -27,7 +27,8 @@ ElasticBody<kDim> make_elastic_body(const RestBody<kDim>& rest, const std::vecto
   const double reach_m2 = kReachShare * rest.surface().extent_m() / largest;
   body.maps.potential.radius_rootJ =
       trusted_radius(body.maps.potential, reach_m2 * std::sqrt(body.modes.lambda_Npm3[0]), kLeastEnergyShare);
-  body.self = self_terms(rest, body.modes, body.maps, contact_nodes, options.probe_share * rest.surface().extent_m());
+  body.self = self_terms(rest, body.modes, body.maps, contact_nodes, options.probe_share * rest.surface().extent_m(),
+                         options.patch_edges);
   if (!options.second_order) std::fill(body.self.second_mpN2.begin(), body.self.second_mpN2.end(), 0.0);
   return body;
 }

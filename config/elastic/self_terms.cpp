@@ -91,14 +91,11 @@ double soft_third_order(const SoftMaps& maps, const Eigen::VectorXd& g, const Ei
   return sum;
 }
 
-// A patch narrower than one edge is not carried by the mesh.
-constexpr double kSigmaEdges = 1;
-
 }  // namespace
 
 template <int kDim>
 SelfTerms self_terms(const RestBody<kDim>& body, const SurfaceModes& modes, const SoftMaps& maps,
-                     const std::vector<int>& nodes, double probe_m) {
+                     const std::vector<int>& nodes, double probe_m, double patch_edges) {
   const Surface<kDim>& surface = body.surface();
   const Eigen::Index soft = maps.potential.size();
   SelfTerms terms;
@@ -110,7 +107,7 @@ SelfTerms self_terms(const RestBody<kDim>& body, const SurfaceModes& modes, cons
     if (surface.facets_at(node).empty())
       throw ConfigError("elastic body: contact node " + std::to_string(node) + " lies inside the body");
     const std::size_t at = static_cast<std::size_t>(node);
-    const double sigma = kSigmaEdges * surface.edge_m(node);
+    const double sigma = patch_edges * surface.edge_m(node);
     const Eigen::VectorXd g = gaussian_patch<kDim>(body, surface.rest(node), node_normal(surface, node), sigma);
     const Eigen::VectorXd u = body.solve(g), pull = modes.phi_1pm.leftCols(soft).transpose() * g,
                           q1 = pull.cwiseQuotient(maps.potential.lambda());
@@ -129,7 +126,7 @@ SelfTerms self_terms(const RestBody<kDim>& body, const SurfaceModes& modes, cons
   template Eigen::VectorXd gaussian_patch<kDim>(const RestBody<kDim>&, const Vector<kDim>&, const Vector<kDim>&, \
                                                 double);                                                         \
   template SelfTerms self_terms<kDim>(const RestBody<kDim>&, const SurfaceModes&, const SoftMaps&,               \
-                                      const std::vector<int>&, double);
+                                      const std::vector<int>&, double, double);
 PALPATE_ELASTIC_SELF(2)
 PALPATE_ELASTIC_SELF(3)
 #undef PALPATE_ELASTIC_SELF

@@ -32,9 +32,10 @@ Eigen::VectorXd gaussian_patch(const RestBody<kDim>& body, const Vector<kDim>& a
 template <int kDim>
 Vector<kDim> node_normal(const Surface<kDim>& surface, int node);
 
-// At the given surface nodes. `probe_m`: largest displacement of the second order's difference.
+// At the given surface nodes. `probe_m`: largest displacement of the second order's difference. `patch_edges`: the
+// patch's deviation in edges of the mesh there.
 template <int kDim>
 SelfTerms self_terms(const RestBody<kDim>& body, const SurfaceModes& modes, const SoftMaps& maps,
-                     const std::vector<int>& nodes, double probe_m);
+                     const std::vector<int>& nodes, double probe_m, double patch_edges);
 
 }  // namespace palpate::elastic

@@ -149,6 +149,7 @@ class TipReader {
   // Curvatures 1/m of the body where it is touched: stated, or those of its shape.
   void body_curvature(double& first, double& second) const {
     first = second = 0;
+    if (scene_.contact.backend == Backend::kElastic) return;  // the tick knows it, place by place
     if (!is_auto(scene_.tip.body_radius_1_m) || !is_auto(scene_.tip.body_radius_2_m)) {
       const auto inverse = [](double r) { return is_auto(r) || r == 0 ? 0.0 : 1 / r; };
       first = inverse(scene_.tip.body_radius_1_m);

@@ -45,6 +45,11 @@ struct FemDesc {
   Vec3 zone_from_m{kAuto, kAuto, kAuto}, zone_to_m{kAuto, kAuto, kAuto};  // mixed order: quadratic in this box
   std::int32_t zone_layers = 1;
 };
+// Modes of a body (contact.backend = "elastic").
+struct ElasticDesc {
+  std::int32_t soft = 4;
+  std::int32_t linear = 20;
+};
 struct MaterialDesc {
   double youngs_modulus_Pa = 3e6;
   double poisson_ratio = 0.5;
@@ -251,6 +256,7 @@ struct SceneDesc {
   SkeletonDesc skeleton;
   ContactDesc contact;
   NodalDesc nodal;
+  ElasticDesc elastic;
   DuffingDesc duffing;
   CubicDesc cubic;
   HertzDesc hertz;

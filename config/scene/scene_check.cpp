@@ -147,8 +147,9 @@ void check_tips(const SceneDesc& scene) {
 
 // The laws that the scene's method of contact takes: the column of their table.
 void check_friction_method(const SceneDesc& scene) {
-  const bool nodes = scene.contact.backend == Backend::kNodal, tips = !nodes && is_tip_law(scene.contact.law);
-  const unsigned method = nodes ? kOfNodes : tips ? kOfTips : kOfPoints;
+  const bool nodes = scene.contact.backend == Backend::kNodal, elastic = scene.contact.backend == Backend::kElastic,
+             tips = !nodes && is_tip_law(scene.contact.law);
+  const unsigned method = nodes ? kOfNodes : elastic ? kOfElastic : tips ? kOfTips : kOfPoints;
   if ((methods_of(scene.friction.law) & method) != 0) return;
   std::string allowed;
   for (std::int32_t i = 0; i < ChoiceOf<FrictionLaw>::kCount; ++i)
@@ -156,9 +157,10 @@ void check_friction_method(const SceneDesc& scene) {
       allowed += (allowed.empty() ? "" : ", ") + std::string(ChoiceOf<FrictionLaw>::kWord[i]);
   fail(scene, "friction.law",
        "\"" + std::string(word_of(scene.friction.law)) + "\" is not for " +
-           (nodes  ? "contact.backend = \"nodal\""
-            : tips ? "contact.law = \"tool\" and \"table\", which have no springs of tool points"
-                   : "tool points, contact.backend = \"response\"") +
+           (nodes     ? "contact.backend = \"nodal\""
+            : elastic ? "contact.backend = \"elastic\""
+            : tips    ? "contact.law = \"tool\" and \"table\", which have no springs of tool points"
+                      : "tool points, contact.backend = \"response\"") +
            "; allowed " + allowed);
 }
 
@@ -189,14 +191,47 @@ void check_order(const SceneDesc& scene) {
          "\"mixed\" needs body.material.poisson_ratio of at most 0.49, where linear elements lock; use \"quadratic\"");
 }
 
-// The nodal back-end has no tool-point law, no skeleton and no shape functions; the others no finite elements.
+void check_no_table(const SceneDesc& scene, const char* name, const char* because) {
+  if (scene.source.has(name)) fail(scene, name, std::string("has no effect ") + because + "; remove the table");
+}
+
+// Elements and supports of both bodies that have them.
+void check_elements(const SceneDesc& scene) {
+  if (scene.material.poisson_ratio >= 0.5)
+    fail(scene, "body.material.poisson_ratio",
+         number_text(scene.material.poisson_ratio) + "; finite elements need less than 0.5: use 0.4999 or below");
+  if (scene.body.shape != BodyShape::kClip)
+    check_effect(scene, "body.fem", {"level"}, {}, "unless body.shape = \"clip\"");
+  if (card_of(scene.body.shape).own_tets)
+    check_effect(scene, "body.fem", {"edge_mm"}, {}, "with a body that brings its own mesh");
+  if (card_of(scene.body.shape).supports != nullptr)
+    check_no_table(scene, "body.fixed", "for a body that says what is held");
+}
+
+// The elastic back-end makes its tips' laws and what couples them itself.
+void check_elastic(const SceneDesc& scene) {
+  constexpr const char* kBecause = "with contact.backend = \"elastic\"";
+  if (scene.contact.law != ContactLaw::kTool)
+    fail(scene, "contact.law",
+         std::string("has no effect ") + kBecause + ", whose tips have the law of their shape; remove it");
+  for (const char* table : {"skeleton", "shape", "coupling", "contact.layer", "contact.series", "contact.pair",
+                            "contact.pair[0]", "contact.nodal"})
+    check_no_table(scene, table, kBecause);
+  check_effect(scene, "contact", {"weight", "surface", "reference_area_mm2"}, {}, kBecause);
+  check_effect(scene, "contact.tip", {"body_radius_1_mm", "body_radius_2_mm"}, {}, kBecause);
+  check_effect(scene, "body.fem", {"order", "zone_from_mm", "zone_to_mm", "zone_layers", "precision", "strain_gauges"},
+               {}, kBecause);
+  check_elements(scene);
+}
+
+// The nodal back-end has no tool-point law, no skeleton and no shape functions; the response no finite elements.
 void check_backend(const SceneDesc& scene) {
-  const bool nodal = scene.contact.backend == Backend::kNodal;
-  const auto no_table = [&](const char* name, const char* because) {
-    if (scene.source.has(name)) fail(scene, name, std::string("has no effect ") + because + "; remove the table");
-  };
+  const bool nodal = scene.contact.backend == Backend::kNodal, elastic = scene.contact.backend == Backend::kElastic;
+  const auto no_table = [&](const char* name, const char* because) { check_no_table(scene, name, because); };
+  if (!elastic) no_table("body.elastic", "unless contact.backend = \"elastic\"");
+  if (elastic) return check_elastic(scene);
   if (!nodal) {
-    no_table("body.fem", "unless contact.backend = \"nodal\"");
+    no_table("body.fem", "unless contact.backend = \"nodal\" or \"elastic\"");
     no_table("contact.nodal", "unless contact.backend = \"nodal\"");
     return;
   }
@@ -206,17 +241,10 @@ void check_backend(const SceneDesc& scene) {
                "with contact.backend = \"nodal\"");
   check_effect(scene, "friction", {"tangential", "reference_force_N", "k", "beta", "mu_dynamic"}, {},
                "with law = \"coulomb\" or \"none\"");
-  if (scene.material.poisson_ratio >= 0.5)
-    fail(scene, "body.material.poisson_ratio",
-         number_text(scene.material.poisson_ratio) + "; finite elements need less than 0.5: use 0.4999 or below");
+  check_elements(scene);
   check_order(scene);
   if (scene.nodal.solver == NodalSolver::kPivoting)
     check_effect(scene, "contact.nodal", {"sweeps"}, {}, "with solver = \"pivoting\"");
-  if (scene.body.shape != BodyShape::kClip)
-    check_effect(scene, "body.fem", {"level"}, {}, "unless body.shape = \"clip\"");
-  if (card_of(scene.body.shape).own_tets)
-    check_effect(scene, "body.fem", {"edge_mm"}, {}, "with a body that brings its own mesh");
-  if (card_of(scene.body.shape).supports != nullptr) no_table("body.fixed", "for a body that says what is held");
 }
 
 bool gives(const PieceDesc& piece, const std::string& key) {

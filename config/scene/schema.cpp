@@ -105,6 +105,13 @@ const KeySpec kFem[] = {
                                 "numbers of the compliance table; auto: single where its force error is below 1e-4"),
     integer<&FemDesc::strain_gauges>("strain_gauges", 0, kMaxStrainGauges, "points whose strain is watched every tick"),
 };
+const KeySpec kElastic[] = {
+    integer<&ElasticDesc::soft>("soft_modes", 1, kMaxSoftModes,
+                                "softest modes of the surface, with their energy to the fourth order; raised where it "
+                                "would part a symmetric pair"),
+    integer<&ElasticDesc::linear>("linear_modes", 0, kMaxLinearModes,
+                                  "further modes, linear, through which contact regions feel one another"),
+};
 const KeySpec kMaterial[] = {
     number<&MaterialDesc::youngs_modulus_Pa>("youngs_modulus_Pa", 1, 1e13, 1, "Young's modulus E"),
     number<&MaterialDesc::poisson_ratio>("poisson_ratio", -0.999, 1, 1,
@@ -163,7 +170,8 @@ const KeySpec kContact[] = {
     choice<&ContactDesc::backend>(
         "backend",
         "response: tool points with a force law each; nodal: finite elements against the tool's "
-        "exact pieces (docs/models_contact_lcp.md)"),
+        "exact pieces (docs/models_contact_lcp.md); elastic: whole tips on a body that gives as its modes do "
+        "(docs/models_elastic.md)"),
 };
 const KeySpec kNodal[] = {
     choice<&NodalDesc::solver>("solver",
@@ -409,7 +417,9 @@ void* open_gripper(SceneDesc& scene) {
 const TableSpec kTables[] = {
     {"", false, "Top level.", kTop, open_top},
     {"body", false, "The elastic object.", kBody, open<&SceneDesc::body>},
-    {"body.fem", false, "Finite elements, with contact.backend = \"nodal\".", kFem, open<&SceneDesc::fem>},
+    {"body.fem", false, "Finite elements, with contact.backend = \"nodal\" or \"elastic\".", kFem,
+     open<&SceneDesc::fem>},
+    {"body.elastic", false, "Its modes, with contact.backend = \"elastic\".", kElastic, open<&SceneDesc::elastic>},
     {"body.material", false, "Homogeneous, isotropic.", kMaterial, open<&SceneDesc::material>},
     {"body.fixed", false, "What is clamped to the world.", kFixed, open<&SceneDesc::fixed>},
     {"skeleton", false, "Beams from each contact region to the anchors.", kSkeleton, open<&SceneDesc::skeleton>},

@@ -20,6 +20,7 @@ namespace {
 const char* method_text(const Model& model) {
   if (model.params.backend == Backend::kNodal)
     return "nodes of a finite-element body, forces and the tool's place in one problem";
+  if (model.params.backend == Backend::kElastic) return "whole tips on the carried surface of an elastic body";
   switch (model.params.response_law) {
     case ResponseLaw::kPoints:
       return "tool points with springs";

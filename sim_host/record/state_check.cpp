@@ -32,6 +32,13 @@ StateFault check_poses(const State& state) noexcept {
   return {};
 }
 
+StateFault check_elastic(const State& state) noexcept {
+  if (state.elastic.moved != 0 && state.elastic.moved != 1) return {"elastic.moved"};
+  for (int32_t i = 0; i < state.elastic.soft_rootJ.size(); ++i)
+    if (!is_finite(state.elastic.soft_rootJ[i])) return {"elastic.soft_rootJ", i};
+  return {};
+}
+
 StateFault check_points(const Model& model, const State& state) noexcept {
   for (int64_t i = 0; i < model.sizes.n_tool_point; ++i) {
     const PointState& p = state.point[i];
@@ -118,6 +125,7 @@ StateFault check_state(const Model& model, const State& state) noexcept {
   const StateFault faults[] = {
       check_poses(state),        check_points(model, state), check_regions(state),
       check_nodes(model, state), check_safety(state.safety), check_articulation(state.articulation),
+      check_elastic(state),
   };
   for (const StateFault& fault : faults)
     if (fault.field != nullptr) return fault;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "rt_core/contact/contact.h"
+#include "rt_core/contact/elastic/elastic_row.h"
 #include "sim_host/view/imprint.h"
 #include "sim_host/view/surface_shape.h"
 
@@ -76,9 +77,24 @@ std::vector<Vec3> nodal_displacement_m(const Model& model, const State& state) {
                                       : response_m(model, state, model.compliance_f64);
 }
 
+// The soft modes of an elastic body; the dent under the tips, which the modes do not hold, is not drawn.
+std::vector<Vec3> soft_displacement_m(const Model& model, const State& state) {
+  std::array<double, elastic_layout::kMaxTerms> products;
+  soft_products(model.params.elastic_soft, state.elastic.soft_rootJ.data(), products.data());
+  std::int32_t looked = 0;
+  const CarriedSurface carried{model, products.data(), &looked};
+  std::vector<Vec3> displacement;
+  for (std::int32_t v = 0; v < model.sizes.n_vertex; ++v) displacement.push_back(carried.displacement(v));
+  return displacement;
+}
+
 void displace(const Model& model, const State& state, DeformedSurface& surface) {
   if (method_of(model) == Method::kNodes) {
     surface.displacement_m = nodal_displacement_m(model, state);
+    return;
+  }
+  if (method_of(model) == Method::kElastic) {
+    surface.displacement_m = soft_displacement_m(model, state);
     return;
   }
   ShapeField field;
@@ -210,8 +226,9 @@ DeformedSurface deformed_surface(const Model& model, const State& state) {
 DeformedSurface refined_surface(const Model& model, const State& state, std::size_t most_triangles) {
   DeformedSurface surface = rest_surface(model);
   std::vector<TriangleNormals> corner = smooth_normals(surface.rest_m, surface.triangle);
-  const bool everywhere =
-      method_of(model) != Method::kNodes && model.params.shape_law != ShapeLaw::kDisplacementAnglePaper;
+  const Method method = method_of(model);
+  const bool everywhere = method != Method::kNodes && method != Method::kElastic &&
+                          model.params.shape_law != ShapeLaw::kDisplacementAnglePaper;
   while (everywhere && 4 * surface.triangle.size() <= most_triangles) refine(surface, corner);
   displace(model, state, surface);
   finish(surface);

@@ -35,7 +35,7 @@ TEST(Choice, WordsAreUniqueAndTheRangeIsTheTable) {
 TEST(Choice, FrictionLawsNameTheirMethods) {
   for (std::int32_t i = 0; i < ChoiceOf<FrictionLaw>::kCount; ++i)
     EXPECT_NE(methods_of(static_cast<FrictionLaw>(i)), 0u) << word_of(static_cast<FrictionLaw>(i));
-  EXPECT_EQ(methods_of(FrictionLaw::kNone), kOfPoints | kOfTips | kOfNodes);
+  EXPECT_EQ(methods_of(FrictionLaw::kNone), kOfPoints | kOfTips | kOfNodes | kOfElastic);
   EXPECT_EQ(methods_of(FrictionLaw::kCoulomb), kOfNodes);
   EXPECT_EQ(methods_of(FrictionLaw::kReturnMap), kOfPoints);
   EXPECT_TRUE(is_presliding(FrictionLaw::kPresliding) && is_presliding(FrictionLaw::kPreslidingPaper));

@@ -22,8 +22,8 @@ namespace palpate::test {
 namespace {
 
 constexpr int kTicks = 100000;
-constexpr const char* kScenes[] = {"ellipsoid_mallet", "heart_compass", "tools_on_cylinder",
-                                   "snap_in",          "pinch_block",   "grasp_cylinder_5"};
+constexpr const char* kScenes[] = {"ellipsoid_mallet", "heart_compass",    "tools_on_cylinder",      "snap_in",
+                                   "pinch_block",      "grasp_cylinder_5", "hollow_cylinder_elastic"};
 
 // All the memory of a controller, allocated and touched before the first tick.
 struct Bench {

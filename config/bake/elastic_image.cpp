@@ -1,0 +1,391 @@
+#include "config/bake/elastic_image.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "config/bake/fem_body.h"
+#include "config/bake/image_rules.h"
+#include "config/body/body.h"
+#include "config/body/body_card.h"
+#include "config/elastic/elastic_body.h"
+#include "config/elastic/solid_mesh.h"
+#include "config/fem/large_strain_elements.h"
+#include "config/fem/tet_io.h"
+#include "config/response/corner_normals.h"
+#include "config/scene/config_error.h"
+#include "config/scene/schema.h"
+#include "rt_core/contact/elastic/elastic_layout.h"
+#include "rt_core/surface/closest_point.h"
+
+namespace palpate {
+
+namespace {
+
+using Field = Eigen::VectorXd;  // [node * 3 + component]
+using elastic::Vector;
+
+// Self terms are smooth along a body: samples this share of its size apart, and never nearer than an element's edge.
+constexpr double kSampleSpacing = 0.08;
+// The baker's meshes are even, and large against the wall: see ElasticOptions::patch_edges.
+constexpr double kPatchEdges = 0.6;
+constexpr double kFacing = 0.5;  // samples on another face say nothing about this one
+// Of the least compliance a tip's dent can have: what a negative self term may take off it.
+constexpr double kLeastOwnShare = 0.4;
+
+std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
+Vec3 vec(const Vector<3>& v) { return {v[0], v[1], v[2]}; }
+Vector<3> eigen(Vec3 v) { return {v.x, v.y, v.z}; }
+
+// The body's surface of about as many triangles as edges of the scene's length make.
+SurfaceMesh coarse_surface(const SceneDesc& scene, const ImageContents& image, double edge_m,
+                           std::vector<std::string>& warnings) {
+  double area = 0;
+  for (const Triangle& t : image.triangle) {
+    const Vec3 a = image.vertex_m[at(t.vertex[0])];
+    area += 0.5 * norm(cross(image.vertex_m[at(t.vertex[1])] - a, image.vertex_m[at(t.vertex[2])] - a));
+  }
+  SceneDesc coarse = scene;
+  const double wanted = area / (0.25 * std::sqrt(3.0) * edge_m * edge_m);
+  coarse.body.triangles = std::clamp(static_cast<std::int32_t>(wanted), kFewestTriangles, scene.body.triangles);
+  return make_body(coarse, warnings);
+}
+
+// Middles of boundary edges go to the nearest place of the scene's surface.
+EdgeProjection bend_to(const TetMesh& mesh, const Model& surface) {
+  std::set<std::pair<std::int32_t, std::int32_t>> edges;
+  const TetSurface skin = surface_of(mesh);
+  for (const Corners& t : skin.mesh.triangle)
+    for (std::size_t k = 0; k < 3; ++k) edges.insert(std::minmax(skin.node[at(t[k])], skin.node[at(t[(k + 1) % 3])]));
+  return [edges = std::move(edges), surface](Vec3 middle, std::int32_t a, std::int32_t b) {
+    if (!edges.contains(std::minmax(a, b))) return middle;
+    const SurfacePoint nearest = closest_surface_point(surface, middle, kHuge, -1);
+    return nearest.found ? nearest.closest_w : middle;
+  };
+}
+
+// Elements that bending has folded, or nearly, get straight edges again.
+void straighten_folds(TetMesh& mesh) {
+  constexpr double kLeastShare = 0.2;  // of the straight element's volume, at its worst node
+  const auto tables = fem::element_tables<3>(fem::StrainElement::kT10);
+  const auto is_folded = [&](const Tet& tet) {
+    for (std::size_t n = 0; n < 10; ++n) {
+      Eigen::Matrix3d x = Eigen::Matrix3d::Zero();
+      for (std::size_t a = 0; a < 10; ++a) {
+        const auto& slope = tables.gradient_at_nodes[n * 10 + a];
+        x += eigen(mesh.node_m[at(tet.node[a])]) * Eigen::RowVector3d(slope[0], slope[1], slope[2]);
+      }
+      if (!(x.determinant() > kLeastShare * 6 * corner_volume_m3(mesh, tet))) return true;
+    }
+    return false;
+  };
+  for (bool again = true; again;) {  // each pass straightens an element for good
+    again = false;
+    for (const Tet& tet : mesh.tet) {
+      if (!is_folded(tet)) continue;
+      for (std::size_t e = 0; e < kTetEdge.size(); ++e) {
+        Vec3& middle = mesh.node_m[at(tet.node[4 + e])];
+        const Vec3 straight =
+            0.5 * (mesh.node_m[at(tet.node[at(kTetEdge[e][0])])] + mesh.node_m[at(tet.node[at(kTetEdge[e][1])])]);
+        again = again || !(middle == straight);
+        middle = straight;
+      }
+    }
+  }
+}
+
+// du_i/dX_j of a field at every surface node, [node * 9 + 3 i + j]: the mean of the elements' own there.
+class NodalGradient {
+ public:
+  NodalGradient(const TetMesh& mesh, const elastic::Surface<3>& surface)
+      : mesh_(mesh), tables_(fem::element_tables<3>(fem::StrainElement::kT10)), count_(mesh.node_m.size()) {
+    for (std::size_t t = 0; t < mesh.tet.size(); ++t)
+      for (const std::int32_t node : mesh.tet[t].node)
+        if (!surface.facets_at(node).empty()) ++count_[at(node)];
+    for (std::size_t n = 0; n < count_.size(); ++n) wanted_.push_back(!surface.facets_at(static_cast<int>(n)).empty());
+  }
+  Field of(const Field& u) const {
+    Field out = Field::Zero(static_cast<Eigen::Index>(9 * count_.size()));
+    for (const Tet& tet : mesh_.tet)
+      for (std::size_t n = 0; n < 10; ++n) {
+        if (!wanted_[at(tet.node[n])]) continue;
+        Eigen::Matrix3d x = Eigen::Matrix3d::Zero(), g = Eigen::Matrix3d::Zero();  // d/d parameter of place and field
+        for (std::size_t a = 0; a < 10; ++a) {
+          const auto& slope = tables_.gradient_at_nodes[n * 10 + a];
+          const Eigen::RowVector3d row(slope[0], slope[1], slope[2]);
+          x += eigen(mesh_.node_m[at(tet.node[a])]) * row;
+          g += u.segment<3>(3 * tet.node[a]) * row;
+        }
+        const Eigen::Matrix3d gradient = g * x.inverse();
+        for (int i = 0; i < 3; ++i)
+          for (int j = 0; j < 3; ++j) out[9 * tet.node[n] + 3 * i + j] += gradient(i, j) / count_[at(tet.node[n])];
+      }
+    return out;
+  }
+
+ private:
+  const TetMesh& mesh_;
+  fem::ElementTables<3> tables_;
+  std::vector<double> count_;
+  std::vector<bool> wanted_;
+};
+
+// Where a vertex of the scene's surface lies on the elements' facets.
+struct FacetFoot {
+  std::vector<int> node;
+  elastic::FacetShape shape;
+};
+
+class FacetFinder {
+ public:
+  explicit FacetFinder(const elastic::Surface<3>& surface) : surface_(surface) {}
+  FacetFoot find(Vec3 p) const {
+    constexpr double kPlace[6][2] = {{0, 0}, {1, 0}, {0, 1}, {0.5, 0}, {0.5, 0.5}, {0, 0.5}};
+    constexpr std::size_t kPart[4][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}};
+    double best = kHuge;
+    const elastic::Surface<3>::Facet* best_facet = nullptr;
+    elastic::FacetPlace place;
+    for (const auto& facet : surface_.facets())
+      for (const auto& part : kPart) {
+        Vec3 corner[3];
+        for (std::size_t k = 0; k < 3; ++k) corner[k] = vec(surface_.rest(facet.nodes[part[k]]));
+        const Vec3 q = closest_on_triangle(p, corner[0], corner[1], corner[2]).point;
+        const double distance = norm(q - p);
+        if (!(distance < best)) continue;
+        best = distance;
+        best_facet = &facet;
+        const Vec3 e1 = corner[1] - corner[0], e2 = corner[2] - corner[0], n = cross(e1, e2);
+        const double b = dot(cross(q - corner[0], e2), n) / squared_norm(n),
+                     c = dot(cross(e1, q - corner[0]), n) / squared_norm(n);
+        for (int d = 0; d < 2; ++d)
+          place[d] = (1 - b - c) * kPlace[part[0]][d] + b * kPlace[part[1]][d] + c * kPlace[part[2]][d];
+      }
+    return {best_facet->nodes, elastic::facet_shape(6, place)};
+  }
+
+ private:
+  const elastic::Surface<3>& surface_;
+};
+
+// Free surface nodes at least `spacing_m` apart, the first ones that are.
+std::vector<int> sample_nodes(const elastic::Surface<3>& surface, const std::vector<bool>& fixed, double spacing_m) {
+  std::vector<int> kept;
+  for (int n = 0; n < static_cast<int>(fixed.size() / 3); ++n) {
+    if (surface.facets_at(n).empty() || fixed[at(3 * n)] || fixed[at(3 * n + 1)] || fixed[at(3 * n + 2)]) continue;
+    const double apart = std::max(spacing_m, surface.edge_m(n));
+    const auto normal = elastic::node_normal(surface, n);
+    const bool is_new = std::all_of(kept.begin(), kept.end(), [&](int k) {
+      return (surface.rest(k) - surface.rest(n)).norm() >= apart ||
+             elastic::node_normal(surface, k).dot(normal) < kFacing;
+    });
+    if (is_new) kept.push_back(n);
+  }
+  return kept;
+}
+
+// c and c1 anywhere on the surface: through the samples' values, smoothly (radial functions of place and outlook,
+// Matern 3/2 about the mean). A mean of near samples instead flattens the peak in the middle of a thin wall: an arch
+// was 25 % too stiff under one finger (2026-11-22).
+class SelfField {
+ public:
+  SelfField(const elastic::Surface<3>& surface, const elastic::SelfTerms& terms, double spacing_m, double least_c)
+      : length_(kLengths * spacing_m) {
+    const auto n = static_cast<Eigen::Index>(terms.nodes.size());
+    Eigen::MatrixXd kernel(n, n), value(n, 2);
+    for (const int node : terms.nodes)
+      samples_.push_back({vec(surface.rest(node)), vec(elastic::node_normal(surface, node))});
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const std::size_t node = at(terms.nodes[static_cast<std::size_t>(i)]);
+      value.row(i) << std::max(terms.self_mpN[node], least_c), terms.second_mpN2[node];
+      for (Eigen::Index k = 0; k < n; ++k)
+        kernel(i, k) = likeness(samples_[static_cast<std::size_t>(i)], samples_[static_cast<std::size_t>(k)]);
+    }
+    mean_ = value.colwise().mean();
+    kernel.diagonal().array() += kNugget;
+    weight_ = kernel.llt().solve(value.rowwise() - mean_);
+  }
+  std::pair<double, double> show(Vec3 p, Vec3 normal) const {
+    Eigen::RowVector2d sum = mean_;
+    for (std::size_t i = 0; i < samples_.size(); ++i)
+      sum += likeness({p, normal}, samples_[i]) * weight_.row(static_cast<Eigen::Index>(i));
+    return {sum[0], sum[1]};
+  }
+
+ private:
+  struct Sample {
+    Vec3 position, normal;
+  };
+  // In spacings: how far a sample is heard, and how far away the opposite outlook counts as.
+  static constexpr double kLengths = 3, kTurn = 1, kNugget = 1e-6;
+  double likeness(const Sample& a, const Sample& b) const {
+    const double d = norm(a.position - b.position) / length_, turn = kTurn * norm(a.normal - b.normal);
+    const double r = std::sqrt(3.0 * (d * d + turn * turn));
+    return (1 + r) * std::exp(-r);
+  }
+  std::vector<Sample> samples_;
+  double length_;
+  Eigen::RowVector2d mean_;
+  Eigen::MatrixXd weight_;
+};
+
+// Mean curvature at the vertices, convex positive: how fast normals turn along the edges of a face.
+std::vector<double> mean_curvatures(const ImageContents& image, const std::vector<CornerNormals>& normals) {
+  std::vector<double> sum(image.vertex_m.size()), count(image.vertex_m.size());
+  for (std::size_t t = 0; t < image.triangle.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t next = (k + 1) % 3, a = at(image.triangle[t].vertex[k]), b = at(image.triangle[t].vertex[next]);
+      const Vec3 edge = image.vertex_m[b] - image.vertex_m[a];
+      const double bend = dot(normals[t].normal[next] - normals[t].normal[k], edge) / squared_norm(edge);
+      for (const std::size_t v : {a, b}) {
+        sum[v] += bend;
+        count[v] += 1;
+      }
+    }
+  for (std::size_t v = 0; v < sum.size(); ++v) sum[v] /= count[v];
+  return sum;
+}
+
+// Distinct orders of the indices.
+template <std::size_t kDegree>
+double orders_of(const std::array<int, kDegree>& index) {
+  double orders = 1;
+  for (std::size_t i = 0, run = 0; i < kDegree; ++i) {
+    run = i > 0 && index[i] == index[i - 1] ? run + 1 : 1;
+    orders *= static_cast<double>(i + 1) / static_cast<double>(run);
+  }
+  return orders;
+}
+
+void add_energy(const elastic::SoftPotential& v, ImageContents& image) {
+  using elastic_layout::pair_place;
+  const int s = static_cast<int>(v.size()), pairs = elastic_layout::pairs(s);
+  const Eigen::VectorXd root = v.lambda().cwiseSqrt();
+  image.elastic_cubic.assign(at(pairs * s), 0);
+  image.elastic_quartic.assign(at(pairs * pairs), 0);
+  for (int a = 0; a < s; ++a)
+    for (int b = a; b < s; ++b)
+      for (int c = 0; c < s; ++c) {
+        std::array<int, 3> i3{a, b, c};
+        std::sort(i3.begin(), i3.end());
+        image.elastic_cubic[at(c * pairs + pair_place(a, b, s))] =
+            v.cubic[static_cast<Eigen::Index>(v.cubic_place(a, b, c))] / orders_of(i3) / (root[a] * root[b] * root[c]);
+        for (int d = c; d < s; ++d) {
+          std::array<int, 4> i4{a, b, c, d};
+          std::sort(i4.begin(), i4.end());
+          image.elastic_quartic[at(pair_place(c, d, s) * pairs + pair_place(a, b, s))] =
+              (c == d ? 1 : 2) * v.quartic[static_cast<Eigen::Index>(v.quartic_place(a, b, c, d))] / orders_of(i4) /
+              (root[a] * root[b] * root[c] * root[d]);
+        }
+      }
+}
+
+// Shapes of the terms, scaled to J^1/2, with their gradients.
+struct Shapes {
+  std::vector<Field> u, gradient;
+};
+Shapes term_shapes(const elastic::ElasticBody<3>& body, const NodalGradient& gradient) {
+  const int s = body.soft;
+  const Eigen::VectorXd root = body.modes.lambda_Npm3.cwiseSqrt();
+  Shapes out;
+  for (int a = 0; a < s; ++a) out.u.push_back(body.modes.phi_1pm.col(a) / root[a]);
+  for (int a = 0; a < s; ++a)
+    for (int b = a; b < s; ++b)
+      out.u.push_back(body.maps.theta_1pm3[elastic::pair_place(a, b, s)] *
+                      ((a == b ? 0.5 : 1.0) / (root[a] * root[b])));
+  for (const Field& u : out.u) out.gradient.push_back(gradient.of(u));
+  return out;
+}
+
+void add_vertices(const elastic::ElasticBody<3>& body, const Shapes& shapes, const SelfField& self,
+                  ImageContents& image, const std::vector<CornerNormals>& normals) {
+  using namespace elastic_layout;
+  const int s = body.soft, linear = static_cast<int>(body.modes.lambda_Npm3.size()) - s;
+  const std::vector<double> curvature = mean_curvatures(image, normals);
+  const FacetFinder finder(body.rest->surface());
+  const auto stride = at(vertex_floats(s, linear));
+  image.elastic_vertex.assign(stride * image.vertex_m.size(), 0);
+  for (std::size_t v = 0; v < image.vertex_m.size(); ++v) {
+    const FacetFoot foot = finder.find(image.vertex_m[v]);
+    float* out = &image.elastic_vertex[stride * v];
+    const auto show = [&](const Field& field, int width, int component) {
+      double sum = 0;
+      for (std::size_t a = 0; a < foot.node.size(); ++a)
+        sum += foot.shape.value[a] * field[width * foot.node[a] + component];
+      return static_cast<float>(sum);
+    };
+    for (std::size_t t = 0; t < shapes.u.size(); ++t) {
+      for (int i = 0; i < 3; ++i) *out++ = show(shapes.u[t], 3, i);
+      for (int i = 0; i < 9; ++i) *out++ = show(shapes.gradient[t], 9, i);
+    }
+    const auto [c, c1] = self.show(image.vertex_m[v], image.vertex_normal[v]);
+    *out++ = static_cast<float>(c);
+    *out++ = static_cast<float>(c1);
+    *out++ = static_cast<float>(curvature[v]);
+    ++out;
+    for (int m = s; m < s + linear; ++m) {
+      const Field phi = body.modes.phi_1pm.col(m) / std::sqrt(body.modes.lambda_Npm3[m]);
+      for (int i = 0; i < 3; ++i) *out++ = show(phi, 3, i);
+    }
+  }
+}
+
+}  // namespace
+
+TetMesh make_elastic_mesh(const SceneDesc& scene, const ImageContents& image, std::vector<std::string>& warnings) {
+  if (card_of(scene.body.shape).tets != nullptr) {
+    TetMesh mesh = make_tet_mesh(scene, warnings);
+    return mesh;
+  }
+  const std::string label = scene.source.where("body.shape");
+  Model surface = model_of(image);
+  const double edge = is_auto(scene.fem.edge_m) ? surface.params.surface_size_m / 8 : scene.fem.edge_m;
+  TetMesh mesh = tetrahedralise(coarse_surface(scene, image, edge, warnings), edge, label);
+  add_middle_nodes(mesh, {}, bend_to(mesh, surface));
+  straighten_folds(mesh);
+  check_tet_mesh(mesh, label);
+  return mesh;
+}
+
+ElasticReport add_elastic_body(const SceneDesc& scene, ImageContents& image, std::vector<std::string>& warnings,
+                               const Progress&) {
+  const std::string label = scene.source.where("body.shape");
+  const TetMesh mesh = make_elastic_mesh(scene, image, warnings);
+  const Supports supports = supports_of(scene, mesh);
+  check_supports(mesh, supports, label);
+  const std::vector<bool> fixed = elastic::fixed_components(supports);
+  fem::StrainBody material;
+  material.youngs_modulus_Pa = image.params.youngs_modulus_Pa;
+  material.poisson_ratio = image.params.poisson_ratio;
+  material.kinematics = fem::Kinematics::kSolid;
+  const elastic::RestBody<3> rest(elastic::solid_mesh(mesh, label), material, fixed);
+  const double spacing = kSampleSpacing * rest.surface().extent_m();
+  elastic::ElasticOptions options;
+  options.soft = scene.elastic.soft;
+  options.linear = scene.elastic.linear;
+  options.second_order = true;
+  options.patch_edges = kPatchEdges;
+  const std::vector<int> samples = sample_nodes(rest.surface(), fixed, spacing);
+  elastic::ElasticBody<3> body = elastic::make_elastic_body(rest, samples, options);
+  double radius = 0;
+  for (const ToolPoint& point : image.tool_point) radius = std::max(radius, point.margin_m);
+  const double least_c = radius > 0 ? -kLeastOwnShare / (2 * rest.contact_modulus() * radius) : 0;
+  const SelfField self(rest.surface(), body.self, spacing, least_c);
+  const Shapes shapes = term_shapes(body, NodalGradient(mesh, rest.surface()));
+  add_energy(body.maps.potential, image);
+  add_vertices(body, shapes, self, image, corner_normals(scene.body, image.vertex_m, image.triangle));
+  ModelParams& p = image.params;
+  p.elastic_soft = body.soft;
+  p.elastic_linear = static_cast<std::int32_t>(body.modes.lambda_Npm3.size()) - body.soft;
+  p.elastic_radius_rootJ = body.maps.potential.radius_rootJ;
+  const double largest = body.modes.phi_1pm.col(0).cwiseAbs().maxCoeff();
+  return {static_cast<std::int64_t>(mesh.node_m.size()),
+          static_cast<std::int64_t>(mesh.tet.size()),
+          p.elastic_soft,
+          p.elastic_linear,
+          static_cast<std::int32_t>(samples.size()),
+          p.elastic_radius_rootJ,
+          body.modes.lambda_Npm3[0] / (largest * largest)};
+}
+
+}  // namespace palpate

@@ -1,0 +1,221 @@
+#include "rt_core/contact/elastic/elastic_row.h"
+#include "rt_core/surface/closest_point.h"
+#include "rt_core/surface/foot_search.h"
+
+namespace palpate {
+
+namespace {
+
+using namespace elastic_layout;
+
+struct CarriedVertex {
+  Vec3 position_w;
+  Vec3 row[3];  // of the deformation gradient
+
+  // The surface normal carried along, not unit: cofactor times normal.
+  Vec3 carried(Vec3 normal) const PALPATE_RT {
+    return {dot(cross(row[1], row[2]), normal), dot(cross(row[2], row[0]), normal), dot(cross(row[0], row[1]), normal)};
+  }
+};
+
+CarriedVertex carry(const Model& model, const Real* y, std::int32_t vertex) PALPATE_RT {
+  const float* block = vertex_block(model, vertex);
+  const std::int32_t count = terms(model.params.elastic_soft);
+  Double4 a{}, b{}, c{};
+  for (std::int32_t t = 0; t < count; ++t) {  // bound: terms
+    const Double4 factor = splat4(y[t]);
+    a += factor * widen4(block + kTermFloats * t);
+    b += factor * widen4(block + kTermFloats * t + 4);
+    c += factor * widen4(block + kTermFloats * t + 8);
+  }
+  CarriedVertex out;
+  out.position_w = model.vertex_m[static_cast<std::size_t>(vertex)] + Vec3{a[0], a[1], a[2]};
+  out.row[0] = {1 + a[3], b[0], b[1]};
+  out.row[1] = {b[2], 1 + b[3], c[0]};
+  out.row[2] = {c[1], c[2], 1 + c[3]};
+  return out;
+}
+
+// A triangle with its corners carried along.
+struct CarriedTriangle {
+  CarriedVertex vertex[3];
+  foot::Corners corners;
+};
+CarriedTriangle carried_triangle(const Model& model, const Real* y, std::int32_t triangle) PALPATE_RT {
+  const auto index = static_cast<std::size_t>(triangle);
+  CarriedTriangle out;
+  for (int k = 0; k < 3; ++k) {  // bound: 3
+    const Vec3 normal = model.corner_normal[index].normal[k];
+    out.vertex[k] = carry(model, y, model.triangle[index].vertex[k]);
+    out.corners.v[k] = out.vertex[k].position_w;
+    out.corners.u[k] = unit_or(out.vertex[k].carried(normal), normal);
+  }
+  return out;
+}
+
+// What a change of each corner's 12 numbers (displacement, deformation gradient) does to the travel.
+struct TravelSlope {
+  alignas(32) Real of[3][kTermFloats];
+};
+
+// Where the foot holds: the height's derivative in corners and normals, backwards through
+//   sum w_i V_i - t sum w_i U_i = centre,  height = -(t |N| + sag),  N = sum w_i U_i,  sag = sum w_i (V_i - X) . U_i /
+//   2,
+// and the normals U = cof(F) n / |cof(F) n|. The plain n . sum w_i dV_i misses how the surface bends between its
+// vertices: 1 to 3 % of a mode's pull on an arch (2026-11-22), and forces that are no slope of the energy.
+TravelSlope travel_slope(const Model& model, ElasticRow& row, const CarriedTriangle& t) PALPATE_RT {
+  const Vec3 *v = t.corners.v, *u = t.corners.u;
+  const Real* w = row.foot.weight;
+  const Vec3 mixed = w[0] * u[0] + w[1] * u[1] + w[2] * u[2], place = w[0] * v[0] + w[1] * v[1] + w[2] * v[2];
+  Real share[3], sag = 0;
+  for (int k = 0; k < 3; ++k) {  // bound: 3
+    share[k] = 0.5 * dot(v[k] - place, u[k]);
+    sag += w[k] * share[k];
+  }
+  const Real length = norm(mixed), below = -(row.foot.height_m + sag) / length, ratio = below / length;
+  const Vec3 e1 = v[1] - v[0], e2 = v[2] - v[0], u1 = u[1] - u[0], u2 = u[2] - u[0];
+  const Vec3 xy = cross(e1 - below * u1, e2 - below * u2);
+  const Real along_b = ratio * dot(mixed, u1) + share[1] - share[0] - 0.5 * dot(e1, mixed);
+  const Real along_c = ratio * dot(mixed, u2) + share[2] - share[0] - 0.5 * dot(e2, mixed);
+  const Vec3 moved =
+      along_b * row.foot.gradient_per_m[1] + along_c * row.foot.gradient_per_m[2] - (length / dot(xy, mixed)) * xy;
+  row.rise = -moved;
+  TravelSlope slope;
+  const CornerNormals& rest = model.corner_normal[static_cast<std::size_t>(row.foot.triangle)];
+  for (int k = 0; k < 3; ++k) {  // bound: 3
+    const Vec3 by_place = -w[k] * (moved - 0.5 * (u[k] - mixed));
+    const Vec3 by_normal = w[k] * (below * moved + ratio * mixed + 0.5 * (v[k] - place));
+    const Vec3 n = rest.normal[k], *r = t.vertex[k].row;
+    const Vec3 b = (1.0 / norm(t.vertex[k].carried(n))) * tangential_part(by_normal, u[k]);
+    const Vec3 rows[4] = {by_place, b.y * cross(n, r[2]) + b.z * cross(r[1], n),
+                          b.x * cross(r[2], n) + b.z * cross(n, r[0]), b.x * cross(n, r[1]) + b.y * cross(r[0], n)};
+    for (int i = 0; i < 4; ++i) {
+      slope.of[k][3 * i] = rows[i].x;
+      slope.of[k][3 * i + 1] = rows[i].y;
+      slope.of[k][3 * i + 2] = rows[i].z;
+    }
+  }
+  return slope;
+}
+
+// On a facet, where the normal holds still.
+TravelSlope facet_slope(const ElasticRow& row) PALPATE_RT {
+  TravelSlope slope{};
+  for (int k = 0; k < 3; ++k) {  // bound: 3
+    slope.of[k][0] = row.foot.weight[k] * row.foot.normal_w.x;
+    slope.of[k][1] = row.foot.weight[k] * row.foot.normal_w.y;
+    slope.of[k][2] = row.foot.weight[k] * row.foot.normal_w.z;
+  }
+  return slope;
+}
+
+// How far each shape moves the surface towards the tip.
+void show_modes(const Model& model, const Real* y, const TravelSlope& slope, ElasticRow& row) PALPATE_RT {
+  const std::int32_t soft = model.params.elastic_soft;
+  const Triangle& triangle = model.triangle[static_cast<std::size_t>(row.foot.triangle)];
+  const float* block[3];
+  for (int k = 0; k < 3; ++k) block[k] = vertex_block(model, triangle.vertex[k]);  // bound: 3
+  const auto along = [&](std::int32_t term) PALPATE_RT {
+    Double4 total{};
+    for (int k = 0; k < 3; ++k) {  // bound: 3 x 3
+      const float* u = block[k] + kTermFloats * term;
+      for (int i = 0; i < kTermFloats; i += 4) total += load4(slope.of[k] + i) * widen4(u + i);
+    }
+    return sum(total);
+  };
+  for (std::int32_t a = 0; a < soft; ++a) row.pull[a] = along(a);
+  std::int32_t pair = 0;
+  for (std::int32_t a = 0; a < soft; ++a) {  // bound: pairs
+    for (std::int32_t b = a; b < soft; ++b, ++pair) {
+      const Real h = along(soft + pair);
+      row.pull[a] += h * y[b];
+      row.pull[b] += h * y[a];
+      row.turn[pair] = a == b ? 2 * h : h;
+    }
+  }
+}
+
+void show_own_terms(const Model& model, ElasticRow& row) PALPATE_RT {
+  const Triangle& triangle = model.triangle[static_cast<std::size_t>(row.foot.triangle)];
+  Real value[3] = {};
+  Vec3 gradient[3];
+  for (int k = 0; k < 3; ++k) {  // bound: 3 x 3
+    const float* own = own_terms(model, triangle.vertex[k]);
+    for (int i = 0; i < 3; ++i) {
+      value[i] += row.foot.weight[k] * static_cast<Real>(own[i]);
+      gradient[i] += static_cast<Real>(own[i]) * row.foot.gradient_per_m[k];
+    }
+  }
+  row.c_m_per_N = value[0];
+  row.c1_m_per_N2 = value[1];
+  row.curvature_1_per_m = value[2];
+  row.c_gradient = gradient[0];
+  row.c1_gradient = gradient[1];
+  row.curvature_gradient = gradient[2];
+}
+
+Vec3 linear_mode_at(const Model& model, const ElasticRow& row, std::int32_t mode) PALPATE_RT {
+  const Triangle& triangle = model.triangle[static_cast<std::size_t>(row.foot.triangle)];
+  Vec3 u;
+  for (int k = 0; k < 3; ++k) {  // bound: 3
+    const float* shape = linear_shapes(model, triangle.vertex[k]) + 3 * mode;
+    u += row.foot.weight[k] *
+         Vec3{static_cast<Real>(shape[0]), static_cast<Real>(shape[1]), static_cast<Real>(shape[2])};
+  }
+  return u;
+}
+
+}  // namespace
+
+Vec3 CarriedSurface::displacement(std::int32_t vertex) const PALPATE_RT {
+  const Vec3 rest = model.vertex_m[static_cast<std::size_t>(vertex)];
+  return carry(model, y, vertex).position_w - rest;
+}
+
+void CarriedSurface::place(Vec3 centre_w, Real margin_m, std::int32_t triangle, ElasticRow& row) const PALPATE_RT {
+  CarriedTriangle last;
+  row.centre_w = centre_w;
+  row.foot = foot::search(
+      model,
+      [this, &last](std::int32_t t) PALPATE_RT {
+        last = carried_triangle(model, y, t);
+        return last.corners;
+      },
+      centre_w, triangle);
+  if (row.foot.state == FootState::kFound) {
+    row.travel_m = margin_m - row.foot.height_m;
+    show_modes(model, y, travel_slope(model, row, last), row);
+  } else if (place_on_facet(centre_w, triangle, row)) {
+    row.travel_m = margin_m - row.foot.height_m;
+    row.rise = row.foot.normal_w;
+    show_modes(model, y, facet_slope(row), row);
+  } else {
+    return;
+  }
+  show_own_terms(model, row);
+}
+
+bool CarriedSurface::place_on_facet(Vec3 centre_w, std::int32_t triangle, ElasticRow& row) const PALPATE_RT {
+  row.foot = {};
+  if (*looked >= surface_work_share(model.params)) return false;
+  const Vec3 moved = displacement(model.triangle[static_cast<std::size_t>(triangle)].vertex[0]);
+  const SurfacePoint facet = closest_surface_point(model, centre_w - moved, kHuge, triangle);
+  *looked += facet.looked;
+  if (!facet.found) return false;
+  row.foot.triangle = facet.triangle;
+  facet_weights(model, facet.triangle, facet.closest_w, row.foot.weight);
+  row.foot.normal_w = facet.normal_w;
+  row.foot.foot_w = facet.closest_w + moved;
+  row.foot.height_m = facet.signed_distance_m;
+  return true;
+}
+
+Real linear_compliance_m_per_N(const Model& model, const ElasticRow& a, const ElasticRow& b) PALPATE_RT {
+  Real sum = 0;
+  for (std::int32_t m = 0; m < model.params.elastic_linear; ++m) {  // bound: kMaxLinearModes
+    sum += dot(linear_mode_at(model, a, m), a.foot.normal_w) * dot(linear_mode_at(model, b, m), b.foot.normal_w);
+  }
+  return sum;
+}
+
+}  // namespace palpate

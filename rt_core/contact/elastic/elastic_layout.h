@@ -1,0 +1,42 @@
+// How an image holds an elastic body. Amplitudes p of its soft modes are in J^1/2: the linear energy is p.p / 2.
+//   u(x) = sum_t shape_t(x) y_t,   y = p_a, then p_a p_b for the pairs a <= b in the order of pair_place()
+// (a pair's shape has the 1/2 of its square in it). A vertex of the surface is a block of floats:
+//   per term t 12: u, and du_i/dX_j row by row;  c (m/N), c1 (m/N2), mean curvature (1/m), 0;
+//   per linear mode 3: its shape in m/J^1/2. Rounded up to whole lanes of four.
+// V = p.p/2 + p_a p_b W3_ab + p_a p_b W4_ab,  W3 = cubic . p,  W4 = quartic . y2  (y2 the pairs' products).
+#pragma once
+
+#include "rt_core/lanes.h"
+#include "rt_core/model.h"
+
+namespace palpate::elastic_layout {
+
+inline constexpr std::int32_t kTermFloats = 12, kOwnFloats = 4;
+
+constexpr std::int32_t pairs(std::int32_t soft) { return soft * (soft + 1) / 2; }
+constexpr std::int32_t terms(std::int32_t soft) { return soft + pairs(soft); }
+// a <= b
+constexpr std::int32_t pair_place(std::int32_t a, std::int32_t b, std::int32_t soft) {
+  return a * soft - a * (a - 1) / 2 + b - a;
+}
+constexpr std::int32_t vertex_floats(std::int32_t soft, std::int32_t linear) {
+  return whole_lanes(kTermFloats * terms(soft) + kOwnFloats + 3 * linear, 4);
+}
+
+inline constexpr std::int32_t kMaxPairs = pairs(kMaxSoftModes), kMaxTerms = terms(kMaxSoftModes);
+
+inline std::int32_t vertex_floats(const Model& model) PALPATE_RT {
+  return vertex_floats(model.params.elastic_soft, model.params.elastic_linear);
+}
+inline const float* vertex_block(const Model& model, std::int32_t vertex) PALPATE_RT {
+  return model.elastic_vertex.data() +
+         static_cast<std::size_t>(vertex) * static_cast<std::size_t>(vertex_floats(model));
+}
+inline const float* own_terms(const Model& model, std::int32_t vertex) PALPATE_RT {
+  return vertex_block(model, vertex) + kTermFloats * terms(model.params.elastic_soft);
+}
+inline const float* linear_shapes(const Model& model, std::int32_t vertex) PALPATE_RT {
+  return own_terms(model, vertex) + kOwnFloats;
+}
+
+}  // namespace palpate::elastic_layout

@@ -1,0 +1,100 @@
+#include "rt_core/contact/elastic/soft_energy.h"
+
+namespace palpate {
+
+namespace {
+
+using namespace elastic_layout;
+
+// One homogeneous part P of degree n: W = d2P / (n (n - 1)), so dP = n W p / ... as below.
+struct Part {
+  Real energy = 0;
+  Real w[kMaxPairs];       // P = p.W p
+  Real wp[kMaxSoftModes];  // W p
+};
+
+void multiply(const double* columns, const Real* x, std::int32_t count, std::int32_t rows, Real* out) PALPATE_RT {
+  for (std::int32_t i = 0; i < rows; ++i) out[i] = 0;  // bound: pairs
+  for (std::int32_t c = 0; c < count; ++c) {           // bound: pairs^2
+    const double* column = columns + c * rows;
+    const Real factor = x[c];
+    for (std::int32_t i = 0; i < rows; ++i) out[i] += factor * column[i];
+  }
+}
+
+void finish(std::int32_t soft, const Real* p, Part& part) PALPATE_RT {
+  for (std::int32_t a = 0; a < soft; ++a) part.wp[a] = 0;
+  std::int32_t k = 0;
+  for (std::int32_t a = 0; a < soft; ++a) {  // bound: pairs
+    for (std::int32_t b = a; b < soft; ++b, ++k) {
+      part.wp[a] += part.w[k] * p[b];
+      if (b != a) part.wp[b] += part.w[k] * p[a];
+    }
+  }
+  for (std::int32_t a = 0; a < soft; ++a) part.energy += p[a] * part.wp[a];
+}
+
+// Adds f P, with f = f(rho), f1 and f2 its derivatives; inside the ball f = 1. With g = dP = n W p, H = n (n - 1) W,
+// and rho's gradient e = p / rho, curvature (1 - e e') / rho.
+struct Continuation {
+  Real f = 1, f1 = 0, f2 = 0, rho = 0;
+};
+void add_part(std::int32_t soft, const Real* p, const Part& part, Real degree, const Continuation& c,
+              SoftEnergy& out) PALPATE_RT {
+  out.energy_J += c.f * part.energy;
+  const Real inverse = c.rho > 0 ? 1.0 / c.rho : 0.0, along = part.energy * c.f1 * inverse;
+  for (std::int32_t a = 0; a < soft; ++a) out.slope[a] += c.f * degree * part.wp[a] + along * p[a];
+  const Real bend = c.f * degree * (degree - 1), cross = c.f1 * degree * inverse,
+             twice = (part.energy * c.f2 - along) * inverse * inverse;
+  std::int32_t k = 0;
+  for (std::int32_t a = 0; a < soft; ++a) {  // bound: pairs
+    for (std::int32_t b = a; b < soft; ++b, ++k) {
+      Real h = bend * part.w[k];
+      if (c.rho > 0) h += cross * (part.wp[a] * p[b] + part.wp[b] * p[a]) + twice * p[a] * p[b];
+      if (a == b) h += along;
+      out.curvature[a * soft + b] += h;
+      if (a != b) out.curvature[b * soft + a] += h;
+    }
+  }
+}
+
+// Of t^n along its tangent at the radius: f = (r^n + n r^(n-1) (rho - r)) / rho^n.
+Continuation continued(Real degree, Real radius, Real rho) PALPATE_RT {
+  const Real square = rho * rho, power = degree == 3 ? square * rho : square * square;
+  const Real radius_power = degree == 3 ? radius * radius : radius * radius * radius;  // r^(n-1)
+  const Real p1 = degree * radius_power, value = radius_power * radius + p1 * (rho - radius);
+  const Real s = 1.0 / power, s1 = -degree * s / rho, s2 = degree * (degree + 1) * s / square;
+  return {value * s, p1 * s + value * s1, 2 * p1 * s1 + value * s2, rho};
+}
+
+}  // namespace
+
+void soft_products(std::int32_t soft, const Real* p, Real* y) PALPATE_RT {
+  for (std::int32_t a = 0; a < soft; ++a) y[a] = p[a];
+  std::int32_t k = soft;
+  for (std::int32_t a = 0; a < soft; ++a) {  // bound: pairs
+    for (std::int32_t b = a; b < soft; ++b) y[k++] = p[a] * p[b];
+  }
+}
+
+void soft_energy(const Model& model, const Real* p, const Real* y, SoftEnergy& out) PALPATE_RT {
+  const std::int32_t soft = model.params.elastic_soft, pair = pairs(soft);
+  Real square = 0;
+  for (std::int32_t a = 0; a < soft; ++a) square += p[a] * p[a];
+  out.energy_J = 0.5 * square;
+  for (std::int32_t a = 0; a < soft; ++a) {  // bound: soft^2
+    out.slope[a] = p[a];
+    for (std::int32_t b = 0; b < soft; ++b) out.curvature[a * soft + b] = a == b ? 1.0 : 0.0;
+  }
+  const Real rho = square_root(square), radius = model.params.elastic_radius_rootJ;
+  out.is_outside = !(rho <= radius);
+  Part third, fourth;
+  multiply(model.elastic_cubic.data(), p, soft, pair, third.w);
+  multiply(model.elastic_quartic.data(), y + soft, pair, pair, fourth.w);
+  finish(soft, p, third);
+  finish(soft, p, fourth);
+  add_part(soft, p, third, 3, out.is_outside ? continued(3, radius, rho) : Continuation{}, out);
+  add_part(soft, p, fourth, 4, out.is_outside ? continued(4, radius, rho) : Continuation{}, out);
+}
+
+}  // namespace palpate
