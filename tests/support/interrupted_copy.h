@@ -10,7 +10,21 @@
 #include <cstddef>
 #include <functional>
 
+#if defined(__has_feature)
+#if __has_feature(realtime_sanitizer)
+#include <sanitizer/rtsan_interface.h>
+#define PALPATE_REALTIME_SANITIZER
+#endif
+#endif
+
 namespace palpate::test {
+
+// While it lives, the real-time sanitizer looks away: what runs in the fault handler is the test's, not the copy's.
+#ifdef PALPATE_REALTIME_SANITIZER
+using OutOfRealTime = __rtsan::ScopedDisabler;
+#else
+struct OutOfRealTime {};
+#endif
 
 class InterruptedCopy {
  public:
@@ -47,6 +61,7 @@ class InterruptedCopy {
  private:
   // A fault of the test's own making may call what it likes: it comes from the copy loop, never from within a library.
   void fault(void* address) {
+    [[maybe_unused]] const OutOfRealTime handler;
     auto* at = static_cast<std::byte*>(address);
     if (fired_ || at < page_ || at >= page_ + kPage) {
       sigaction(SIGSEGV, &before_, nullptr);  // a real one: the instruction runs again, unhandled
