@@ -33,6 +33,16 @@ RegionCentre region_centre(const RegionRows& rows, Vec3 fallback_normal) PALPATE
 // The same with the region's last normal as the fallback; before the first, that of the first row.
 RegionCentre centre_of(const Region& region, const RegionRows& rows) PALPATE_RT;
 
+// The deepest row of a region (ties: the first), whose place its far field is that of. Not for an empty one. Bound:
+// rows.
+inline const Contact& deepest_of(const RegionRows& rows) PALPATE_RT {
+  std::int32_t deepest = 0;
+  for (std::int32_t k = 1; k < rows.count; ++k) {  // bound: rows
+    if (rows[k].depth_m > rows[deepest].depth_m) deepest = k;
+  }
+  return rows[deepest];
+}
+
 // Where a region leans on the body, once, at its first touch: from the forces in rows[].force_N, which are those at the
 // depths of the rest surface. Fixed to the tool from then on, so that the compliance between two regions of a rigid
 // tool is a constant of their common life. Were it to follow the centres of pressure, its change under load, F.dC F /

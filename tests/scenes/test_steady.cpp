@@ -5,24 +5,17 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "rt_core/tick.h"
 #include "sim_host/tick_memory.h"
+#include "tests/scenes/scene_names.h"
 #include "tests/support/image_file.h"
 #include "tests/support/scripted_hand.h"
 
 namespace palpate::test {
 namespace {
-
-std::vector<std::string> scene_names() {
-  std::vector<std::string> names;
-  std::istringstream list(PALPATE_SCENES);
-  for (std::string name; std::getline(list, name, '|');) names.push_back(name);
-  return names;
-}
 
 // Longest run of ticks in which one component of the force changed its sense every time, by more than `least` (N or
 // Nm) each. A contact that settles turns a few times; an unstable or cycling one goes on for hundreds.

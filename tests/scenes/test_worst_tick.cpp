@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <random>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -11,18 +10,12 @@
 #include "rt_core/surface/closest_point.h"
 #include "rt_core/tick.h"
 #include "sim_host/tick_memory.h"
+#include "tests/scenes/scene_names.h"
 #include "tests/support/image_file.h"
 #include "tests/support/scripted_hand.h"
 
 namespace palpate::test {
 namespace {
-
-std::vector<std::string> scene_names() {
-  std::vector<std::string> names;
-  std::istringstream list(PALPATE_SCENES);
-  for (std::string name; std::getline(list, name, '|');) names.push_back(name);
-  return names;
-}
 
 class WorstTick : public testing::TestWithParam<std::string> {
  protected:

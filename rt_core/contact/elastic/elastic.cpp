@@ -338,11 +338,7 @@ class Linearised {
  private:
   std::int32_t regions() const PALPATE_RT { return scratch_.rows.regions; }
   const ElasticRow& leading_row(std::int32_t r) const PALPATE_RT {
-    const RegionRows rows = rows_of(scratch_, r);
-    std::int32_t deepest = 0;
-    for (std::int32_t k = 1; k < rows.count; ++k)  // bound: rows
-      if (rows[k].depth_m > rows[deepest].depth_m) deepest = k;
-    return work_.row[rows[deepest].piece];
+    return work_.row[deepest_of(rows_of(scratch_, r)).piece];
   }
   void add_tip(Contact& contact, std::int32_t at) PALPATE_RT {
     const ElasticRow& row = work_.row[contact.piece];

@@ -59,11 +59,7 @@ struct TipLoad : TipLaws {
 // The far field under a region is that of its deepest tip.
 FarField far_field_of(const Model& model, const RegionRows& rows) PALPATE_RT {
   if (model.params.response_law != ResponseLaw::kTip) return {};
-  std::int32_t deepest = 0;
-  for (std::int32_t k = 1; k < rows.count; ++k) {  // bound: tips
-    if (rows[k].depth_m > rows[deepest].depth_m) deepest = k;
-  }
-  const TipLaw& law = model.tip_law[static_cast<std::size_t>(rows[deepest].piece)];
+  const TipLaw& law = model.tip_law[static_cast<std::size_t>(deepest_of(rows).piece)];
   return {law.c0_m_per_N, law.c1_m_per_N2, law.force_max_N};
 }
 
