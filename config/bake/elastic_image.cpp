@@ -1,4 +1,5 @@
 #include "config/bake/elastic_image.h"
+#include "config/bake/vertex_slopes.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -322,10 +323,29 @@ void add_vertices(const elastic::ElasticBody<3>& body, const Shapes& shapes, con
     *out++ = static_cast<float>(c);
     *out++ = static_cast<float>(c1);
     *out++ = static_cast<float>(curvature[v]);
-    ++out;
+    out += elastic_layout::kOwnFloats - 3;
     for (int m = s; m < s + linear; ++m) {
       const Field phi = body.modes.phi_1pm.col(m) / std::sqrt(body.modes.lambda_Npm3[m]);
       for (int i = 0; i < 3; ++i) *out++ = show(phi, 3, i);
+    }
+  }
+}
+
+// The slopes of c, c1 and curvature along the surface, from what stands at the vertices.
+void add_own_slopes(const elastic::ElasticBody<3>& body, ImageContents& image) {
+  using namespace elastic_layout;
+  const int s = body.soft, linear = static_cast<int>(body.modes.lambda_Npm3.size()) - s;
+  const auto stride = at(vertex_floats(s, linear)), own = at(kTermFloats * terms(s));
+  for (std::size_t which = 0; which < kOwnSlopes; ++which) {
+    std::vector<double> value(image.vertex_m.size());
+    for (std::size_t v = 0; v < value.size(); ++v)
+      value[v] = static_cast<double>(image.elastic_vertex[stride * v + own + which]);
+    const std::vector<Vec3> slope = vertex_slopes(image.vertex_m, image.vertex_normal, image.triangle, value);
+    for (std::size_t v = 0; v < value.size(); ++v) {
+      float* out = &image.elastic_vertex[stride * v + own + kOwnValues + 3 * which];
+      out[0] = static_cast<float>(slope[v].x);
+      out[1] = static_cast<float>(slope[v].y);
+      out[2] = static_cast<float>(slope[v].z);
     }
   }
 }
@@ -374,6 +394,7 @@ ElasticReport add_elastic_body(const SceneDesc& scene, ImageContents& image, std
   const Shapes shapes = term_shapes(body, NodalGradient(mesh, rest.surface()));
   add_energy(body.maps.potential, image);
   add_vertices(body, shapes, self, image, corner_normals(scene.body, image.vertex_m, image.triangle));
+  add_own_slopes(body, image);
   ModelParams& p = image.params;
   p.elastic_soft = body.soft;
   p.elastic_linear = static_cast<std::int32_t>(body.modes.lambda_Npm3.size()) - body.soft;

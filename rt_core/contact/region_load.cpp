@@ -49,26 +49,6 @@ Vec3 carried_motion(const Pose& before, const Pose& now, Vec3 point) PALPATE_RT 
   return point - transform(before, inverse_transform(now, point));
 }
 
-// Motion since the last tick of the tool material that is at `point` now, rotation included: exact where one piece
-// touches; the mean by force where pieces that move against one another share the region.
-Vec3 material_motion(const Model& model, const State& state, const RegionRows& rows, Vec3 point) PALPATE_RT {
-  if (!is_articulated(model)) return carried_motion(state.tool_previous_w, state.tool_w, point);
-  Vec3 sum;
-  Real total = 0;
-  std::int32_t last = -1;
-  Vec3 motion;
-  for (std::int32_t k = 0; k < rows.count; ++k) {  // bound: rows
-    const std::int32_t piece = rows[k].piece;
-    if (piece != last) {
-      motion = carried_motion(carrier_previous_w(model, state, piece), carrier_w(model, state, piece), point);
-      last = piece;
-    }
-    sum += rows[k].force_N * motion;
-    total += rows[k].force_N;
-  }
-  return total > 0 ? (1.0 / total) * sum : motion;
-}
-
 void add_tangential_stiffness(ContactStiffness& stiffness, const FrictionForce& friction, Vec3 normal,
                               Vec3 arm) PALPATE_RT {
   const Vec3 axis = abs_of(normal.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
@@ -76,6 +56,15 @@ void add_tangential_stiffness(ContactStiffness& stiffness, const FrictionForce& 
   const Vec3 along = unit_or(friction.direction_w, any), across = cross(normal, along);
   add_spring(stiffness, friction.along_N_per_m, along, cross(arm, along));
   add_spring(stiffness, friction.across_N_per_m, across, cross(arm, across));
+}
+
+Real in_series_N_per_m(Real stiffness_N_per_m, Real yield_m_per_N) PALPATE_RT {
+  return stiffness_N_per_m / (1.0 + stiffness_N_per_m * yield_m_per_N);
+}
+void yield_to(const SurfaceUnderRub& under, FrictionForce& friction) PALPATE_RT {
+  friction.along_N_per_m = in_series_N_per_m(friction.along_N_per_m, under.yield_m_per_N[0]);
+  friction.reversal_N_per_m = in_series_N_per_m(friction.reversal_N_per_m, under.yield_m_per_N[0]);
+  friction.across_N_per_m = in_series_N_per_m(friction.across_N_per_m, under.yield_m_per_N[1]);
 }
 
 }  // namespace
@@ -160,14 +149,33 @@ void press(Scratch& scratch, Region& region, const RegionRows& rows, const Regio
   if (load.is_beyond) scratch.status |= Status::kDepthBeyondRange;
 }
 
+Vec3 material_motion(const Model& model, const State& state, const RegionRows& rows, Vec3 point_w) PALPATE_RT {
+  if (!is_articulated(model)) return carried_motion(state.tool_previous_w, state.tool_w, point_w);
+  Vec3 sum;
+  Real total = 0;
+  std::int32_t last = -1;
+  Vec3 motion;
+  for (std::int32_t k = 0; k < rows.count; ++k) {  // bound: rows
+    const std::int32_t piece = rows[k].piece;
+    if (piece != last) {
+      motion = carried_motion(carrier_previous_w(model, state, piece), carrier_w(model, state, piece), point_w);
+      last = piece;
+    }
+    sum += rows[k].force_N * motion;
+    total += rows[k].force_N;
+  }
+  return total > 0 ? (1.0 / total) * sum : motion;
+}
+
 void slide(const Model& model, const State& state, Scratch& scratch, const FrictionParameters& parameters,
-           const RegionRows& rows, FrictionLoad& load, Region& region) PALPATE_RT {
-  load.step_w = material_motion(model, state, rows, region.centre_w);
+           const RegionRows& rows, FrictionLoad& load, Region& region, const SurfaceUnderRub& under) PALPATE_RT {
+  load.step_w = material_motion(model, state, rows, region.centre_w) - under.step_w;
   load.normal_w = region.normal_w;
   load.force_N = region.normal_force_N;
   load.depth_m = region.depth_equivalent_m;
   FrictionMemory memory{region.stretch_w, region.tangential_k_N_per_m, region.friction};
-  const FrictionForce friction = friction_step(parameters, load, memory);
+  FrictionForce friction = friction_step(parameters, load, memory);
+  yield_to(under, friction);
   region.stretch_w = memory.stretch_w;
   region.tangential_k_N_per_m = memory.stiffness_N_per_m;
   region.friction = memory.mode;

@@ -115,10 +115,20 @@ void press_regions(const Laws& laws, State& state, Scratch& scratch) PALPATE_RT 
   }
 }
 
+// The body's surface under a region that rubs: its motion since the last tick, and what it gives under a force along
+// the friction's stretch and across it. As it is, a body that holds still.
+struct SurfaceUnderRub {
+  Vec3 step_w;
+  Real yield_m_per_N[2] = {};
+};
 // Friction at the region's centre, added to its wrench and energy and to scratch.stiffness. The caller fills
 // region.depth_equivalent_m and `load`'s tangent and depth rate; motion, normal and force are taken from the region.
 void slide(const Model& model, const State& state, Scratch& scratch, const FrictionParameters& parameters,
-           const RegionRows& rows, FrictionLoad& load, Region& region) PALPATE_RT;
+           const RegionRows& rows, FrictionLoad& load, Region& region, const SurfaceUnderRub& under = {}) PALPATE_RT;
+
+// Motion since the last tick of the tool material that is at `point` now, rotation included: exact where one piece
+// touches; the mean by force where pieces that move against one another share the region.
+Vec3 material_motion(const Model& model, const State& state, const RegionRows& rows, Vec3 point_w) PALPATE_RT;
 
 // Friction of whole tips, region by region, with the spring of their normal stiffness; then sum_up.
 void rub_tips(const Model& model, State& state, Scratch& scratch) PALPATE_RT;

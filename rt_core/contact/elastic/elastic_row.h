@@ -1,4 +1,4 @@
-// One tip on the carried surface x = X + u(X; p) of an elastic body, and what the method keeps between its steps.
+// One tip on the carried surface x = X + u(X; p) of an elastic body.
 #pragma once
 
 #include "rt_core/contact/elastic/soft_energy.h"
@@ -37,14 +37,5 @@ struct CarriedSurface {
 
 // Travel of the linear modes at one row per newton at the other.
 Real linear_compliance_m_per_N(const Model& model, const ElasticRow& a, const ElasticRow& b) PALPATE_RT;
-
-struct ElasticWork {
-  ElasticRow row[kMaxPieces];  // by piece
-  SoftEnergy energy;           // at the amplitudes that the rows were placed with
-  Real y[elastic_layout::kMaxTerms];
-};
-
-// In the block of a Scratch made for the method.
-inline ElasticWork& work_of(Scratch& scratch) PALPATE_RT { return *reinterpret_cast<ElasticWork*>(scratch.own.data()); }
 
 }  // namespace palpate

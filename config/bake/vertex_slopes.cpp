@@ -1,0 +1,57 @@
+#include "config/bake/vertex_slopes.h"
+
+#include <cmath>
+
+#include "rt_core/vec.h"
+
+namespace palpate {
+
+namespace {
+
+// Normal equations of a gradient in the plane of two axes.
+struct Fit {
+  Vec3 axis[2];
+  double xx = 0, xy = 0, yy = 0, xv = 0, yv = 0;
+};
+
+void add(Fit& fit, Vec3 away_m, double difference) {
+  const double x = dot(away_m, fit.axis[0]), y = dot(away_m, fit.axis[1]);
+  // Weighted by the distance to -2: each neighbour states a slope, near ones no less than far ones.
+  const double weight = 1 / squared_norm(away_m);
+  fit.xx += weight * x * x;
+  fit.xy += weight * x * y;
+  fit.yy += weight * y * y;
+  fit.xv += weight * x * difference;
+  fit.yv += weight * y * difference;
+}
+
+Vec3 gradient_of(const Fit& fit) {
+  const double determinant = fit.xx * fit.yy - fit.xy * fit.xy, size = fit.xx + fit.yy;
+  if (!(determinant > 1e-6 * size * size)) return {};
+  return ((fit.yy * fit.xv - fit.xy * fit.yv) / determinant) * fit.axis[0] +
+         ((fit.xx * fit.yv - fit.xy * fit.xv) / determinant) * fit.axis[1];
+}
+
+}  // namespace
+
+std::vector<Vec3> vertex_slopes(std::span<const Vec3> vertex_m, std::span<const Vec3> normal,
+                                std::span<const Triangle> triangles, std::span<const double> value) {
+  std::vector<Fit> fit(vertex_m.size());
+  for (std::size_t v = 0; v < fit.size(); ++v) {
+    const Vec3 n = normal[v], any = std::abs(n.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+    fit[v].axis[0] = unit_or(tangential_part(any, n), any);
+    fit[v].axis[1] = cross(n, fit[v].axis[0]);
+  }
+  for (const Triangle& t : triangles)
+    for (std::size_t k = 0; k < 3; ++k) {  // every inner edge twice, from both its ends
+      const auto a = static_cast<std::size_t>(t.vertex[k]), b = static_cast<std::size_t>(t.vertex[(k + 1) % 3]);
+      if (!(squared_norm(vertex_m[b] - vertex_m[a]) > 0)) continue;
+      add(fit[a], vertex_m[b] - vertex_m[a], value[b] - value[a]);
+      add(fit[b], vertex_m[a] - vertex_m[b], value[a] - value[b]);
+    }
+  std::vector<Vec3> slope(fit.size());
+  for (std::size_t v = 0; v < fit.size(); ++v) slope[v] = gradient_of(fit[v]);
+  return slope;
+}
+
+}  // namespace palpate

@@ -1,0 +1,16 @@
+// How numbers at a mesh's vertices change along its surface.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "rt_core/model.h"
+
+namespace palpate {
+
+// Gradient along the surface at every vertex, in units of value per metre: what fits the differences to the neighbours
+// best by least squares, with no part along the vertex's normal. Zero where the neighbours span no plane.
+std::vector<Vec3> vertex_slopes(std::span<const Vec3> vertex_m, std::span<const Vec3> normal,
+                                std::span<const Triangle> triangles, std::span<const double> value);
+
+}  // namespace palpate

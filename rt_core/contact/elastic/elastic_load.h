@@ -1,0 +1,56 @@
+// The tips in contact with an elastic body, with their own far fields and the body's, and what accounting asks of them.
+#pragma once
+
+#include "rt_core/contact/elastic/elastic_row.h"
+#include "rt_core/contact/region_load.h"
+#include "rt_core/contact/tips/travel.h"
+
+namespace palpate {
+
+// c and c1 under one place.
+FarField own_field(const ElasticRow& row) PALPATE_RT;
+// How the integral of a far field over its force, at one force, changes with its two coefficients.
+struct FarChange {
+  Real per_c0_N2, per_c1_N3;
+};
+FarChange far_change(const FarField& far, Real force_N) PALPATE_RT;
+
+struct ElasticLoad : TipLaws {
+  static constexpr bool kPullsAside = true;
+  Tip tip[kMaxPieces];
+  const ElasticRow* placed[kMaxPieces];
+  Real per_curvature[kMaxPieces];
+  TipRegion tips_of[kMaxRegions];
+  FarField own[kMaxRegions];  // c and c1 of the region, without the modes
+
+  std::int32_t at(std::int32_t r, std::int32_t k) const PALPATE_RT {
+    return static_cast<std::int32_t>(region[r].tip - tip) + k;
+  }
+  Real softening(std::int32_t r, Real shift_m) const PALPATE_RT {
+    const LawPoint sum = load(r, shift_m);
+    return 1.0 / (1.0 + far_slope_m_per_N(region[r].far, sum.force_N) * sum.tangent_N_per_m);
+  }
+  // Normal stiffness under region r as if the soft modes held still.
+  Real place_N_per_m(std::int32_t r, Real shift_m) const PALPATE_RT {
+    const LawPoint sum = load(r, shift_m);
+    return sum.tangent_N_per_m / (1.0 + far_slope_m_per_N(own[r], sum.force_N) * sum.tangent_N_per_m);
+  }
+  // The force along the surface that the stored energy asks for where c, c1 and the curvature change along it.
+  RowLoad row(std::int32_t r, std::int32_t k, Real shift_m) const PALPATE_RT {
+    const std::int32_t i = at(r, k);
+    const ElasticRow& stands = *placed[i];
+    const Real e = tip[i].depth_m - shift_m;
+    const LawPoint point = tip_at(tip[i], e);
+    const Real energy = tip_energy_J(tip[i], e), f = point.force_N;
+    const FarChange change = far_change(own[r], f);
+    const Vec3 aside = f * (stands.rise - stands.foot.normal_w) + change.per_c0_N2 * stands.c_gradient +
+                       change.per_c1_N3 * stands.c1_gradient -
+                       (energy / tip[i].scale * per_curvature[i]) * stands.curvature_gradient;
+    // Never steeper than 45 degrees: far beyond the range the second power of the force is no physics.
+    const Real length = norm(aside), share = length > f ? f / length : 1.0;
+    return {point, energy, stands.centre_w, share * aside, e > tip[i].local.tip->depth_max_m};
+  }
+  Real coupling_J(std::int32_t r, Real force_N, Real) const PALPATE_RT { return far_energy_J(own[r], force_N); }
+};
+
+}  // namespace palpate

@@ -1,0 +1,19 @@
+// What the elastic method keeps between its steps within a tick.
+#pragma once
+
+#include "rt_core/contact/elastic/body_rub.h"
+
+namespace palpate {
+
+struct ElasticWork {
+  ElasticRow row[kMaxPieces];  // by piece
+  SoftEnergy energy;           // at the amplitudes that the rows were placed with
+  Real y[elastic_layout::kMaxTerms];
+  BodyRub rub[kMaxRegions];         // by region of the tick
+  Real place_N_per_m[kMaxRegions];  // normal stiffness of the place alone, as if the soft modes held still
+};
+
+// In the block of a Scratch made for the method.
+inline ElasticWork& work_of(Scratch& scratch) PALPATE_RT { return *reinterpret_cast<ElasticWork*>(scratch.own.data()); }
+
+}  // namespace palpate

@@ -1,0 +1,232 @@
+#include "rt_core/contact/elastic/linearised.h"
+
+#include "rt_core/cholesky.h"
+
+namespace palpate {
+
+namespace {
+
+using namespace elastic_layout;
+
+// Of the linear stiffness: a softer linearisation is stiffened, and the next one tells. Keeps a body at a limit point
+// from being thrown across it.
+constexpr Real kLeastStiffness = 1e-2;
+// Of the ball's radius: the longest step of one linearisation.
+constexpr Real kLongestStep = 0.25;
+// Where c1 changes a place's compliance by more than half, the place goes on by its tangent: with c1 < 0 it would turn
+// back, and with any c1 the square of a force stands for little beyond.
+constexpr Real kLeastFarShare = 0.5;
+
+// The lower triangle of h becomes the factor of h + shift; false when a pivot falls below the least stiffness.
+bool factor_shifted(const Real* h, Real shift, std::int32_t n, Real* factor) PALPATE_RT {
+  for (std::int32_t j = 0; j < n; ++j) {  // bound: soft^3 / 6
+    Real diagonal = h[j * n + j] + shift;
+    for (std::int32_t k = 0; k < j; ++k) diagonal -= factor[j * n + k] * factor[j * n + k];
+    if (!(diagonal >= kLeastStiffness && diagonal < kHuge)) return false;
+    const Real pivot = square_root(diagonal), inverse = 1.0 / pivot;
+    factor[j * n + j] = pivot;
+    for (std::int32_t i = j + 1; i < n; ++i) {
+      Real sum = h[i * n + j];
+      for (std::int32_t k = 0; k < j; ++k) sum -= factor[i * n + k] * factor[j * n + k];
+      factor[i * n + j] = sum * inverse;
+    }
+  }
+  return true;
+}
+
+// As stiff as it has to be for that; the linear body where nothing helps. The linear stiffness is 1.
+void factor_stiffened(const Real* h, std::int32_t n, Real* factor) PALPATE_RT {
+  for (const Real shift : {0.0, 0.1, 0.5, 2.0, 8.0}) {  // bound: 5
+    if (factor_shifted(h, shift, n, factor)) return;
+  }
+  for (std::int32_t i = 0; i < n; ++i)  // bound: soft^2
+    for (std::int32_t j = 0; j <= i; ++j) factor[i * n + j] = i == j ? 1.0 : 0.0;
+}
+
+// Of the whole H: what the forces of a region add by the turn of its pull.
+void add_turn(Real force_N, const Real* turn, std::int32_t n, Real* h) PALPATE_RT {
+  std::int32_t pair = 0;
+  for (std::int32_t a = 0; a < n; ++a) {  // bound: pairs
+    for (std::int32_t b = a; b < n; ++b, ++pair) {
+      h[a * n + b] += force_N * turn[pair];
+      if (a != b) h[b * n + a] += force_N * turn[pair];
+    }
+  }
+}
+// Friction along one axis: its stiffness and its force.
+void add_rub(const RubAxis& axis, std::int32_t n, Real* h, Real* force) PALPATE_RT {
+  for (std::int32_t a = 0; a < n; ++a) {  // bound: soft^2
+    force[a] += axis.force_N * axis.sweep[a];
+    const Real row = axis.stiffness_N_per_m * axis.sweep[a];
+    for (std::int32_t b = 0; b < n; ++b) h[a * n + b] += row * axis.sweep[b];
+  }
+}
+void answer(const Real* factor, const Real* load, std::int32_t n, Real* moved) PALPATE_RT {
+  for (std::int32_t a = 0; a < n; ++a) moved[a] = load[a];  // bound: soft
+  cholesky_solve(factor, moved, n);
+}
+
+// Hertz on a body of mean curvature k instead of a plane: the tip's radius R becomes R / (1 + k R).
+struct CurvatureFactor {
+  Real value, per_curvature;
+};
+CurvatureFactor curvature_factor(const TipLaw& law, Real radius_m, Real curvature) PALPATE_RT {
+  if (law.half_power != 3) return {1, 0};
+  const Real sum = clamp_to(1 + curvature * radius_m, 0.25, 4.0), value = 1.0 / square_root(sum);
+  return {value, -0.5 * value * radius_m / sum};
+}
+
+}  // namespace
+
+CarriedSurface look(const Model& model, const State& state, Scratch& scratch) PALPATE_RT {
+  ElasticWork& work = work_of(scratch);
+  soft_products(model.params.elastic_soft, state.elastic.soft_rootJ.data(), work.y);
+  soft_energy(model, state.elastic.soft_rootJ.data(), work.y, work.energy);
+  return {model, work.y, &scratch.surface_work};
+}
+
+void let_go(const Model& model, const SoftEnergy& energy, Real* step) PALPATE_RT {
+  const std::int32_t n = model.params.elastic_soft;
+  Real factor[kMaxSoftModes * kMaxSoftModes];
+  factor_stiffened(energy.curvature, n, factor);
+  for (std::int32_t a = 0; a < n; ++a) step[a] = -energy.slope[a];
+  cholesky_solve(factor, step, n);
+}
+
+FarField own_field(const ElasticRow& row) PALPATE_RT {
+  const Real c = row.c_m_per_N, c1 = abs_of(row.c1_m_per_N2);
+  if (!(c > 0)) return {c, 0};
+  // (1 - kLeastFarShare) c of slope to spare, at 2 c1 of it per newton.
+  return {c, row.c1_m_per_N2, c1 * kHuge > c ? (1 - kLeastFarShare) * c / (2 * c1) : kHuge};
+}
+
+FarChange far_change(const FarField& far, Real force_N) PALPATE_RT {
+  const Real f = force_N, square = 0.5 * f * f;
+  if (!(abs_of(far.c1_m_per_N2) > 0)) return {square, 0};
+  const Real end = far.force_max_N;
+  if (f <= end) return {square, f * f * f / 3};
+  // Along the tangent from `end`, which moves with c and 1 / c1.
+  const Real beyond = (f - end) * (f - end) * end;
+  return {square + far.c1_m_per_N2 / far.c0_m_per_N * beyond, end * (f * f - end * f + end * end / 3) - beyond};
+}
+
+Linearised::Linearised(const Model& model, State& state, Scratch& scratch, ElasticLoad& load) PALPATE_RT
+    : model_(model),
+      state_(state),
+      scratch_(scratch),
+      load_(load),
+      work_(work_of(scratch)),
+      friction_(friction_parameters(model.params)),
+      n_(model.params.elastic_soft) {
+  for (std::int32_t r = 0; r < regions(); ++r) {  // bound: kMaxRegions
+    const RegionRows rows = rows_of(scratch, r);
+    const Region& region = state.region[scratch.rows.slot[r]];
+    work_.rub[r] = begin_rub(region, material_motion(model, state, rows, work_.row[rows[0].piece].foot.foot_w));
+  }
+}
+
+void Linearised::aim_rubs(const Real* force_N) PALPATE_RT {
+  for (std::int32_t r = 0; r < regions(); ++r)  // bound: kMaxRegions
+    aim_rub(model_, work_.y, friction_, *leading_[r], force_N[r], is_first_, work_.rub[r]);
+  is_first_ = false;
+}
+
+void Linearised::prepare(const Real* force_N) PALPATE_RT {
+  for (std::int32_t r = 0; r < regions(); ++r)  // bound: kMaxContacts rows
+    leading_[r] = &work_.row[deepest_of(rows_of(scratch_, r)).piece];
+  aim_rubs(force_N);
+  Real h[kMaxSoftModes * kMaxSoftModes] = {};
+  for (std::int32_t i = 0; i < n_ * n_; ++i) h[i] = work_.energy.curvature[i];  // bound: soft^2
+  for (std::int32_t a = 0; a < n_; ++a) free_step_[a] = -work_.energy.slope[a];
+  for (std::int32_t r = 0; r < regions(); ++r) {  // bound: kMaxRegions pairs
+    add_turn(force_N[r], leading_[r]->turn, n_, h);
+    if (!work_.rub[r].is_on) continue;
+    for (const RubAxis& axis : work_.rub[r].axis) add_rub(axis, n_, h, free_step_);  // bound: 2
+  }
+  factor_stiffened(h, n_, factor_);
+  cholesky_solve(factor_, free_step_, n_);
+  for (std::int32_t r = 0; r < regions(); ++r)  // bound: kMaxRegions soft^2
+    answer(factor_, leading_[r]->pull, n_, moved_[r]);
+}
+
+void Linearised::gather() PALPATE_RT {
+  std::int32_t next = 0;
+  load_.n = regions();
+  load_.region = load_.tips_of;
+  load_.coupling = {scratch_.system.compliance_m_per_N, nullptr};
+  for (std::int32_t r = 0; r < load_.n; ++r) {  // bound: kMaxPieces tips
+    const RegionRows rows = rows_of(scratch_, r);
+    load_.own[r] = own_field(*leading_[r]);
+    FarField far = load_.own[r];
+    far.c0_m_per_N += dot(leading_[r]->pull, moved_[r], n_);
+    load_.tips_of[r] = {&load_.tip[next], 0, far};
+    for (std::int32_t k = 0; k < rows.count && next < kMaxPieces; ++k) {
+      add_tip(rows[k], next++);
+      load_.tips_of[r].count += 1;
+    }
+    for (std::int32_t j = 0; j < r; ++j) couple(r, j);
+  }
+}
+
+Real Linearised::step(const Real* force_N) PALPATE_RT {
+  Real delta[kMaxSoftModes];
+  for (std::int32_t a = 0; a < n_; ++a) {  // bound: soft x kMaxRegions
+    delta[a] = free_step_[a];
+    for (std::int32_t r = 0; r < regions(); ++r) delta[a] -= force_N[r] * moved_[r][a];
+  }
+  const Real length = square_root(dot(delta, delta, n_)), longest = kLongestStep * model_.params.elastic_radius_rootJ;
+  const Real share = length <= longest ? 1.0 : longest / length;
+  Real moved = 0, energy = work_.energy.energy_J;
+  for (std::int32_t r = 0; r < regions(); ++r) moved = max_of(moved, share * abs_of(dot(leading_[r]->pull, delta, n_)));
+  for (std::int32_t a = 0; a < n_; ++a) {  // bound: soft^2
+    const Real d = share * delta[a];
+    energy += d * (work_.energy.slope[a] + 0.5 * share * dot(work_.energy.curvature + a * n_, delta, n_));
+    state_.elastic.soft_rootJ[a] += is_finite(d) ? d : 0.0;
+  }
+  for (std::int32_t r = 0; r < regions(); ++r) sweep(share, delta, r);  // bound: kMaxRegions
+  energy_J_ = energy;
+  return moved;
+}
+
+// How far the surface under a region went along, and what it gives under the friction there.
+void Linearised::sweep(Real share, const Real* delta, std::int32_t r) PALPATE_RT {
+  BodyRub& rub = work_.rub[r];
+  if (!rub.is_on) return;
+  for (RubAxis& axis : rub.axis) {  // bound: 2 soft^2
+    rub.moved_w += (share * dot(axis.sweep, delta, n_)) * axis.unit_w;
+    Real moved[kMaxSoftModes];
+    answer(factor_, axis.sweep, n_, moved);
+    axis.yield_m_per_N = dot(axis.sweep, moved, n_);
+  }
+}
+
+Real Linearised::linear_energy_J(const Real* force_N) const PALPATE_RT {
+  Real energy = 0;
+  for (std::int32_t r = 0; r < regions(); ++r)  // bound: kMaxRegions^2 / 2
+    for (std::int32_t j = 0; j < r; ++j) energy += linear_[r][j] * force_N[r] * force_N[j];
+  return energy;
+}
+
+void Linearised::add_tip(Contact& contact, std::int32_t at) PALPATE_RT {
+  const ElasticRow& row = work_.row[contact.piece];
+  const Real margin_m = model_.tool_point[static_cast<std::size_t>(contact.point)].margin_m;
+  Tip& tip = load_.tip[at];
+  tip = Tip{};
+  tip.local = local_law(model_, contact.piece);
+  const CurvatureFactor factor = curvature_factor(*tip.local.tip, margin_m, row.curvature_1_per_m);
+  tip.scale = factor.value;
+  load_.per_curvature[at] = factor.per_curvature;
+  load_.placed[at] = &row;
+  tip.depth_m = contact.depth_m = row.travel_m + dot(row.pull, free_step_, n_);
+  contact.position_w = row.foot.foot_w;
+  contact.normal_w = row.foot.normal_w;
+}
+
+void Linearised::couple(std::int32_t r, std::int32_t j) PALPATE_RT {
+  const std::int32_t n = regions();
+  linear_[r][j] = linear_compliance_m_per_N(model_, *leading_[r], *leading_[j]);
+  Real* c = scratch_.system.compliance_m_per_N;
+  c[r * n + j] = c[j * n + r] = linear_[r][j] + dot(leading_[r]->pull, moved_[j], n_);
+}
+
+}  // namespace palpate

@@ -1,0 +1,59 @@
+// An elastic body's energy around its last amplitudes: quadratic in their step, linear in the forces of the regions.
+#pragma once
+
+#include "rt_core/contact/elastic/elastic_load.h"
+#include "rt_core/contact/elastic/elastic_work.h"
+
+namespace palpate {
+
+// Body at its amplitudes: products and energy.
+CarriedSurface look(const Model& model, const State& state, Scratch& scratch) PALPATE_RT;
+// Step of the amplitudes when every force is let go, with H of no force.
+void let_go(const Model& model, const SoftEnergy& energy, Real* step) PALPATE_RT;
+// The rows of this tick (ContactMethod::find_rows).
+void find_elastic_tips(const Model& model, State& state, Scratch& scratch) PALPATE_RT;
+
+inline Real dot(const Real* a, const Real* b, std::int32_t n) PALPATE_RT {
+  Real sum = 0;
+  for (std::int32_t i = 0; i < n; ++i) sum += a[i] * b[i];  // bound: n
+  return sum;
+}
+
+// One linearisation after the other: H's factor, and per region H^-1 pull of its deepest row.
+class Linearised {
+ public:
+  Linearised(const Model& model, State& state, Scratch& scratch, ElasticLoad& load) PALPATE_RT;
+
+  // `force_N`: of every region before.
+  void prepare(const Real* force_N) PALPATE_RT;
+  // Laws, depths and far fields of all regions, and what couples them.
+  void gather() PALPATE_RT;
+  // Moves the amplitudes under the forces found; returns how far that moved the surface under any region.
+  Real step(const Real* force_N) PALPATE_RT;
+  Real energy_J() const PALPATE_RT { return energy_J_; }
+  Real linear_energy_J(const Real* force_N) const PALPATE_RT;
+
+ private:
+  std::int32_t regions() const PALPATE_RT { return scratch_.rows.regions; }
+  void aim_rubs(const Real* force_N) PALPATE_RT;
+  void sweep(Real share, const Real* delta, std::int32_t r) PALPATE_RT;
+  void add_tip(Contact& contact, std::int32_t at) PALPATE_RT;
+  void couple(std::int32_t r, std::int32_t j) PALPATE_RT;
+
+  const Model& model_;
+  State& state_;
+  Scratch& scratch_;
+  ElasticLoad& load_;
+  ElasticWork& work_;
+  const FrictionParameters friction_;
+  const std::int32_t n_;
+  bool is_first_ = true;
+  const ElasticRow* leading_[kMaxRegions];  // deepest of each region
+  Real factor_[kMaxSoftModes * kMaxSoftModes];
+  Real free_step_[kMaxSoftModes];
+  Real moved_[kMaxRegions][kMaxSoftModes];
+  Real linear_[kMaxRegions][kMaxRegions];
+  Real energy_J_ = 0;
+};
+
+}  // namespace palpate
