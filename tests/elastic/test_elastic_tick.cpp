@@ -167,10 +167,10 @@ TEST_F(ArchInTick, ReleaseAndTeleportsStayFinite) {
 // By symmetry a press on the crest goes straight down: nothing between the vertices may throw the tip aside. With self
 // terms straight between the vertices it was 0.25 N of 8.7 N here, to either side (2026-11-22).
 TEST(SlowElasticTick, PressOnTheCrestOfARingIsNotThrownAside) {
-  const BakedScene scene(parse_scene(
-      elastic_scene("shape = \"ring\"\nradius_mm = 50\nwall_mm = 20\naxis = \"z\"\ntriangles = 2304\n", 11, 8, 8, 4,
-                    "presliding"),
-      "test.toml"));
+  const BakedScene scene(
+      parse_scene(elastic_scene("shape = \"ring\"\nradius_mm = 50\nwall_mm = 20\naxis = \"z\"\ntriangles = 2304\n", 11,
+                                8, 8, 4, "presliding"),
+                  "test.toml"));
   Bench bench(scene.model());
   const Vec3 top{0, 0.108, 0};
   const Vec3 force = move_to(bench, top, top - Vec3{0, 3.2e-3, 0}).contact_w.force_N;

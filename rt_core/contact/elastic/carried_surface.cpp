@@ -36,6 +36,9 @@ CarriedVertex carry(const Model& model, const Real* y, std::int32_t vertex) PALP
   return out;
 }
 
+// The last Newton step to a foot: its square over a radius of a centimetre is beyond rounding.
+constexpr Real kStillCarried_m = 1e-9;
+
 // A triangle with its corners carried along.
 struct CarriedTriangle {
   CarriedVertex vertex[3];
@@ -211,7 +214,8 @@ Vec3 CarriedSurface::displacement(std::int32_t vertex) const PALPATE_RT {
   return carry(model, y, vertex).position_w - rest;
 }
 
-void CarriedSurface::place(Vec3 centre_w, Real margin_m, std::int32_t triangle, ElasticRow& row) const PALPATE_RT {
+void CarriedSurface::place(Vec3 centre_w, Real margin_m, std::int32_t triangle, Vec3 near_w,
+                           ElasticRow& row) const PALPATE_RT {
   CarriedTriangle last;
   row.centre_w = centre_w;
   row.foot = foot::search(
@@ -220,7 +224,7 @@ void CarriedSurface::place(Vec3 centre_w, Real margin_m, std::int32_t triangle, 
         last = carried_triangle(model, y, t);
         return last.corners;
       },
-      centre_w, triangle);
+      centre_w, triangle, near_w, kStillCarried_m);
   if (row.foot.state == FootState::kFound) {
     row.travel_m = margin_m - row.foot.height_m;
     show_modes(model, y, travel_slope(model, row, last), row);

@@ -42,7 +42,7 @@ void place_again(const Model& model, State& state, Scratch& scratch) PALPATE_RT 
     ElasticRow& row = work_of(scratch).row[contact.piece];
     const ElasticRow before = row;
     surface.place(row.centre_w, model.tool_point[static_cast<std::size_t>(contact.point)].margin_m, row.foot.triangle,
-                  row);
+                  row.foot.foot_w, row);
     if (row.foot.triangle < 0) row = before;
     state.point[contact.point].triangle = row.foot.triangle;
   }
@@ -67,6 +67,7 @@ void solve(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   if (!(moved_m <= kElasticTolerance_m)) scratch.status |= Status::kNotConverged;
   if (work_of(scratch).energy.is_outside) scratch.status |= Status::kDepthBeyondRange;
   scratch.residual_m = max_of(scratch.residual_m, moved_m);
+  body.yield_to_rubs();
   scratch.energy_J += body.energy_J() + body.linear_energy_J(force_N);
   press_regions(load, state, scratch);
   for (std::int32_t r = 0; r < regions; ++r)  // bound: kMaxRegions

@@ -26,10 +26,10 @@ struct CarriedSurface {
 
   // Displacement of a vertex.
   Vec3 displacement(std::int32_t vertex) const PALPATE_RT;
-  // Puts the tip of `margin_m` about `centre_w` on the surface, starting at `triangle`. Beyond a sharp edge, and below
-  // the focal surface, on the facet nearest to the centre as it was before the body moved; with foot.triangle -1 where
-  // the tick's share of surface work is used up.
-  void place(Vec3 centre_w, Real margin_m, std::int32_t triangle, ElasticRow& row) const PALPATE_RT;
+  // Puts the tip of `margin_m` about `centre_w` on the surface, starting at `triangle` below `near_w`. Beyond a sharp
+  // edge, and below the focal surface, on the facet nearest to the centre as it was before the body moved; with
+  // foot.triangle -1 where the tick's share of surface work is used up.
+  void place(Vec3 centre_w, Real margin_m, std::int32_t triangle, Vec3 near_w, ElasticRow& row) const PALPATE_RT;
 
  private:
   bool place_on_facet(Vec3 centre_w, std::int32_t triangle, ElasticRow& row) const PALPATE_RT;

@@ -30,7 +30,7 @@ class Finder {
     if (!touched && is_far(index, p)) return;
     ElasticRow& row = work_.row[tool_point.piece];
     if (touched) {
-      surface_.place(p, tool_point.margin_m, point.triangle, row);
+      surface_.place(p, tool_point.margin_m, point.triangle, point.closest_w, row);
       if (row.foot.triangle >= 0 && free_depth(row) > 0) return keep(index, row);
     }
     search(p, tool_point.margin_m, point, row);
@@ -82,7 +82,7 @@ class Finder {
     scratch_.surface_work += nearest.looked;
     reach_m_ = nearest.lower_bound_m - margin_m - model_.params.smooth_slack_m;
     if (nearest.truncated) scratch_.status |= Status::kTraversalTruncated;
-    if (nearest.found) surface_.place(p, margin_m, nearest.triangle, row);
+    if (nearest.found) surface_.place(p, margin_m, nearest.triangle, p, row);
   }
 
   void keep(std::int32_t index, const ElasticRow& row) PALPATE_RT {

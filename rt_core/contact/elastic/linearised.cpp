@@ -188,15 +188,21 @@ Real Linearised::step(const Real* force_N) PALPATE_RT {
   return moved;
 }
 
-// How far the surface under a region went along, and what it gives under the friction there.
+// How far the surface under a region went along.
 void Linearised::sweep(Real share, const Real* delta, std::int32_t r) PALPATE_RT {
   BodyRub& rub = work_.rub[r];
   if (!rub.is_on) return;
-  for (RubAxis& axis : rub.axis) {  // bound: 2 soft^2
-    rub.moved_w += (share * dot(axis.sweep, delta, n_)) * axis.unit_w;
-    Real moved[kMaxSoftModes];
-    answer(factor_, axis.sweep, n_, moved);
-    axis.yield_m_per_N = dot(axis.sweep, moved, n_);
+  for (const RubAxis& axis : rub.axis) rub.moved_w += (share * dot(axis.sweep, delta, n_)) * axis.unit_w;  // bound: 2
+}
+
+void Linearised::yield_to_rubs() PALPATE_RT {
+  for (std::int32_t r = 0; r < regions(); ++r) {  // bound: kMaxRegions soft^2
+    if (!work_.rub[r].is_on) continue;
+    for (RubAxis& axis : work_.rub[r].axis) {
+      Real moved[kMaxSoftModes];
+      answer(factor_, axis.sweep, n_, moved);
+      axis.yield_m_per_N = dot(axis.sweep, moved, n_);
+    }
   }
 }
 

@@ -30,6 +30,8 @@ class Linearised {
   void gather() PALPATE_RT;
   // Moves the amplitudes under the forces found; returns how far that moved the surface under any region.
   Real step(const Real* force_N) PALPATE_RT;
+  // After the last step: what the surface gives under every friction.
+  void yield_to_rubs() PALPATE_RT;
   Real energy_J() const PALPATE_RT { return energy_J_; }
   Real linear_energy_J(const Real* force_N) const PALPATE_RT;
 
