@@ -1,5 +1,7 @@
 #include "rt_core/tick.h"
 
+#include "rt_core/float_mode.h"
+
 namespace palpate {
 
 void publish(State& state, const Scratch& scratch, Output& output) PALPATE_RT {
@@ -23,6 +25,7 @@ void publish(State& state, const Scratch& scratch, Output& output) PALPATE_RT {
 
 void tick(const Model& model, State& state, Scratch& scratch, const Input& input, Output& output,
           const StageProbe& probe) PALPATE_RT {
+  const TickFloatMode mode;
   sense(model, state, scratch, input);
   probe.passed(Stage::kSense);
   articulate(model, state, scratch, input);
