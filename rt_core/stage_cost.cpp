@@ -5,48 +5,79 @@
 
 namespace palpate {
 
+namespace {
+
+// What a stage takes whatever it finds to do, in the stages' order.
+constexpr double kStageInstructions[kStageCount] = {3500, 50, 2500, 1300, 4500, 1500, 400};
+
+}  // namespace
+
 SceneSizes scene_sizes(const Model& model) noexcept {
   const ModelSizes& n = model.sizes;
-  const auto rows = static_cast<double>(n.n_nodal > 0 ? n.n_nodal : n.n_tool_point);
-  const double contacts = min_of(rows, static_cast<double>(kMaxContacts));
-  return {static_cast<double>(n.n_tool_point),
-          contacts,
-          min_of(contacts, static_cast<double>(kMaxRegions)),
-          static_cast<double>(n.n_joint),
-          static_cast<double>(n.n_piece),
-          static_cast<double>(n.n_anchor),
-          static_cast<double>(n.n_nodal)};
+  const auto size = [](std::int64_t count) { return static_cast<std::int32_t>(count); };
+  const std::int32_t rows = size(n.n_nodal > 0 ? n.n_nodal : n.n_tool_point);
+  const std::int32_t contacts = rows < kMaxContacts ? rows : kMaxContacts;
+  return {size(n.n_tool_point), contacts,        contacts < kMaxRegions ? contacts : kMaxRegions,
+          size(n.n_joint),      size(n.n_piece), size(n.n_anchor),
+          size(n.n_nodal)};
 }
 
-double surface_search_cost(const Model& model) noexcept {
-  return kSurfaceLookInstructions * (surface_work_share(model.params) + kMaxQueryWork);
+void add_most_points(const Model& model, const SceneSizes& n, Work& work) noexcept {
+  const std::int32_t share = surface_work_share(model.params), spare = n.points - n.contacts;
+  work.points += n.points;
+  const std::int32_t asked = 2 * n.points * kMaxQueryWork, allowed = share + kMaxQueryWork;
+  work.looks += asked < allowed ? asked : allowed;      // an elastic body asks twice
+  work.queries += n.points < share ? n.points : share;  // each looks at one thing at least
+  if (!model.corner_normal.empty()) work.feet += 2 * kFootNewtonSteps * n.points;
+  work.found += n.contacts;
+  work.pairs += n.contacts * n.contacts + kMaxContacts * spare;
+  work.clusters += n.contacts;
+  work.recalls += n.regions * kMaxRegions * n.contacts;
+  work.scans += kMaxRegions * n.points;
+  work.supports += kMaxRegions * kGjkSupportBudget;
 }
 
-double find_points_cost(const Model& model, const SceneSizes& n) noexcept {
-  const double overlap = n.regions * kGjkSupportBudget * 100;
-  return 2000 + surface_search_cost(model) + 200 * n.points + 30 * n.contacts * n.contacts + overlap;
+void add_most_regions(const SceneSizes& n, std::int32_t steps, Work& work) noexcept {
+  const std::int32_t evaluations = 1 + steps * (kStepHalvings + 1), square = n.regions * n.regions;
+  work.rows += n.contacts;
+  work.regions += n.regions;
+  work.region_pairs += (evaluations + 2 * steps) * square;
+  work.region_cubes += steps * square * n.regions;
+  work.slid += n.contacts;
+  work.rubbed += n.regions;
 }
 
-double rub_regions_cost(const SceneSizes& n) noexcept {
-  return 5000 + 500 * n.contacts + n.regions * (2000 + 500 * n.anchors);
+double counted_instructions(const Work& work, Stage stage) noexcept {
+  double sum = kStageInstructions[static_cast<int>(stage)];
+#define PALPATE_UNIT(unit, of_stage, price, what) \
+  if (Stage::of_stage == stage) sum += price * static_cast<double>(work.unit);
+  PALPATE_WORK_UNITS(PALPATE_UNIT)
+#undef PALPATE_UNIT
+  return sum;
+}
+
+double counted_instructions(const Work& work) noexcept {
+  double sum = 0;
+  for (int i = 0; i < kStageCount; ++i) sum += counted_instructions(work, static_cast<Stage>(i));
+  return sum;
+}
+
+double most_stage_cost(const Model& model, Stage stage) noexcept {
+  const SceneSizes n = scene_sizes(model);
+  Work work;
+  work.joints = n.joints + (n.joints > 0 ? n.pieces : 0);
+  work.joint_loads = n.pieces * n.joints;
+  work.pieces = 2 * n.pieces;
+  contact_method(method_of(model)).add_most_work(model, n, work);
+  return counted_instructions(work, stage);
 }
 
 double least_stage_cost(const Model& model, Stage stage) noexcept {
-  switch (stage) {
-    case Stage::kSense:
-      return 5000;
-    case Stage::kArticulate:
-      return 500 + 1000 * scene_sizes(model).joints;
-    case Stage::kFindRows:
-    case Stage::kSolve:
-    case Stage::kAccount:
-      return contact_method(method_of(model)).least_cost(model, scene_sizes(model), stage);
-    case Stage::kSafety:
-      return 2000;
-    case Stage::kPublish:
-      return 1000;
-  }
-  return 0;
+  Work work;
+  work.pieces = static_cast<std::int32_t>(model.sizes.n_piece);
+  work.joints = static_cast<std::int32_t>(model.sizes.n_joint);
+  work.found = work.rows = work.regions = work.slid = work.rubbed = 1;
+  return counted_instructions(work, stage);
 }
 
 double worst_tick_instructions(const Model& model) noexcept {

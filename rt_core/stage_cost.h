@@ -4,35 +4,38 @@
 #pragma once
 
 #include "rt_core/model.h"
+#include "rt_core/work.h"
 
 namespace palpate {
 
-// Price of a box or triangle looked at, the query around it included: 130 to 183 on the shipped bodies, from 2 mm above
-// the surface to the middle (2000 cold queries each, callgrind, gcc 12 -O3, 2026-11-22).
-inline constexpr double kSurfaceLookInstructions = 200;
 // What an ordinary core does in a second: the baker refuses what would take the whole period there. The controller
 // measures its own machine before it drives a device.
 inline constexpr double kBakeInstructionsPerSecond = 3e9;
 
-// What the prices are multiplied with: tool points, contacts and regions at once, joints, pieces, anchors, nodes.
+// Tool points, contacts and regions at once, joints, pieces, anchors, nodes.
 struct SceneSizes {
-  double points, contacts, regions, joints, pieces, anchors, nodes;
+  std::int32_t points, contacts, regions, joints, pieces, anchors, nodes;
 };
 SceneSizes scene_sizes(const Model& model) noexcept;
 
-// Upper bound of one stage; those of contact are the method's own (ContactMethod::least_cost). No image with a smaller
-// stage_cost is loaded. Prices are the dearest seen in callgrind over the shipped scenes (tests/bench, 2026-11-22) and
-// up to twice that, because no scene meets every capacity at once. tests/bench/tick_instructions.sh compares them with
-// every scene.
+// What a stage took by the work it counted: Scratch::work after a tick. The prices in work.h were fitted to 8,000 ticks
+// of the adversary in every shipped scene, so that no stage of any took more (callgrind, gcc 12 -O3, 2026-11-22), and
+// budget.work holds other ticks against them.
+double counted_instructions(const Work& work, Stage stage) noexcept;
+double counted_instructions(const Work& work) noexcept;
+
+// What no tick of any scene of these sizes can exceed, its capacities all met at once; those of contact are the
+// method's own (ContactMethod::add_most_work). Up to 50 times what a tick that can be found takes: nobody meets every
+// capacity at once. An image states less, what an adversary found and a reserve (config/bake/worst_tick.h).
+double most_stage_cost(const Model& model, Stage stage) noexcept;
+// What any tick in contact takes: every point looked at, one contact of one region. No image that states less is
+// loaded, and none that states more than most_stage_cost().
 double least_stage_cost(const Model& model, Stage stage) noexcept;
 
-// What methods share. The tick's share of surface work and the query that ends it.
-double surface_search_cost(const Model& model) noexcept;
-// Tool points against the surface: that, what is skipped, clusters of all pairs, and a cross-check of every region that
-// was lost at once.
-double find_points_cost(const Model& model, const SceneSizes& n) noexcept;
-// Friction and sums of regions, with the skeletons of temporal coupling.
-double rub_regions_cost(const SceneSizes& n) noexcept;
+// What methods share, for their ContactMethod::add_most_work: tool points against the surface; and rows in regions,
+// solved in so many Newton steps.
+void add_most_points(const Model& model, const SceneSizes& n, Work& work) noexcept;
+void add_most_regions(const SceneSizes& n, std::int32_t steps, Work& work) noexcept;
 
 // Sum over the stages that the image states.
 double worst_tick_instructions(const Model& model) noexcept;

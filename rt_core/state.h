@@ -14,6 +14,7 @@
 #include "rt_core/model.h"
 #include "rt_core/pool.h"
 #include "rt_core/state_visit.h"
+#include "rt_core/work.h"
 
 namespace palpate {
 
@@ -277,7 +278,8 @@ struct Scratch {
   Wrench contact_wrench_w;  // sum over regions, on the tool, about the tool's origin
   double energy_J = 0;
   double residual_m = 0;
-  std::int32_t surface_work = 0;  // boxes and triangles this tick looked at
+  std::int32_t surface_work = 0;  // boxes and triangles this tick looked at: Work::looks
+  Work work;                      // what else it did so far
   RowsByRegion rows;              // points, tips: written by solve
   RegionSystem system;            // of the region solver
   ContactStiffness stiffness;     // of normal loads so far

@@ -457,8 +457,9 @@ class Compiler {
   }
 
   void add_costs() {
-    state_costs(kMaxSurfaceWork, image_);
-    if (!is_nodal()) check_bytes(scene_, write_image(image_));  // what is not sound must not be ticked
+    image_.params.surface_work_max = kMaxSurfaceWork;
+    state_most_costs(image_);
+    check_bytes(scene_, write_image(image_));  // what is not sound must not be ticked
     report_.cost = bake_costs(image_);
     if (const std::string wrong = cost_refusal(report_.cost, image_.params.period_s); !wrong.empty())
       fail("device.period_ms", wrong);

@@ -1,11 +1,13 @@
 #include "config/bake/worst_tick.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <new>
-#include <random>
+#include <vector>
 
+#include "config/bake/adversary.h"
 #include "config/bake/image_rules.h"
 #include "config/scene/schema.h"
 #include "rt_core/contact/contact.h"
@@ -20,6 +22,14 @@ namespace {
 // A quarter more than was found is allowed: what a longer search would find beyond that waits a tick.
 constexpr int kStarts = 48, kTicks = 40, kRefined = 6;
 constexpr double kSpare = 1.25;
+// Ticks in which the dearest of each stage is looked for. What a thousand times as many find beyond the dearest whole
+// tick is a few per cent, but a small stage of them may be half as dear again (2026-11-22): a quarter of each is stated
+// beside, and a share of the whole.
+constexpr int kStageTicks = 4000, kQueries = 2000;
+constexpr std::uint64_t kStageSeed = 1;
+constexpr double kReserve = 1.25, kReserveOfAll = 0.08;
+// An elastic body's dear ticks are rarer: its surface is elsewhere every tick.
+int effort(const Model& model) { return method_of(model) == Method::kElastic ? 4 : 1; }
 constexpr std::int32_t kLeastShare = 1024;  // two queries into the middle of a body
 
 struct Block {
@@ -30,16 +40,17 @@ struct Block {
   void* at;
 };
 
-class Adversary {
+class Search {
  public:
-  explicit Adversary(const Model& model)
+  explicit Search(const Model& model)
       : model_(model),
         state_block_(state_bytes(model)),
         scratch_block_(scratch_bytes(model)),
         state_(create_state(model, state_block_.at)),
         scratch_(create_scratch(model, scratch_block_.at)) {}
 
-  std::int32_t search() {
+  // Of the surface, in one tick of a hand that creeps over it.
+  std::int32_t surface_work() {
     struct Found {
       std::int32_t work;
       std::uint64_t seed;
@@ -54,40 +65,50 @@ class Adversary {
     return worst;
   }
 
- private:
-  double uniform(double low, double high) {
-    return low + (high - low) * (static_cast<double>(random_() >> 11) * 0x1p-53);
-  }
-  Vec3 direction() {
-    for (;;) {
-      const Vec3 v{uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)};
-      if (squared_norm(v) > 1e-4 && squared_norm(v) <= 1) return (1 / norm(v)) * v;
+  // Of the surface, in one query from as far off it on either side as its axis, that starts anywhere. Few ticks meet
+  // the dearest.
+  std::int32_t query() {
+    Adversary adversary(model_, kStageSeed);
+    std::int32_t most = 0;
+    for (int i = 0; i < effort(model_) * kQueries; ++i) {
+      const auto vertex = static_cast<std::size_t>(adversary.uniform(0, static_cast<double>(model_.vertex_m.size())));
+      const double deep = adversary.uniform(-1, 1) * 0.5 * model_.params.surface_size_m;
+      const Vec3 p = model_.vertex_m[vertex] - deep * model_.vertex_normal[vertex];
+      const auto warm = static_cast<std::int32_t>(adversary.uniform(0, static_cast<double>(model_.triangle.size())));
+      most = std::max(most, closest_surface_point(model_, p, kHuge, warm).looked);
     }
+    return most;
   }
 
-  // A tool point on or below a vertex of the surface, the tool turned anyhow.
-  Pose start() {
-    const std::size_t v = random_() % model_.vertex_m.size(), i = random_() % model_.tool_point.size();
-    const ToolPoint& point = model_.tool_point[i];
-    const double deep = uniform(-1e-3, std::min(model_.params.max_depth_m, 0.25 * model_.params.surface_size_m));
-    Pose pose{{}, small_rotation(uniform(0, 3) * direction())};
-    if (!model_.grasp_w.empty()) pose.orientation = model_.grasp_w[0].orientation;
-    const Vec3 target = model_.vertex_m[v] + (point.margin_m - deep) * model_.vertex_normal[v];
-    pose.position_m = target - rotate(pose.orientation, point.position_tool_m);
-    return pose;
+  // The dearest of each stage in a scene whose share of surface work is set.
+  std::array<double, kStageCount> stages() {
+    std::array<double, kStageCount> most{};
+    Adversary adversary(model_, kStageSeed);
+    reset(state_);
+    Output output;
+    for (int t = 0; t < effort(model_) * kStageTicks; ++t) {
+      bool forgets = false;
+      const Input input = adversary.next(output, forgets);
+      if (forgets) reset(state_);
+      tick(model_, state_, scratch_, input, output);
+      for (std::size_t i = 0; i < most.size(); ++i)
+        most[i] = std::max(most[i], counted_instructions(scratch_.work, static_cast<Stage>(i)));
+    }
+    return most;
   }
 
+ private:
   // Most work in one tick but the first, in which nothing is known and nothing armed.
   std::int32_t play(std::uint64_t seed, int ticks) {
-    random_.seed(seed);
+    Adversary adversary(model_, seed);
     reset(state_);
     Input input;
     input.drive = Drive::kTool;
-    input.pose_w = start();
-    for (float& closing : input.joints.closing) closing = static_cast<float>(uniform(0, 1));
+    input.pose_w = adversary.start(std::min(model_.params.max_depth_m, 0.25 * model_.params.surface_size_m));
+    for (float& closing : input.joints.closing) closing = static_cast<float>(adversary.uniform(0, 1));
     const double step_m = std::min(model_.params.speed_max_m_per_s * model_.params.period_s, 2e-3);
     const double turn_rad = std::min(model_.params.turn_max_rad_per_s * model_.params.period_s, 0.03);
-    Vec3 drift = direction(), spin = direction();
+    Vec3 drift = adversary.direction(), spin = adversary.direction();
     Output output;
     std::int32_t most = 0;
     for (int t = 0; t < ticks; ++t) {
@@ -99,13 +120,13 @@ class Adversary {
         input.pose_w.position_m += (2 * step_m) * drift;
         continue;
       }
-      if (random_() % 8 == 0) drift = direction();
-      if (random_() % 8 == 0) spin = direction();
-      input.pose_w.position_m += (step_m * uniform(0, 1)) * drift;
+      if (adversary.one_in(8)) drift = adversary.direction();
+      if (adversary.one_in(8)) spin = adversary.direction();
+      input.pose_w.position_m += (step_m * adversary.uniform(0, 1)) * drift;
       input.pose_w.orientation =
-          normalised(small_rotation((turn_rad * uniform(0, 1)) * spin) * input.pose_w.orientation);
+          normalised(small_rotation((turn_rad * adversary.uniform(0, 1)) * spin) * input.pose_w.orientation);
       for (float& closing : input.joints.closing)
-        closing = std::clamp(closing + static_cast<float>(uniform(-0.02, 0.02)), 0.0f, 1.0f);
+        closing = std::clamp(closing + static_cast<float>(adversary.uniform(-0.02, 0.02)), 0.0f, 1.0f);
     }
     return most;
   }
@@ -114,24 +135,47 @@ class Adversary {
   Block state_block_, scratch_block_;
   State& state_;
   Scratch& scratch_;
-  std::mt19937_64 random_;
 };
+
+bool is_contact(Stage stage) { return stage == Stage::kFindRows || stage == Stage::kSolve || stage == Stage::kAccount; }
+
+// Every point measured by the dearest query, twice on a body that moves; but none is begun when the tick's share is
+// spent.
+double rows_cost(const Model& model, std::int32_t query) {
+  const std::int32_t points = scene_sizes(model).points, share = surface_work_share(model.params);
+  Work work;
+  work.points = points;
+  work.queries = (method_of(model) == Method::kElastic ? 2 : 1) * points;
+  work.looks = std::min(work.queries * query, share + query);
+  return counted_instructions(work, Stage::kFindRows);
+}
 
 }  // namespace
 
-void state_costs(std::int32_t worst_work, ImageContents& image) {
-  image.params.surface_work_max =
-      std::clamp(static_cast<std::int32_t>(kSpare * worst_work), kLeastShare, kMaxSurfaceWork);
+void state_most_costs(ImageContents& image) {
   const Model model = model_of(image);
   image.stage_cost.clear();
-  for (int i = 0; i < kStageCount; ++i) image.stage_cost.push_back({least_stage_cost(model, static_cast<Stage>(i))});
+  for (int i = 0; i < kStageCount; ++i) image.stage_cost.push_back({most_stage_cost(model, static_cast<Stage>(i))});
 }
 
 TickCost bake_costs(ImageContents& image) {
   TickCost cost;
-  if (method_of(image.params) != Method::kNodes) cost.surface_work = Adversary(model_of(image)).search();
-  state_costs(cost.surface_work, image);
+  if (method_of(image.params) != Method::kNodes) cost.surface_work = Search(model_of(image)).surface_work();
+  image.params.surface_work_max =
+      std::clamp(static_cast<std::int32_t>(kSpare * cost.surface_work), kLeastShare, kMaxSurfaceWork);
   cost.surface_work_max = image.params.surface_work_max;
+  const Model model = model_of(image);
+  Search search(model);
+  const std::array<double, kStageCount> found = search.stages();
+  for (const double stage : found) cost.found += stage;
+  const double rows = method_of(image.params) == Method::kNodes ? 0 : rows_cost(model, search.query());
+  image.stage_cost.clear();
+  for (int i = 0; i < kStageCount; ++i) {
+    const auto stage = static_cast<Stage>(i);
+    double stated = kReserve * std::max(found[static_cast<std::size_t>(i)], stage == Stage::kFindRows ? rows : 0);
+    if (is_contact(stage)) stated += kReserveOfAll * cost.found;
+    image.stage_cost.push_back({std::clamp(stated, least_stage_cost(model, stage), most_stage_cost(model, stage))});
+  }
   cost.instructions = worst_tick_instructions(model_of(image));
   return cost;
 }

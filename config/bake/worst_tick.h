@@ -13,15 +13,17 @@ namespace palpate {
 struct TickCost {
   std::int32_t surface_work = 0;      // most boxes and triangles one tick looked at; 0: the method looks at none
   std::int32_t surface_work_max = 0;  // what a tick may
-  double instructions = 0;            // of the worst tick, at most
+  double found = 0;                   // instructions: the dearest tick of each stage that was found, summed up
+  double instructions = 0;            // stated of the worst tick
 };
 
-// Fills surface_work_max and stage_cost for a tick that looks at `worst_work`.
-void state_costs(std::int32_t worst_work, ImageContents& image);
+// Fills stage_cost with what no tick can exceed, for an image that is looked at before it is ticked.
+void state_most_costs(ImageContents& image);
 
-// The same for what an adversary finds who moves the tool: touching and inside the body, along its edges and towards
-// its middle, as deep as the contact law reaches and as fast as the scene's device may move. Fixed seed. The image must
-// be sound and allow kMaxSurfaceWork.
+// Fills surface_work_max and stage_cost by what an adversary finds (adversary.h). The share of surface work is for a
+// tool that touches and creeps inside the body, as deep as the contact law reaches and as fast as the scene's device
+// may move; a stage's cost for one that is put anywhere and moved anyhow, with a quarter more. Fixed seeds. The image
+// must be sound.
 TickCost bake_costs(ImageContents& image);
 
 // Why no ordinary computer can tick this scene in its period; "" when one can.

@@ -27,8 +27,8 @@ struct ContactMethod {
   Check check_tool;
   // Its arrays and parameters, so that the tick may index and divide; those of every method have passed.
   Check check_data;
-  // Upper bound of find_rows, solve or account, in instructions (stage_cost.h).
-  double (*least_cost)(const Model& model, const SceneSizes& sizes, Stage stage) noexcept;
+  // Adds what its capacities allow one tick at most (work.h), all met at once.
+  void (*add_most_work)(const Model& model, const SceneSizes& sizes, Work& work) noexcept;
   // Working memory of its own, Scratch::own: its size, and what is made there. Null: it needs none.
   std::size_t (*scratch_bytes)(const Model& model) noexcept = nullptr;
   void (*create_scratch)(const Model& model, void* block) noexcept = nullptr;

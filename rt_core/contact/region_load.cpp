@@ -95,6 +95,8 @@ void sort_rows(State& state, Scratch& scratch) PALPATE_RT {
   for (std::int32_t i = 0; i < contacts; ++i) {  // bound: kMaxContacts
     if (region_of[i] >= 0) rows.index[next_in[region_of[i]]++] = i;
   }
+  scratch.work.rows += contacts;
+  scratch.work.regions += rows.regions;
   for (std::int32_t s = 0; s < kMaxRegions; ++s) {  // bound: kMaxRegions
     if (count_in[s] == 0 && state.region[s].is_live()) clear_force(state.region[s]);
   }
@@ -202,6 +204,8 @@ void rub_tips(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
 }
 
 void sum_up(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
+  scratch.work.rubbed += scratch.rows.regions;
+  scratch.work.slid += scratch.contact_count;
   for (std::int32_t r = 0; r < scratch.rows.regions; ++r) {  // bound: kMaxRegions
     const Region& region = state.region[scratch.rows.slot[r]];
     scratch.contact_wrench_w.force_N += region.wrench_w.force_N;

@@ -121,6 +121,15 @@ struct SurfaceUnderRub {
   Vec3 step_w;
   Real yield_m_per_N[2] = {};
 };
+
+// What a solution took, with so many laws in each evaluation. Returns how many were evaluated.
+inline std::int32_t count_solution(const RegionSolution& result, std::int32_t n, std::int32_t laws,
+                                   Work& work) PALPATE_RT {
+  work.region_pairs += (result.evaluations + 2 * result.steps) * n * n;
+  work.region_cubes += result.steps * n * n * n;
+  return result.evaluations * laws;
+}
+
 // Friction at the region's centre, added to its wrench and energy and to scratch.stiffness. The caller fills
 // region.depth_equivalent_m and `load`'s tangent and depth rate; motion, normal and force are taken from the region.
 void slide(const Model& model, const State& state, Scratch& scratch, const FrictionParameters& parameters,

@@ -25,6 +25,7 @@ inline Real far_field_compliance_m_per_N(Real scale_m2_per_N, Real core_radius_m
 struct RegionSolution {
   Real residual_m = 0;    // largest |shift_r - dW/dF_r|
   bool singular = false;  // a linear system could not be factorised; the last good shift is kept
+  std::int32_t steps = 0, evaluations = 0;
 };
 
 // Laws: the local laws of n regions and the potential W(F) of what couples them.
@@ -88,8 +89,10 @@ RegionSolution solve_regions(const Laws& laws, std::int32_t n, RegionSystem& sys
   RegionSolution result;
   for (std::int32_t r = 0; r < n; ++r) system.shift_m[r] = laws.start(r);  // bound: regions
   result.residual_m = region_solve::evaluate(laws, n, system.shift_m, system);
+  result.evaluations = 1;
   for (std::int32_t k = 0; k < Laws::kIterations; ++k) {  // bound: Laws::kIterations
     if (result.residual_m <= Laws::kEnough_m) break;
+    result.steps += 1;
     if (!region_solve::newton_step(laws, n, system)) {
       result.singular = true;
       break;
@@ -99,6 +102,7 @@ RegionSolution solve_regions(const Laws& laws, std::int32_t n, RegionSystem& sys
     for (std::int32_t h = 0; h <= kStepHalvings; ++h) {  // bound: kStepHalvings
       for (std::int32_t r = 0; r < n; ++r) system.trial_m[r] = system.shift_m[r] + share * system.step_m[r];
       result.residual_m = region_solve::evaluate(laws, n, system.trial_m, system);
+      result.evaluations += 1;
       if (result.residual_m < before || result.residual_m <= Laws::kTolerance_m) break;
       share *= 0.5;
     }

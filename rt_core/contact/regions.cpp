@@ -143,7 +143,7 @@ double distance2_to(const Scratch& scratch, const Clusters& clusters, std::int32
 }
 
 // Pass 2: the nearest lost region close enough, or kNone.
-std::int32_t remembered(const Scratch& scratch, const Clusters& clusters, std::int32_t cluster, const State& state,
+std::int32_t remembered(const Scratch& scratch, Clusters& clusters, std::int32_t cluster, const State& state,
                         const Assignment& work) PALPATE_RT {
   std::int32_t found = kNone;
   double nearest = kRegionMemoryDistance_m * kRegionMemoryDistance_m;
@@ -151,6 +151,7 @@ std::int32_t remembered(const Scratch& scratch, const Clusters& clusters, std::i
     const Region& region = state.region[slot];
     if (region.id == 0 || work.taken[slot]) continue;
     const double distance2 = distance2_to(scratch, clusters, cluster, region.centre_w);
+    clusters.recalls += clusters.contacts;
     const bool tie = found != kNone && distance2 == nearest;
     if (tie ? is_born_before(region, state.region[found]) : distance2 <= nearest) {
       found = slot;
@@ -218,6 +219,7 @@ void lose(const Model& model, State& state, Scratch& scratch, StillTouching stil
 }  // namespace
 
 void find_clusters(const Model& model, const Scratch& scratch, Clusters& out) PALPATE_RT {
+  out.pairs = out.recalls = 0;
   sort_by_row(scratch, out);
   Kinship kin;
   find_kinship(model, scratch, out, kin);
@@ -228,9 +230,11 @@ void find_clusters(const Model& model, const Scratch& scratch, Clusters& out) PA
     sets += 1;
     const Contact& contact = scratch.contact[out.order[i]];
     for (std::int32_t j = kin.previous[i]; j >= 0 && sets > 1; j = kin.previous[j]) {  // bound: kMaxContacts; j falls
+      out.pairs += 1;
       if (set[i] == set[j] || kin.group[i] != kin.group[j]) continue;
       const bool same = kin.piece[i] == kin.piece[j];
       if (!same && !linked(model, contact, scratch.contact[out.order[j]])) continue;
+      out.pairs += i + 1 - (set[i] < set[j] ? set[j] : set[i]);
       unite(set, i + 1, set[i], set[j]);
       sets -= 1;
     }
@@ -254,6 +258,7 @@ void find_clusters(const Model& model, const Scratch& scratch, Clusters& out) PA
 bool assign_slots(const Scratch& scratch, Clusters& clusters, State& state) PALPATE_RT {
   Assignment work;
   const bool all = choose_deepest(clusters, work.takes_part);
+  if (!all) clusters.pairs += clusters.count * clusters.count;
   count_votes(scratch, clusters, work);
   inherit(clusters, state, work);
   for (std::int32_t c = 0; c < clusters.count; ++c) {  // bound: kMaxContacts
@@ -278,6 +283,9 @@ void group_points(const Model& model, State& state, Scratch& scratch, StillTouch
   find_clusters(model, scratch, clusters);
   if (!assign_slots(scratch, clusters, state)) scratch.status |= Status::kRegionsDropped;
   label(model, state, scratch, clusters);
+  scratch.work.pairs += clusters.pairs;
+  scratch.work.recalls += clusters.recalls;
+  scratch.work.clusters += clusters.count;
 
   bool touched[kMaxRegions] = {};
   std::int32_t regions = 0;

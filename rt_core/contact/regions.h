@@ -48,6 +48,8 @@ struct Clusters {
   Cluster cluster[kMaxContacts];       // sorted by first_row
   std::int32_t contacts;
   std::int32_t count;
+  std::int32_t pairs;    // of contacts compared, and labels changed
+  std::int32_t recalls;  // contacts compared with lost regions
 };
 
 // Single-linkage clustering. Two contacts are linked when their surface points are nearer than

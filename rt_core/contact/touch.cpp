@@ -54,6 +54,7 @@ class Collider {
   // The points of a piece from `from` on, or before it.
   void visit(std::size_t index, std::int32_t from, bool before) PALPATE_RT {
     const ToolPiece& piece = model_.piece[index];
+    scratch_.work.pieces += 1;
     if (is_articulated(model_)) {
       now_ = RigidFrame(carrier_w(model_, state_, static_cast<std::int32_t>(index)));
       before_ = RigidFrame(carrier_previous_w(model_, state_, static_cast<std::int32_t>(index)));
@@ -62,6 +63,7 @@ class Collider {
     const std::int32_t last = piece.first_point + piece.point_count;
     const std::int32_t begin = before || piece.first_point > from ? piece.first_point : from;
     const std::int32_t end = before && from < last ? from : last;
+    if (begin < end) scratch_.work.points += end - begin;
     for (std::int32_t i = begin; i < end; ++i) {  // bound: kMaxToolPoints over all pieces
       if (gap > kSearchMargin_m + kRefreshMargin_m) {
         skip(state_.point[i], gap);
@@ -74,6 +76,7 @@ class Collider {
   void finish() PALPATE_RT {
     state_.first_point = next_first_ < 0 ? 0 : next_first_;
     scratch_.surface_work = share_ - left_;
+    scratch_.work.looks = scratch_.surface_work;
   }
 
  private:
@@ -128,6 +131,7 @@ class Collider {
     PointState& point = state_.point[index];
     const SurfacePoint surface = closest_surface_point(model_, p, kHuge, point.triangle);
     left_ -= surface.looked;
+    scratch_.work.queries += 1;
     if (surface.stack_high_water > state_.high_water.traversal_stack) {
       state_.high_water.traversal_stack = surface.stack_high_water;
     }
@@ -156,6 +160,7 @@ class Collider {
     const Vec3 normal = nearest.state == FootState::kFound ? nearest.normal_w : surface.normal_w;
     if (dot(normal, point.normal_w) > kSameFace) return nearest;
     const SmoothFoot own = smooth_foot(model_, p, point.triangle);
+    scratch_.work.feet += own.steps;
     return own.state == FootState::kFound || own.state == FootState::kFocal ? own : nearest;
   }
 
@@ -165,7 +170,9 @@ class Collider {
     PointState& point = state_.point[index];
     SurfaceFoot& foot = scratch_.foot[tool_point.piece];
     if (surface.truncated) scratch_.status |= Status::kTraversalTruncated;
-    const SmoothFoot smooth = followed(p, surface, point, smooth_foot(model_, p, surface.triangle));
+    const SmoothFoot nearest = smooth_foot(model_, p, surface.triangle);
+    scratch_.work.feet += nearest.steps;
+    const SmoothFoot smooth = followed(p, surface, point, nearest);
     foot = {};
     foot.centre_w = p;
     Real height = surface.signed_distance_m;
@@ -202,6 +209,7 @@ class Collider {
   void keep(std::int32_t index, const PointState& point, const ToolPoint& tool_point) PALPATE_RT {
     if (scratch_.contact_count == kMaxContacts) {
       scratch_.status |= Status::kContactsDropped;
+      scratch_.work.pairs += kMaxContacts;
       std::int32_t shallowest = 0;
       for (std::int32_t i = 1; i < kMaxContacts; ++i) {  // bound: kMaxContacts
         if (scratch_.contact[i].depth_m <= scratch_.contact[shallowest].depth_m) shallowest = i;
@@ -273,11 +281,13 @@ void collide(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   }
   collider.finish();
   HighWater& high_water = state.high_water;
+  scratch.work.found += scratch.contact_count;
   if (scratch.contact_count > high_water.contacts) high_water.contacts = scratch.contact_count;
 }
 
 bool still_touching(const Model& model, State& state, Scratch& scratch, const Region& region) PALPATE_RT {
   const std::int32_t point = point_at(model, state, region);
+  scratch.work.scans += static_cast<std::int32_t>(model.tool_point.size());
   if (point < 0) return false;
   const Triangle& triangle = model.triangle[static_cast<std::size_t>(state.point[point].triangle)];
   Vec3 corner[3];
@@ -285,6 +295,7 @@ bool still_touching(const Model& model, State& state, Scratch& scratch, const Re
   const std::int32_t piece = model.tool_point[static_cast<std::size_t>(point)].piece;
   const OverlapResult result = overlap_piece_triangle(model, model.piece[static_cast<std::size_t>(piece)],
                                                       carrier_w(model, state, piece), corner);
+  scratch.work.supports += result.support_calls;
   if (result.support_calls > state.high_water.gjk_support_calls) {
     state.high_water.gjk_support_calls = result.support_calls;
   }

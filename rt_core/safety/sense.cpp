@@ -38,6 +38,7 @@ void start_at(State& state, const Pose& pose) PALPATE_RT {
 
 void sense(const Model& model, State& state, Scratch& scratch, const Input& input) PALPATE_RT {
   scratch.status = 0;
+  scratch.work = {};
   const bool driven = input.drive == Drive::kTool;
   scratch.driven = driven ? 1 : 0;
   const bool nobody_holds = input.drive != Drive::kDevice;  // a press: poses may jump

@@ -105,10 +105,10 @@ inline SmoothFoot foot_at(const Corners& k, std::int32_t triangle, const Place& 
 }
 
 // As smooth_foot(), on the surface whose corners `corners_of(triangle)` gives, from the foot of `near_w`. The last step
-// is at most `still_m`; what is left then is its square over the radius of the surface.
+// is at most `still_m`; what is left then is its square over the radius of the surface. `steps`: counts them.
 template <class CornersOf>
 SmoothFoot search(const Model& model, const CornersOf& corners_of, Vec3 p, std::int32_t triangle, Vec3 near_w,
-                  Real still_m = kStill_m) PALPATE_RT {
+                  Real still_m = kStill_m, std::int32_t* steps = nullptr) PALPATE_RT {
   if (triangle < 0 || static_cast<std::size_t>(triangle) >= model.corner_normal.size() || !is_finite(p)) return {};
   Corners corners = corners_of(triangle);
   Place at = place_on(corners, near_w, 0.0);
@@ -116,6 +116,7 @@ SmoothFoot search(const Model& model, const CornersOf& corners_of, Vec3 p, std::
   std::int32_t walked = 0, on_this = 0;
   for (std::int32_t i = 0; i < kFootNewtonSteps; ++i) {  // bound: kFootNewtonSteps
     const Step step = newton_step(corners, p, at);
+    if (steps != nullptr) *steps = i + 1;
     if (!step.usable) return {};
     const Real size = norm(corners.v[1] - corners.v[0]) + norm(corners.v[2] - corners.v[0]);
     const bool still = size * (abs_of(step.db) + abs_of(step.dc)) + abs_of(step.dt) <= still_m;

@@ -20,8 +20,12 @@ foot::Corners corners_of(const Model& model, std::int32_t triangle) PALPATE_RT {
 }  // namespace
 
 SmoothFoot smooth_foot(const Model& model, Vec3 p, std::int32_t triangle) PALPATE_RT {
-  return foot::search(
-      model, [&model](std::int32_t t) PALPATE_RT { return corners_of(model, t); }, p, triangle, p);
+  std::int32_t steps = 0;
+  SmoothFoot foot = foot::search(
+      model, [&model](std::int32_t t) PALPATE_RT { return corners_of(model, t); }, p, triangle, p, foot::kStill_m,
+      &steps);
+  foot.steps = steps;
+  return foot;
 }
 
 void facet_weights(const Model& model, std::int32_t triangle, Vec3 at, Real (&weight)[3]) PALPATE_RT {

@@ -28,6 +28,7 @@ struct SmoothFoot {
   Vec3 foot_w;             // on the smooth surface
   Vec3 normal_w;           // unit
   Real height_m = 0;       // of the point above the smooth surface, along normal_w; < 0 inside
+  std::int32_t steps = 0;  // of the search
 };
 
 // With corners V_i, corner normals U_i and area coordinates n_i: the n_i and t with sum n_i V_i - t sum n_i U_i = p, by

@@ -59,6 +59,7 @@ void stop_loaded(const Model& model, const ArticulationState& a, Scratch& scratc
     if (!(squared_norm(a.piece_force_tool_N[p]) > limit2)) continue;
     std::int32_t j = model.piece[static_cast<std::size_t>(p)].joint;
     for (std::int32_t up = 0; up < kMaxJoints && j >= 0; ++up) {
+      scratch.work.joint_loads += 1;
       if (step[j] * load_on(model, a, j, p) < 0) {
         step[j] = 0;
         scratch.status |= Status::kJointStopped;
@@ -138,6 +139,7 @@ void place_links(const Model& model, const double* joint, Pose* link_tool, Vec3*
 void articulate(const Model& model, State& state, Scratch& scratch, const Input& input) PALPATE_RT {
   if (!is_articulated(model)) return;
   ArticulationState& a = state.articulation;
+  scratch.work.joints += joint_count(model) + a.motion_tool.size();
   const bool first = a.started == 0;
   if (first) {
     for (std::int32_t j = 0; j < joint_count(model); ++j) a.joint[j] = joint_at(model, j).open;  // bound: kMaxJoints

@@ -88,14 +88,18 @@ std::string explain(const Model& model, std::int32_t budget_instructions) {
       "scene   {}: {} triangles, {} pieces with {} points, {} anchors\nmethod  {}\n\nstages\n", model.name,
       model.triangle.size(), model.piece.size(), model.tool_point.size(), model.anchor.size(), method_text(model));
   const auto out = std::back_inserter(text);
-  fmt::format_to(out, "  {:<12}{:>12}\n", "", "at most");
+  fmt::format_to(out, "  {:<12}{:>12}{:>12}\n", "", "at most", "capacity");
+  double capacity = 0;
   for (std::int32_t i = 0; i < kStageCount; ++i) {
     const char* name = stage_name(static_cast<Stage>(i));
-    fmt::format_to(out, "  {:<12}{:>12.0f}  {}\n", name, model.stage_cost[static_cast<std::size_t>(i)].instructions,
-                   stage_note(model, name));
+    const double most = most_stage_cost(model, static_cast<Stage>(i));
+    capacity += most;
+    fmt::format_to(out, "  {:<12}{:>12.0f}{:>12.0f}  {}\n", name,
+                   model.stage_cost[static_cast<std::size_t>(i)].instructions, most, stage_note(model, name));
   }
-  fmt::format_to(out, "  {:<12}{:>12.0f}  instructions: the bound that baker, loader and controller hold it to\n",
-                 "tick", worst_tick_instructions(model));
+  fmt::format_to(out, "  {:<12}{:>12.0f}{:>12.0f}  instructions: {}\n", "tick", worst_tick_instructions(model),
+                 capacity,
+                 "what an adversary found and a quarter, to which the controller holds it; every capacity met at once");
   text += "\nlaws and choices\n";
   const unsigned own = bit_of(method_of(model));
 #define PALPATE_ROW(type, field, unit, lowest, highest, meaning) \

@@ -81,8 +81,8 @@ std::vector<Vec3> nodal_displacement_m(const Model& model, const State& state) {
 std::vector<Vec3> soft_displacement_m(const Model& model, const State& state) {
   std::array<double, elastic_layout::kMaxTerms> products;
   soft_products(model.params.elastic_soft, state.elastic.soft_rootJ.data(), products.data());
-  std::int32_t looked = 0;
-  const CarriedSurface carried{model, products.data(), &looked};
+  std::int32_t looked = 0, shown = 0;
+  const CarriedSurface carried{model, products.data(), &looked, &shown};
   std::vector<Vec3> displacement;
   for (std::int32_t v = 0; v < model.sizes.n_vertex; ++v) displacement.push_back(carried.displacement(v));
   return displacement;

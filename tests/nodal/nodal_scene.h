@@ -63,7 +63,7 @@ class NodalScene {
     image.piece = tool.piece;
     image.tool_point = tool.point;
     image.hull_vertex_m = tool.hull_vertex_m;
-    state_costs(0, image);
+    state_most_costs(image);
     const std::vector<std::byte> bytes = write_image(image);
     bytes_ = std::make_unique<ImageBytes>(bytes.size());
     std::memcpy(bytes_->bytes().data(), bytes.data(), bytes.size());

@@ -152,7 +152,7 @@ inline ImageBytes tiny_image(bool nodal = false) {
   model.params = image.params();
   model.sizes = image.sizes();
   for (int i = 0; i < kStageCount; ++i) {
-    image.array<StageCost>(k_stage_cost)[i] = {least_stage_cost(model, static_cast<Stage>(i))};
+    image.array<StageCost>(k_stage_cost)[i] = {most_stage_cost(model, static_cast<Stage>(i))};
   }
   image.seal();
   return image;

@@ -222,6 +222,7 @@ void CarriedSurface::place(Vec3 centre_w, Real margin_m, std::int32_t triangle, 
       model,
       [this, &last](std::int32_t t) PALPATE_RT {
         last = carried_triangle(model, y, t);
+        *shown += 3 * terms(model.params.elastic_soft);
         return last.corners;
       },
       centre_w, triangle, near_w, kStillCarried_m);
@@ -235,6 +236,7 @@ void CarriedSurface::place(Vec3 centre_w, Real margin_m, std::int32_t triangle, 
   } else {
     return;
   }
+  *shown += 3 * terms(model.params.elastic_soft);
   show_own_terms(model, row);
 }
 
@@ -244,6 +246,7 @@ bool CarriedSurface::place_on_facet(Vec3 centre_w, std::int32_t triangle, Elasti
   const Vec3 moved = displacement(model.triangle[static_cast<std::size_t>(triangle)].vertex[0]);
   const SurfacePoint facet = closest_surface_point(model, centre_w - moved, kHuge, triangle);
   *looked += facet.looked;
+  *shown += terms(model.params.elastic_soft);
   if (!facet.found) return false;
   row.foot.triangle = facet.triangle;
   facet_weights(model, facet.triangle, facet.closest_w, row.foot.weight);

@@ -18,14 +18,17 @@ using namespace elastic_layout;
 
 // What one linearisation may move the surface under a tip beyond the one before: above it the tick says so.
 constexpr Real kElasticTolerance_m = 2e-5;
+
 // Shifts and forces of the regions.
 void solve_forces(const ElasticLoad& load, Scratch& scratch, Real* force_N) PALPATE_RT {
   if (load.n > 1) {
     const RegionSolution result = solve_regions(load, load.n, scratch.system);
+    scratch.work.tip_laws += count_solution(result, load.n, scratch.contact_count, scratch.work);
     scratch.residual_m = result.residual_m;
     if (result.singular) scratch.status |= Status::kCouplingSingular;
   } else {
     const TravelResult result = solve_travel(load.region[0]);
+    scratch.work.tip_laws += result.evaluations * load.region[0].count;
     scratch.system.shift_m[0] = result.shift_m;
     scratch.residual_m = result.residual_m;
   }
@@ -36,7 +39,7 @@ void solve_forces(const ElasticLoad& load, Scratch& scratch, Real* force_N) PALP
 
 // Every row at the new amplitudes, from where it was.
 void place_again(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
-  const CarriedSurface surface = look(model, state, scratch);
+  const CarriedSurface surface = look(model, state, scratch, scratch.work.soft_pairs_again, scratch.work.shown_again);
   for (std::int32_t i = 0; i < scratch.contact_count; ++i) {  // bound: kMaxPieces
     const Contact& contact = scratch.contact[i];
     ElasticRow& row = work_of(scratch).row[contact.piece];
@@ -58,7 +61,11 @@ void solve(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   Real force_N[kMaxRegions], moved_m = 0;
   for (std::int32_t r = 0; r < regions; ++r) force_N[r] = state.region[scratch.rows.slot[r]].normal_force_N;
   for (std::int32_t i = 0; i < kElasticLinearisations; ++i) {  // bound: kElasticLinearisations
+    const std::int32_t looked = scratch.surface_work;
     if (i > 0) place_again(model, state, scratch);
+    scratch.work.looks_again += scratch.surface_work - looked;
+    scratch.work.linearised += 1;
+    scratch.work.linked += regions * (regions + 1) / 2 * (model.params.elastic_linear + model.params.elastic_soft);
     body.prepare(force_N);
     body.gather();
     solve_forces(load, scratch, force_N);
@@ -107,25 +114,26 @@ ImageResult check_data(const Model& model) noexcept {
 // Nothing in it is read before the tick has written it.
 std::size_t work_bytes(const Model&) noexcept { return sizeof(ElasticWork); }
 
-// The body's energy; one tip on the carried surface, over kFootWalk triangles at worst.
-double soft_energy_cost(const Model& model) noexcept {
-  const double pair_count = pairs(model.params.elastic_soft);
-  return 3000 + 60 * pair_count + 3 * pair_count * pair_count;
-}
-double place_cost(const Model& model) noexcept { return 8000 + 800.0 * terms(model.params.elastic_soft); }
-
-double least_cost(const Model& model, const SceneSizes& n, Stage stage) noexcept {
-  if (stage == Stage::kAccount) return rub_regions_cost(n);
-  if (stage == Stage::kFindRows)
-    return 3000 + surface_search_cost(model) + soft_energy_cost(model) + n.points * (500 + 2 * place_cost(model)) +
-           30 * n.contacts * n.contacts;
-  const double pair = 600 + 40.0 * model.params.elastic_linear;
-  const double one = soft_energy_cost(model) + n.regions * (12000 + place_cost(model)) + n.regions * n.regions * pair;
-  return 5000 + kElasticLinearisations * one;
+// A tip stands on the carried surface after kFootWalk triangles at worst, or on its facet; found twice in a tick that
+// loses it, and placed again for every linearisation but the first.
+void add_most_work(const Model& model, const SceneSizes& n, Work& work) noexcept {
+  const std::int32_t soft = model.params.elastic_soft, pair = pairs(soft), again = kElasticLinearisations - 1;
+  const std::int32_t place = (3 * (kFootWalk + 2) + 1) * terms(soft);
+  add_most_points(model, n, work);
+  add_most_regions(n, kElasticLinearisations * TipLaws::kIterations, work);
+  work.shown += n.points * (2 * place + terms(soft));
+  work.soft_pairs += soft_work(pair);
+  work.tip_laws +=
+      kElasticLinearisations * (kSeriesIterations + 1 + TipLaws::kIterations * (kStepHalvings + 1)) * n.contacts;
+  work.linearised += kElasticLinearisations;
+  work.linked += kElasticLinearisations * n.regions * (n.regions + 1) / 2 * (model.params.elastic_linear + soft);
+  work.shown_again += again * n.contacts * place;
+  work.soft_pairs_again += again * soft_work(pair);
+  work.looks_again += surface_work_share(model.params) + kMaxQueryWork;
 }
 
 }  // namespace
 
-const ContactMethod elastic_method{find_elastic_tips, solve, rub, check_tip_points, check_data, least_cost, work_bytes};
+const ContactMethod elastic_method{find_elastic_tips, solve, rub, check_tip_points, check_data, add_most_work, work_bytes};
 
 }  // namespace palpate

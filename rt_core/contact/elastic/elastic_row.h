@@ -23,6 +23,7 @@ struct CarriedSurface {
   const Model& model;
   const Real* y;         // soft_products
   std::int32_t* looked;  // boxes and triangles this tick has looked at
+  std::int32_t* shown;   // terms of vertices summed up
 
   // Displacement of a vertex.
   Vec3 displacement(std::int32_t vertex) const PALPATE_RT;

@@ -16,7 +16,7 @@ class Finder {
                                                                           state_(state),
                                                                           scratch_(scratch),
                                                                           work_(work_of(scratch)),
-                                                                          surface_(look(model, state, scratch)),
+                                                                          surface_(look(model, state, scratch, scratch.work.soft_pairs, scratch.work.shown)),
                                                                           box_(root_box(model)) {
     let_go(model, work_.energy, let_go_);
     is_moved_ = state.elastic.moved != 0;
@@ -80,6 +80,7 @@ class Finder {
       moved = surface_.displacement(model_.triangle[static_cast<std::size_t>(point.triangle)].vertex[0]);
     const SurfacePoint nearest = closest_surface_point(model_, p - moved, kHuge, point.triangle);
     scratch_.surface_work += nearest.looked;
+    scratch_.work.queries += 1;
     reach_m_ = nearest.lower_bound_m - margin_m - model_.params.smooth_slack_m;
     if (nearest.truncated) scratch_.status |= Status::kTraversalTruncated;
     if (nearest.found) surface_.place(p, margin_m, nearest.triangle, p, row);
@@ -130,6 +131,9 @@ void find_elastic_tips(const Model& model, State& state, Scratch& scratch) PALPA
   }
   state.high_water.contacts =
       state.high_water.contacts < scratch.contact_count ? scratch.contact_count : state.high_water.contacts;
+  scratch.work.points += static_cast<std::int32_t>(model.piece.size());
+  scratch.work.found += scratch.contact_count;
+  scratch.work.looks = scratch.surface_work;
   group_points(model, state, scratch, nullptr);
 }
 

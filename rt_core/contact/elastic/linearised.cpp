@@ -78,11 +78,13 @@ CurvatureFactor curvature_factor(const TipLaw& law, Real radius_m, Real curvatur
 
 }  // namespace
 
-CarriedSurface look(const Model& model, const State& state, Scratch& scratch) PALPATE_RT {
+CarriedSurface look(const Model& model, const State& state, Scratch& scratch, std::int32_t& summed,
+                    std::int32_t& shown) PALPATE_RT {
   ElasticWork& work = work_of(scratch);
   soft_products(model.params.elastic_soft, state.elastic.soft_rootJ.data(), work.y);
   soft_energy(model, state.elastic.soft_rootJ.data(), work.y, work.energy);
-  return {model, work.y, &scratch.surface_work};
+  summed += soft_work(pairs(model.params.elastic_soft));
+  return {model, work.y, &scratch.surface_work, &shown};
 }
 
 void let_go(const Model& model, const SoftEnergy& energy, Real* step) PALPATE_RT {
@@ -153,6 +155,7 @@ void Linearised::gather() PALPATE_RT {
   std::int32_t next = 0;
   load_.n = regions();
   load_.region = load_.tips_of;
+  load_.evaluated = &scratch_.work.tip_laws;
   load_.coupling = {scratch_.system.compliance_m_per_N, nullptr};
   for (std::int32_t r = 0; r < load_.n; ++r) {  // bound: kMaxPieces tips
     const RegionRows rows = rows_of(scratch_, r);

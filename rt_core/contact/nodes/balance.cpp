@@ -27,9 +27,11 @@ class Balance {
         p_(problem_of(scratch)),
         drift_(drift),
         before_(before),
+        work_(scratch.work),
         mu_(friction_coefficient(model)) {}
 
   void run() PALPATE_RT {
+    count_gathering();
     gather_influence(model_, p_);
     gather_normal(model_, p_);
     if (mu_ > 0) make_frames(model_, p_, mu_);
@@ -38,9 +40,25 @@ class Balance {
     solve_normal();
     if (mu_ > 0) solve_with_friction();
     measure();
+    work_.vectors += p_.normal.vectors;
+    work_.pivots += p_.normal.pivots;
   }
 
  private:
+  std::int32_t eights() const PALPATE_RT { return (p_.count + 7) / 8; }
+
+  // The compliance between the nodes, and of it the rows along their normals.
+  void count_gathering() PALPATE_RT {
+    const std::int32_t n = p_.count;
+    work_.rows += n;
+    work_.gathered += 9 * n * eights();
+    if (model_.compliance_f64.empty()) {
+      work_.vectors += n * (10 * eights() + n / 4);
+    } else {
+      work_.exact += n * (n + 1) / 2;
+    }
+    if (mu_ > 0) work_.frames += (n + 3) / 4;
+  }
   bool pivots() const PALPATE_RT { return model_.params.nodal_solver == NodalSolver::kPivoting; }
 
   void clear_motion() PALPATE_RT {
@@ -106,6 +124,7 @@ class Balance {
   }
   // The same for all nodes at once.
   void set_forces() PALPATE_RT {
+    work_.vectors += 9 * p_.count * eights();
     float steps[3 * kMaxContacts];
     for (std::int32_t i = 0; i < p_.count; ++i) {  // bound: kMaxContacts
       ContactNode& node = p_.node[i];
@@ -159,8 +178,11 @@ class Balance {
   void solve_with_friction() PALPATE_RT {
     std::int32_t left = kMaxFrictionVisits;
     for (std::int32_t sweep = 0; sweep < model_.params.friction_sweeps && left >= p_.count; ++sweep) {  // bound: 20
+      work_.visits += p_.count;
       for (std::int32_t i = 0; i < p_.count; ++i) left -= solve_node(i) ? 1 : 0;  // bound: kMaxContacts
     }
+    work_.rubbing += kMaxFrictionVisits - left;
+    work_.vectors += 18 * (kMaxFrictionVisits - left) * eights();
     if (pivots()) close_normal_gaps();
   }
 
@@ -193,6 +215,7 @@ class Balance {
       if (normal.active[k] < 0) return false;
       step[k] = -gap[normal.active[k]];
     }
+    normal.vectors += p_.count * (p_.count + 8) / 4;
     solve_lower(normal.factor, step);
     solve_upper(normal.factor, step);
     bool pushes = true;
@@ -252,6 +275,7 @@ class Balance {
   ContactProblem& p_;
   const Twist drift_;
   const Pose before_;
+  Work& work_;
   const Real mu_;
   Pose carrier_;  // of the piece last asked for
   std::int32_t carried_piece_ = -1;

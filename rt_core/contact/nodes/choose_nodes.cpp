@@ -31,6 +31,7 @@ struct Deepest {
   Lane lane[kMaxJoining];
   std::int32_t count = 0, most = 0;
   Real left_out_m = kHuge;  // gap of the deepest without a place
+  std::int32_t moves = 0, predicted = 0;
 
   void offer(const Lane& offered, Real gap) PALPATE_RT {
     if (count == most) {
@@ -42,6 +43,7 @@ struct Deepest {
     for (; place > 0 && gap < gap_m[place - 1]; --place) {  // bound: kMaxJoining
       gap_m[place] = gap_m[place - 1];
       lane[place] = lane[place - 1];
+      moves += 1;
     }
     gap_m[place] = gap;
     lane[place] = offered;
@@ -77,6 +79,7 @@ void predict(const LastPushes<Number>& last, const ContactProblem& p, const Lane
     const Lane& l = lane[i < count ? i : 0];
     at[i] = 3 * (p.near[l.four].first + l.k);
   }
+  deepest.predicted += last.count + 1;
   Float8 x{}, y{}, z{};
   for (std::int32_t j = 0; j < last.count; ++j) {  // bound: kMaxContacts
     const Number* row = last.row[j];
@@ -207,6 +210,8 @@ void reduce_near(const Model& model, const State& state, Scratch& scratch) PALPA
   } else {
     find_deepest(model, LastPushes<double>(model.compliance_f64, length, state.nodal), state, p, joining);
   }
+  scratch.work.predicted += joining.predicted;
+  scratch.work.offered += joining.moves + p.near_count;
   const Real moved_m = norm(state.tool_w.position_m - state.tool_previous_w.position_m);
   if (joining.left_out_m < -kTolerance_m - moved_m) scratch.status |= Status::kContactsDropped;
   for (std::int32_t n = 0; n < joining.count; ++n) {  // bound: kMaxJoining
@@ -230,12 +235,14 @@ void choose_nodes(const Model& model, const State& state, Scratch& scratch) PALP
   if (near > kMaxContacts) reduce_near(model, state, scratch);
   p.count = 0;
   const auto pieces = static_cast<std::int32_t>(model.piece.size());
+  scratch.work.offered += pieces * p.near_count;
   for (std::int32_t piece = 0; piece < pieces; ++piece) {  // bound: kMaxPieces
     for (std::int32_t i = 0; i < p.near_count; ++i) {      // bound: kMaxNearFours
       std::uint32_t lanes = pieces > 1 ? lanes_at(p.near[i], piece) : p.near[i].lanes;
       for (; lanes != 0; lanes &= lanes - 1) take(model, state, p, p.near[i], std::countr_zero(lanes));  // bound: 4
     }
   }
+  scratch.work.found += p.count;
 }
 
 }  // namespace palpate

@@ -189,6 +189,7 @@ void gather_influence(const Model& model, ContactProblem& p) PALPATE_RT {
 
 void gather_normal(const Model& model, ContactProblem& p) PALPATE_RT {
   p.normal.n = p.count;
+  p.normal.vectors = 0;
   list_directions(p, p.directions);
   for (std::int32_t j = 0; j < p.count; ++j) {  // bound: kMaxContacts
     if (model.compliance_f64.empty()) {

@@ -22,6 +22,7 @@ class NodeSearch {
   NodeSearch(const Model& model, State& state, Scratch& scratch) PALPATE_RT : model_(model),
                                                                               state_(state),
                                                                               problem_(problem_of(scratch)),
+                                                                              work_(scratch.work),
                                                                               near_(problem_.near),
                                                                               near_of_(problem_.near_of) {
     problem_.near_count = 0;
@@ -41,8 +42,10 @@ class NodeSearch {
     piece_ = piece;
     const ToolPiece& shape = model_.piece[static_cast<std::size_t>(piece)];
     const RigidFrame frame(carrier_w(model_, state_, piece) * shape.pose_tool);
+    work_.pieces += 1;
     if (!body_within_reach(shape, frame)) return;
     const auto vertices = static_cast<std::int32_t>(model_.sizes.n_vertex);
+    work_.fours += vertices / 4 + 1;
     for (std::int32_t first = 0; first < vertices; first += 4) {  // bound: kMaxNodalVertices / 4
       const Vec3x4 rest = four_of(model_.vertex_m.data(), first, vertices);
       const PieceGapOf<Vec3x4> gap = piece_gap(shape, into(frame, rest));
@@ -109,6 +112,8 @@ class NodeSearch {
   // Each node is carried by the nearest region that reaches it, or by none.
   void visit_four(const ToolPiece& shape, const RigidFrame& frame, std::int32_t first, const Vec3x4& rest,
                   const Double4& bulge) PALPATE_RT {
+    work_.near += 1;
+    work_.near_regions += regions_;
     Double4 nearest = splat4(kHuge);
     Vec3x4 carry = splat4(Vec3{}), bend = carry, rotation = carry;
     for (std::int32_t r = 0; r < regions_; ++r) {  // bound: kMaxRegions
@@ -153,6 +158,7 @@ class NodeSearch {
       if (vertex >= vertices) return;
       const NodalVertex& node = model_.nodal_vertex[static_cast<std::size_t>(vertex)];
       if (!(node.round_m > 0)) continue;
+      work_.rounded += 1;
       const Vec3 outward = unit_or(node.round_normal + cross(rotation[k], node.round_normal), node.round_normal);
       const Vec3 position = near.position_w[k], centre = position - node.round_m * outward;
       const PieceGap ball = piece_gap(shape, into(frame, centre));
@@ -190,6 +196,7 @@ class NodeSearch {
   const Model& model_;
   State& state_;
   ContactProblem& problem_;
+  Work& work_;
   NearFour* const near_;
   std::int16_t* const near_of_;
   RegionMotion region_[kMaxRegions];

@@ -169,6 +169,8 @@ void find_nodal_regions(const Model& model, State& state, Scratch& scratch) PALP
   find_clusters(model, scratch, clusters);
   if (!assign_slots(scratch, clusters, state)) scratch.status |= Status::kRegionsDropped;
   label_nodes(state, scratch, clusters);
+  scratch.work.joined += clusters.pairs + clusters.recalls;
+  scratch.work.grouped += clusters.count;
 
   Sums sums[kMaxRegions];
   for (std::int32_t i = 0; i < scratch.contact_count; ++i) {  // bound: kMaxContacts
@@ -193,6 +195,7 @@ void find_nodal_regions(const Model& model, State& state, Scratch& scratch) PALP
     local_J += local_energy_J(model, region);
     touching += 1;
   }
+  scratch.work.rubbed += touching;
   if (touching > state.high_water.regions) state.high_water.regions = touching;
   state.nodal.far_share = far_share(model, local_J, scratch.energy_J);
   fit_motions(model, state, scratch);

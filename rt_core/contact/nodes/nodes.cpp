@@ -63,7 +63,7 @@ void remember(const Model& model, State& state, const Scratch& scratch) PALPATE_
 // Tangent of the contact force for the response of the tool: K = G^T (N C N^T)^-1 G over the pushing nodes, G their
 // normals' Jacobian. The factor at hand may contain the coupling's compliance; then S = G^T M^-1 G is K in series with
 // it, and K = (1 - S / K_coupling)^-1 S.
-void set_stiffness(State& state, const Scratch& scratch) PALPATE_RT {
+void set_stiffness(State& state, Scratch& scratch) PALPATE_RT {
   const ContactProblem& p = problem_of(scratch);
   const ContactFactor& factor = p.normal.factor;
   if (p.normal.factored == 0 || factor.n == 0) return;
@@ -76,6 +76,7 @@ void set_stiffness(State& state, const Scratch& scratch) PALPATE_RT {
     const Vec3 m = real ? root[1] * cross(node.arm_w, node.normal_w) : Vec3{};
     column[k] = {{n.x, n.y, n.z, m.x, m.y, m.z, 0, 0}};
   }
+  scratch.work.summed += factor.n * (factor.n + 24);
   solve_lower(factor, column);
   Real series[kDof * kDof], rest[kDof * kDof];
   Double4 product[kDof][2] = {};
@@ -198,6 +199,8 @@ Real largest_strain(const Model& model, const ContactProblem& p) PALPATE_RT {
 
 void check_strain(const Model& model, Scratch& scratch) PALPATE_RT {
   if (model.strain_gauge.empty()) return;
+  const auto components = static_cast<std::int32_t>(model.sizes.n_strain_gauge / (3 * model.sizes.n_vertex));
+  scratch.work.summed += 3 * scratch.contact_count * (components + 7) / 8;
   scratch.strain = largest_strain(model, problem_of(scratch));
   if (scratch.strain > model.params.strain_limit) scratch.status |= Status::kStrainBeyondLinear;
 }
@@ -226,6 +229,7 @@ void account(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   if (problem_of(scratch).count > 0) set_stiffness(state, scratch);
   remember(model, state, scratch);
   list_contacts(scratch);
+  scratch.work.slid += problem_of(scratch).count;
   sum_up(scratch);
   check_strain(model, scratch);
   find_nodal_regions(model, state, scratch);
@@ -270,11 +274,33 @@ ImageResult check_data(const Model& model) noexcept {
   return {};
 }
 
-// Four nodes at a time against every piece, carried by every region; 64 at once were solved in 424,000 (2026-11-22).
-double least_cost(const Model&, const SceneSizes& n, Stage stage) noexcept {
-  if (stage == Stage::kFindRows)
-    return 50000 + n.pieces * (n.nodes / 4 + 1) * (250 + 60 * n.regions) + 2500 * n.contacts;
-  return stage == Stage::kSolve ? 50000 + 12000 * n.contacts : 10000 + 1500 * n.contacts;
+// Every node near every piece and carried by every region; all pivots, then all sweeps, twice.
+void add_most_work(const Model& model, const SceneSizes& n, Work& work) noexcept {
+  const std::int32_t fours = n.nodes / 4 + 1, c = n.contacts, eights = (c + 7) / 8, visits = kMaxFrictionVisits;
+  std::int32_t round = 0;
+  for (const NodalVertex& vertex : model.nodal_vertex) round += vertex.round_m > 0 ? 1 : 0;
+  work.fours += n.pieces * fours;
+  work.near += n.pieces * fours;
+  work.near_regions += n.pieces * fours * n.regions;
+  work.rounded += n.pieces * round;
+  work.predicted += kMaxPredictions + fours;
+  work.offered += fours * (1 + n.pieces) + 4 * fours * c;
+  work.found += c;
+  work.rows += c;
+  work.gathered += 9 * c * eights;
+  work.vectors += c * (10 * eights + c / 4) + 27 * c * eights + 18 * visits * eights;
+  const std::int32_t pivot = c * (c + 8) * (c + 8) / 24 + 2 * c * (c + 24), sweep = c * ((c + 3) / 4 + 4);
+  work.vectors += 2 * (kMaxPivots * pivot + kFallbackSweeps * sweep) + model.params.nodal_sweeps * sweep;
+  if (!model.compliance_f64.empty()) work.exact += c * (c + 1) / 2;
+  work.frames += (c + 3) / 4;
+  work.visits += model.params.friction_sweeps * c;
+  work.rubbing += visits + c;
+  work.pivots += 2 * kMaxPivots;
+  work.slid += c;
+  work.rubbed += n.regions;
+  work.grouped += c;
+  work.joined += c * c + n.regions * kMaxRegions * c;
+  work.summed += c * (c + 24) + 3 * c * 6 * kMaxStrainGauges / 8;
 }
 
 // The problem, and behind it its three lists.
@@ -302,7 +328,7 @@ void create_problem(const Model& model, void* block) noexcept {
 
 }  // namespace
 
-const ContactMethod nodes_method{find_rows,  solve,      account,       check_tool,
-                                 check_data, least_cost, problem_bytes, create_problem};
+const ContactMethod nodes_method{find_rows,  solve,         account,       check_tool,
+                                 check_data, add_most_work, problem_bytes, create_problem};
 
 }  // namespace palpate

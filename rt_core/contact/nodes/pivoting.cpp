@@ -11,6 +11,7 @@ namespace {
 void gather_active(NormalProblem& p) PALPATE_RT {
   ContactFactor& factor = p.factor;
   const std::int32_t n = factor.n, rows = whole_lanes(n, 4);
+  p.vectors += n * rows / 4;
   bool joined[kMaxContacts / 4];
   for (std::int32_t i = 0; i < rows; i += 4) joined[i / 4] = i + 4 <= n && p.active[i + 3] == p.active[i] + 3;
   for (std::int32_t j = 0; j < n; ++j) {  // bound: kMaxContacts^2 / 8 vectors
@@ -33,6 +34,7 @@ void close_active(NormalProblem& p) PALPATE_RT {
   for (std::int32_t k = 0; k < whole_lanes(factor.n, 4); ++k) {  // bound: kMaxContacts
     x[k] = k < factor.n && p.active[k] >= 0 ? -p.free_gap_m[p.active[k]] : 0.0;
   }
+  p.vectors += factor.n * (factor.n + 8) / 4;
   solve_lower(factor, x);
   solve_upper(factor, x);
   for (std::int32_t i = 0; i < p.n; ++i) p.push_N[i] = 0;  // bound: kMaxContacts
@@ -47,6 +49,7 @@ void add_gaps(NormalProblem& p) PALPATE_RT {
   for (std::int32_t j = 0; j < p.n; ++j) {  // bound: kMaxContacts
     if (p.push_N[j] != 0) pushing[count++] = j;
   }
+  p.vectors += (count + 8) * rows / 4;
   for (std::int32_t i = 0; i < rows; i += 16) {  // bound: kMaxContacts / 16; the stride is whole sixteens
     Double4 g0 = load4(p.free_gap_m + i), g1 = load4(p.free_gap_m + i + 4), g2 = load4(p.free_gap_m + i + 8),
             g3 = load4(p.free_gap_m + i + 12);
@@ -89,6 +92,7 @@ bool factorise_active(NormalProblem& p, const bool (&is_active)[kMaxContacts]) P
     if (is_active[i]) p.active[p.factor.n++] = i;
   }
   gather_active(p);
+  p.vectors += p.factor.n * (p.factor.n + 8) * (p.factor.n + 8) / 24;
   p.factored = factorise(p.factor) ? 1 : 0;
   return p.factored != 0;
 }
@@ -101,6 +105,7 @@ bool append_contact(NormalProblem& p, std::int32_t i) PALPATE_RT {
   for (std::int32_t k = 0; k < whole_lanes(n, 4); ++k) {  // bound: kMaxContacts
     row[k] = k < n && p.active[k] >= 0 ? p.compliance[p.active[k]][i] : 0.0;
   }
+  p.vectors += n * (n + 16) / 8;
   solve_lower(factor, row);
   double rest = p.compliance[i][i];
   for (std::int32_t k = 0; k < n; ++k) {  // bound: kMaxContacts
@@ -137,6 +142,7 @@ bool update_factor(NormalProblem& p, const bool (&is_active)[kMaxContacts],
   for (std::int32_t k = 0; k < p.factor.n; ++k) {  // bound: kMostUpdates updates
     const std::int32_t i = p.active[k];
     if (i < 0 || !flips[i]) continue;
+    p.vectors += (p.factor.n - k) * (p.factor.n - k + 24) / 4;
     remove_unknown(p.factor, k);
     p.active[k] = -1;
   }
@@ -188,12 +194,14 @@ void solve_sweeping(NormalProblem& p, std::int32_t sweeps) PALPATE_RT {
   pad(p);
   add_gaps(p);
   const std::int32_t rows = whole_lanes(p.n, 4);
+  p.vectors += sweeps * p.n * 4;
   for (std::int32_t sweep = 0; sweep < sweeps; ++sweep) {  // bound: 100, from the image
     for (std::int32_t j = 0; j < p.n; ++j) {               // bound: kMaxContacts
       const double next = max_of(p.push_N[j] - p.gap_m[j] / p.compliance[j][j], 0.0);
       const double step = next - p.push_N[j];
       if (step == 0) continue;
       p.push_N[j] = next;
+      p.vectors += rows / 4;
       const Double4 s = splat4(step);
       for (std::int32_t i = 0; i < rows; i += 4)
         store(p.gap_m + i, load4(p.gap_m + i) + load4(p.compliance[j] + i) * s);

@@ -22,8 +22,9 @@ struct NormalProblem {
   std::int32_t active[kMaxContacts];                            // out: contacts of the factor, in order; -1: taken out
   std::int32_t n = 0;
   std::int32_t factored = 0;
-  std::int32_t pivots = 0;  // active sets tried
-  double residual_m = 0;    // largest |min(f M_ii, w)|
+  std::int32_t pivots = 0;   // active sets tried
+  std::int32_t vectors = 0;  // of four multiplied and added since gather_normal(), as Work counts them
+  double residual_m = 0;     // largest |min(f M_ii, w)|
 };
 
 // Solves by pivoting. Bound: kMaxPivots factorisations, then kFallbackSweeps sweeps.

@@ -69,6 +69,7 @@ void couple(const Model& model, State& state, Scratch& scratch, PointLaws& laws)
   fill_compliance(model, state, scratch.rows, scratch.system.compliance_m_per_N);
   laws.compliance_m_per_N = scratch.system.compliance_m_per_N;
   const RegionSolution result = solve_regions(laws, laws.n, scratch.system);
+  scratch.work.spring_laws += count_solution(result, laws.n, scratch.contact_count, scratch.work);
   scratch.residual_m = result.residual_m;
   if (result.singular) scratch.status |= Status::kCouplingSingular;
   if (!(result.residual_m <= PointLaws::kTolerance_m)) scratch.status |= Status::kNotConverged;
@@ -123,7 +124,12 @@ void slide_on_points(const Model& model, const State& state, Scratch& scratch, s
 
 void account(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   const bool temporal = model.params.coupling_law == CouplingLaw::kTemporalPaper;
-  if (temporal) add_transferred(model, state, scratch);
+  if (temporal) {
+    const std::int32_t n = scratch.rows.regions, beams = static_cast<std::int32_t>(model.anchor.size()) * n;
+    scratch.work.beams += beams;
+    scratch.work.carried += beams * n;
+    add_transferred(model, state, scratch);
+  }
   for (std::int32_t r = 0; r < scratch.rows.regions; ++r) {  // bound: kMaxRegions
     slide_on_points(model, state, scratch, r, state.region[scratch.rows.slot[r]]);
   }
@@ -133,14 +139,16 @@ void account(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
 // Any tool, and no arrays of its own.
 ImageResult accept(const Model&) noexcept { return {}; }
 
-double least_cost(const Model& model, const SceneSizes& n, Stage stage) noexcept {
-  if (stage == Stage::kFindRows) return find_points_cost(model, n);
-  if (stage == Stage::kAccount) return rub_regions_cost(n);
-  return 3000 + 600 * n.contacts + 1500 * n.regions + 20 * n.regions * n.regions * n.regions;
+void add_most_work(const Model& model, const SceneSizes& n, Work& work) noexcept {
+  add_most_points(model, n, work);
+  add_most_regions(n, PointLaws::kIterations, work);
+  work.spring_laws += (1 + PointLaws::kIterations * (kStepHalvings + 1)) * n.contacts;
+  work.beams += n.anchors * n.regions;
+  work.carried += n.anchors * n.regions * n.regions;
 }
 
 }  // namespace
 
-const ContactMethod points_method{find_rows, solve, account, accept, accept, least_cost};
+const ContactMethod points_method{find_rows, solve, account, accept, accept, add_most_work};
 
 }  // namespace palpate

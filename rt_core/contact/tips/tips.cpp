@@ -79,6 +79,7 @@ void gather(const Model& model, Scratch& scratch, TipLoad& load) PALPATE_RT {
   std::int32_t next = 0;
   load.n = scratch.rows.regions;
   load.region = load.tips_of;
+  load.evaluated = &scratch.work.tip_laws;
   load.coupling = {scratch.system.compliance_m_per_N, scratch.system.second_order_m_per_N2};
   for (std::int32_t r = 0; r < load.n; ++r) {  // bound: kMaxPieces tips
     const RegionRows rows = rows_of(scratch, r);
@@ -127,6 +128,7 @@ void couple(const Model& model, State& state, Scratch& scratch, const TipLoad& l
     for (std::int32_t j = 0; j < r; ++j) fill_pair(model, state, scratch, r, j);
   }
   const RegionSolution result = solve_regions(load, load.n, scratch.system);
+  scratch.work.tip_laws += count_solution(result, load.n, scratch.contact_count, scratch.work);
   scratch.residual_m = result.residual_m;
   if (result.singular) scratch.status |= Status::kCouplingSingular;
   scratch.energy_J += coupling_energy_J(load.n, load.coupling, scratch.system.force_N);
@@ -143,6 +145,7 @@ void solve(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   } else {
     for (std::int32_t r = 0; r < load.n; ++r) {  // bound: kMaxRegions
       const TravelResult result = solve_travel(load.region[r]);
+      scratch.work.tip_laws += result.evaluations * load.region[r].count;
       scratch.system.shift_m[r] = result.shift_m;
       scratch.residual_m = max_of(scratch.residual_m, result.residual_m);
     }
@@ -180,10 +183,10 @@ ImageResult check_data(const Model& model) noexcept {
   return check_tables(model);
 }
 
-double least_cost(const Model& model, const SceneSizes& n, Stage stage) noexcept {
-  if (stage == Stage::kFindRows) return find_points_cost(model, n);
-  if (stage == Stage::kAccount) return rub_regions_cost(n);
-  return 5000 + 10000 * n.regions + 600 * n.regions * n.regions;
+void add_most_work(const Model& model, const SceneSizes& n, Work& work) noexcept {
+  add_most_points(model, n, work);
+  add_most_regions(n, TipLaws::kIterations, work);
+  work.tip_laws += (kSeriesIterations + 1 + TipLaws::kIterations * (kStepHalvings + 1)) * n.contacts;
 }
 
 }  // namespace
@@ -222,6 +225,6 @@ ImageResult check_tip_laws(const Model& model) noexcept {
   return {};
 }
 
-const ContactMethod tips_method{find_rows, solve, rub_tips, check_tip_points, check_data, least_cost};
+const ContactMethod tips_method{find_rows, solve, rub_tips, check_tip_points, check_data, add_most_work};
 
 }  // namespace palpate

@@ -68,6 +68,7 @@ TravelResult solve_travel(const TipRegion& region) PALPATE_RT {
     const LawPoint load = region_at(region, result.shift_m);
     const Real rest = result.shift_m - far_shift_m(region.far, load.force_N);
     result.residual_m = abs_of(rest);
+    result.evaluations = i + 1;
     if (!(result.residual_m > 1e-15 * deepest)) break;
     (rest > 0 ? high : low) = result.shift_m;
     const Real slope = 1.0 + far_slope_m_per_N(region.far, load.force_N) * load.tangent_N_per_m;

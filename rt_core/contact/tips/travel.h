@@ -48,6 +48,7 @@ LawPoint region_at(const TipRegion& region, Real shift_m) PALPATE_RT;
 struct TravelResult {
   Real shift_m = 0;
   Real residual_m = 0;
+  std::int32_t evaluations = 0;  // of the region's laws
 };
 // One region alone: the shift w with w = c0 F + c1 F^2, F = F(depth - w). The function w - far(F(w)) rises wherever the
 // whole stiffness is positive, which the baker sees to; Newton with bisection as guard. F -> 0 needs no care: the
@@ -73,8 +74,13 @@ struct TipLaws {
   const TipRegion* region;
   TipCoupling coupling;
   std::int32_t n;
+  std::int32_t* evaluated = nullptr;  // counts laws evaluated by start(), when given
 
-  Real start(std::int32_t r) const PALPATE_RT { return solve_travel(region[r]).shift_m; }
+  Real start(std::int32_t r) const PALPATE_RT {
+    const TravelResult alone = solve_travel(region[r]);
+    if (evaluated != nullptr) *evaluated += alone.evaluations * region[r].count;
+    return alone.shift_m;
+  }
   LawPoint load(std::int32_t r, Real shift_m) const PALPATE_RT { return region_at(region[r], shift_m); }
   Real shift_under(const Real* force, std::int32_t r) const PALPATE_RT;
   Real curvature(const Real* force, std::int32_t i, std::int32_t j) const PALPATE_RT;
