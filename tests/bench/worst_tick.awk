@@ -17,8 +17,11 @@ function finish(    stage) {
     if (contacts > 0) sum[stage] += cost[stage]
   }
 }
+# A method's steps have names of their own where methods share them.
 function name_of(text) {
-  gsub(/\(anonymous namespace\)::/, "", text); sub(/\(.*/, "", text); sub(/^.*::/, "", text); return text
+  gsub(/\(anonymous namespace\)::/, "", text); sub(/\(.*/, "", text); sub(/^.*::/, "", text)
+  if (text ~ /^find_/) return "find_rows"
+  return text ~ /^rub/ || text == "load_pieces" ? "account" : text
 }
 /^part: / { finish(); open_part = 0; total = 0; self = 0; in_tick = 0; split("", cost) }
 /^desc: Trigger: Client Request: tick / {

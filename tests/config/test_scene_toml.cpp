@@ -145,6 +145,12 @@ INSTANTIATE_TEST_SUITE_P(All, Mistakes, testing::ValuesIn(kMistakes),
 
 TEST(SceneToml, TheSmallSceneIsRight) { EXPECT_EQ(error_of(kSmall), ""); }
 
+// Undefined behaviour of toml++ until 2026-11-22: letters from U+00A1 to U+0499 where a key may begin.
+TEST(SceneToml, ALetterWithAnAccentAsAKeyIsRefused) {
+  for (const char* text : {"name = \"a\"\n\u00e9 = 1\n", "name = \"a\"\n[b\u048dd]\n"})
+    EXPECT_THAT(error_of(text), HasSubstr("s.toml:2")) << text;
+}
+
 TEST(SceneToml, MissingFileIsNamed) {
   EXPECT_THROW(
       {

@@ -9,6 +9,7 @@
 #include "rt_core/contact/regions.h"
 #include "rt_core/contact/tips/tip_check.h"
 #include "rt_core/image_check.h"
+#include "rt_core/surface/closest_point.h"
 
 namespace palpate {
 
@@ -134,6 +135,7 @@ void add_most_work(const Model& model, const SceneSizes& n, Work& work) noexcept
 
 }  // namespace
 
-const ContactMethod elastic_method{find_elastic_tips, solve, rub, check_tip_points, check_data, add_most_work, work_bytes};
+const ContactMethod elastic_method{find_elastic_tips, solve,         rub,       check_tip_points,
+                                   check_data,        add_most_work, work_bytes};
 
 }  // namespace palpate

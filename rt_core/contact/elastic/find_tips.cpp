@@ -12,12 +12,13 @@ using namespace elastic_layout;
 
 class Finder {
  public:
-  Finder(const Model& model, State& state, Scratch& scratch) PALPATE_RT : model_(model),
-                                                                          state_(state),
-                                                                          scratch_(scratch),
-                                                                          work_(work_of(scratch)),
-                                                                          surface_(look(model, state, scratch, scratch.work.soft_pairs, scratch.work.shown)),
-                                                                          box_(root_box(model)) {
+  Finder(const Model& model, State& state, Scratch& scratch) PALPATE_RT
+      : model_(model),
+        state_(state),
+        scratch_(scratch),
+        work_(work_of(scratch)),
+        surface_(look(model, state, scratch, scratch.work.soft_pairs, scratch.work.shown)),
+        box_(root_box(model)) {
     let_go(model, work_.energy, let_go_);
     is_moved_ = state.elastic.moved != 0;
   }
