@@ -2,6 +2,7 @@
 
 #include "rt_core/contact/contact.h"
 #include "rt_core/stage_cost.h"
+#include "rt_core/surface/closest_point.h"
 
 namespace palpate {
 
@@ -9,6 +10,25 @@ namespace {
 
 using std::int32_t;
 using std::int64_t;
+
+// Whether the fan about a corner ends. It is walked from its first triangle; the others stop where they meet a former.
+bool fan_ends(const Model& model, std::size_t triangle, int corner) noexcept {
+  const int32_t vertex = model.triangle[triangle].vertex[corner];
+  int64_t at = model.triangle[triangle].adjacent[corner];
+  for (int32_t steps = 1; steps < kMaxVertexTriangles; ++steps) {
+    if (at <= static_cast<int64_t>(triangle)) return true;
+    const Triangle& t = model.triangle[static_cast<std::size_t>(at)];
+    at = t.adjacent[t.vertex[0] == vertex ? 0 : t.vertex[1] == vertex ? 1 : 2];
+  }
+  return at <= static_cast<int64_t>(triangle);
+}
+
+ImageResult check_fans(const Model& model) noexcept {
+  for (std::size_t i = 0; i < model.triangle.size(); ++i)
+    for (int k = 0; k < 3; ++k)
+      if (!fan_ends(model, i, k)) return {ImageError::kCombination, "triangle.fan", static_cast<int64_t>(i)};
+  return {};
+}
 
 ImageResult check_surface(const Model& model) noexcept {
   if (model.vertex_m.size() != model.vertex_normal.size()) return broken("vertex_normal", 0);
@@ -240,8 +260,8 @@ ImageResult check_method(const Model& model) noexcept {
 // In this order: what a later check indexes, an earlier one has seen.
 ImageResult check_arrays(const Model& model) noexcept {
   using Check = ImageResult (*)(const Model&) noexcept;
-  constexpr Check kChecks[] = {check_owners, check_surface,      check_hierarchy, check_skeleton, check_beams,
-                               check_tool,   check_articulation, check_corners,   check_method};
+  constexpr Check kChecks[] = {check_owners, check_surface, check_fans,         check_hierarchy, check_skeleton,
+                               check_beams,  check_tool,    check_articulation, check_corners,   check_method};
   for (const Check check : kChecks)
     if (const ImageResult result = check(model); result.error != ImageError::kNone) return result;
   const ImageResult data = contact_method(method_of(model)).check_data(model);

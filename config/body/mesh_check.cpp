@@ -4,6 +4,7 @@
 
 #include "config/body/mesh.h"
 #include "config/scene/config_error.h"
+#include "rt_core/surface/closest_point.h"
 
 namespace palpate {
 
@@ -121,6 +122,11 @@ void check_fans(const SurfaceMesh& mesh, const std::string& label) {
       if (first[at(i)] < 0) first[at(i)] = static_cast<std::int32_t>(t);
     }
   for (std::size_t i = 0; i < degree.size(); ++i) {
+    if (degree[i] > kMaxVertexTriangles)
+      throw ConfigError(label + ": " + std::to_string(degree[i]) + " triangles meet in vertex " + std::to_string(i) +
+                        ", at " + text_of(mesh.vertex_m[i]) + "; allowed " + std::to_string(kMaxVertexTriangles) +
+                        ", as many as one tick's query may look at. Make them fewer, or put rings of larger triangles "
+                        "around the vertex");
     std::int32_t t = first[i], steps = 0;
     do {
       const Corners& c = mesh.triangle[at(t)];

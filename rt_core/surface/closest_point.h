@@ -21,6 +21,9 @@ inline constexpr std::int32_t kMaxWalkWork = 256;
 // Boxes and triangles one query looks at in all: two walks and the fan or ring in which each gives up (3 kMaxFan), the
 // way down to a leaf, and the search with its last node's 16 triangles: 2 (256 + 72) + 68 + 512 + 512 + 16.
 inline constexpr std::int32_t kMaxQueryWork = 2048;
+// Triangles that may meet in one vertex: no query could look at more. Those about the poles of a body of four million
+// triangles are 2,000. Refused when the body is read and when its image is loaded.
+inline constexpr std::int32_t kMaxVertexTriangles = kMaxQueryWork;
 // Distance below which p - closest is too short to have a direction: the pseudo-normal is used instead.
 inline constexpr double kDirectionFloor_m = 1e-9;
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "rt_core/contact/regions.h"
+#include "rt_core/image_check.h"
 #include "rt_core/surface/closest_point.h"
 #include "tests/collide/pieces.h"
 #include "tests/support/roomy.h"
@@ -55,6 +56,14 @@ TEST(SurfaceWork, AQueryOverAFanIsBoundedAndNearlyRight) {
     RecordProperty("worst_um_" + std::to_string(around), std::to_string(1e6 * worst_m));
     // Even a search that was cut short ends within the fan: not farther off than the place is from the axis.
     EXPECT_LT(worst_m, 1e-3) << around;
+  }
+}
+
+// Beyond what a query may look at, the image is refused; see also CheckMesh.AFanLargerThanAQueryIsRefused.
+TEST(SurfaceWork, AnImageWithAFanLargerThanAQueryIsRefused) {
+  for (const int around : {kMaxVertexTriangles - 1, kMaxVertexTriangles, kMaxVertexTriangles + 1}) {
+    const ImageResult result = check_arrays(make_body(fan_cylinder(0.02, 0.03, around)).model);
+    EXPECT_EQ(std::string(result.field) == "triangle.fan", around > kMaxVertexTriangles) << around << result.field;
   }
 }
 

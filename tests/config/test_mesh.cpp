@@ -12,6 +12,7 @@
 #include "config/body/mesh_io.h"
 #include "config/body/procedural.h"
 #include "config/scene/config_error.h"
+#include "rt_core/surface/closest_point.h"
 
 namespace palpate {
 namespace {
@@ -144,6 +145,24 @@ TEST(Mesh, SheetsTouchingAtAVertexAreRefused) {
   for (std::size_t t = other.triangle.size(); t < mesh.triangle.size(); ++t)
     for (std::int32_t& i : mesh.triangle[t]) i = i > base ? i - 1 : i;
   EXPECT_THAT(check(mesh), HasSubstr("two sheets of the surface touch at vertex 0"));
+}
+// Two cones on one rim: each apex is in `around` triangles.
+TEST(Mesh, AFanLargerThanAQueryIsRefused) {
+  for (const std::int32_t around : {kMaxVertexTriangles, kMaxVertexTriangles + 1}) {
+    SurfaceMesh mesh;
+    mesh.vertex_m = {{0, 0, -0.05}, {0, 0, 0.05}};
+    for (std::int32_t i = 0; i < around; ++i) {
+      const double a = 2 * kPi * i / around;
+      mesh.vertex_m.push_back({0.05 * std::cos(a), 0.05 * std::sin(a), 0});
+      const std::int32_t here = 2 + i, next = 2 + (i + 1) % around;
+      mesh.triangle.push_back({0, next, here});
+      mesh.triangle.push_back({1, here, next});
+    }
+    if (around <= kMaxVertexTriangles)
+      EXPECT_EQ(check(mesh), "");
+    else
+      EXPECT_THAT(check(mesh), AllOf(HasSubstr("2049 triangles meet in vertex 0"), HasSubstr("rings of larger")));
+  }
 }
 TEST(Mesh, ImplausibleScaleSuggestsTheKey) {
   SurfaceMesh mesh = box();
