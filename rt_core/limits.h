@@ -83,6 +83,8 @@ inline constexpr double kArmForceMax_N = 1.0;
 // for more is refused at bake and at load: beyond it each axis would saturate by itself and the force would turn.
 inline constexpr double kWireForceMax_N = 32.767;
 inline constexpr double kWireTorqueMax_Nm = 3.2767;
+// Rejected samples are counted up to here: a quarter of an hour at 1 kHz, long past every fault.
+inline constexpr std::int32_t kMaxRejectedTicks = 1'000'000;
 // A quaternion whose squared length is further from 1 than this is no orientation: 16-bit rounding makes 1e-4 of it.
 inline constexpr double kQuaternionSlack = 0.02;
 // Ticks kept whole by the black box and by the "worst ticks" list.

@@ -31,6 +31,15 @@ Wrench limited(const Model& model, Wrench wrench, Scratch& scratch) PALPATE_RT {
   return wrench;
 }
 
+// What the last tick put out lies within the limits, to rounding. Were a bit of it flipped since, steps from there
+// would take a million ticks to come back (found by scenes.Soak, 2026-11-22).
+Wrench within_limits(const Model& model, Wrench last) PALPATE_RT {
+  constexpr double kRounding = 1 + 1e-9;
+  clamp_length(last.force_N, kRounding * model.params.force_max_N);
+  clamp_length(last.torque_Nm, kRounding * model.params.torque_max_Nm);
+  return last;
+}
+
 // A fault limiter, set above what contact does but for a snap (a slow rate limit inside the loop destabilises it): the
 // device's rate, and in no tick more than kOutputStepShare of its limit.
 Wrench rate_limited(const Model& model, const Wrench& last, const Wrench& wanted, Scratch& scratch) PALPATE_RT {
@@ -93,7 +102,7 @@ void make_safe(const Model& model, State& state, Scratch& scratch, const Input& 
       scratch.status |= Status::kStartsInside;
     if ((input.commands & Command::kUnheard) != 0) scratch.status |= Status::kCommandsUnheard;
     const Wrench scaled{safety.ramp * safety.last_good_w.force_N, safety.ramp * safety.last_good_w.torque_Nm};
-    safety.last_device_w = rate_limited(model, safety.last_device_w, scaled, scratch);
+    safety.last_device_w = rate_limited(model, within_limits(model, safety.last_device_w), scaled, scratch);
     if (safety.ramp < 1 && safety.mode != Mode::kIdle) scratch.status |= Status::kRamping;
   }
 

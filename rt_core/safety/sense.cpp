@@ -52,7 +52,7 @@ void sense(const Model& model, State& state, Scratch& scratch, const Input& inpu
   } else {
     scratch.status |= Status::kInputRejected;
     state.device_previous_w = state.device_w;  // held
-    state.rejected_ticks += state.rejected_ticks < 1'000'000 ? 1 : 0;
+    state.rejected_ticks += state.rejected_ticks < kMaxRejectedTicks ? 1 : 0;
   }
   if (input.stale_ticks > 0) scratch.status |= Status::kInputHeld;
 

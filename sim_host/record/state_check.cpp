@@ -28,7 +28,7 @@ StateFault check_poses(const State& state) noexcept {
   if (!is_pose(state.tool_w) || !is_pose(state.tool_previous_w)) return {"tool_w"};
   for (const double k : state.contact_stiffness)
     if (!is_finite(k)) return {"contact_stiffness"};
-  if (state.rejected_ticks < 0) return {"rejected_ticks"};
+  if (state.rejected_ticks < 0 || state.rejected_ticks > kMaxRejectedTicks) return {"rejected_ticks"};
   return {};
 }
 
@@ -50,7 +50,7 @@ StateFault check_points(const Model& model, const State& state) noexcept {
 }
 
 StateFault check_region(const Region& r, int64_t i) noexcept {
-  if (r.lost_ticks < 0) return {"region.lost_ticks", i};
+  if (r.lost_ticks < 0 || r.lost_ticks > kRegionMemoryTicks) return {"region.lost_ticks", i};
   if (r.point_count < 0) return {"region.point_count", i};
   if (!is_friction(r.friction)) return {"region.friction", i};
   const bool finite =

@@ -121,10 +121,15 @@ TEST(Recording, EveryTruncationIsReportedAndKeepsWhatCameBefore) {
   EXPECT_EQ(most, 5u);
 }
 
+// Every byte of the file's head, of the records and of the footer; of the initial state between them, one chunk under
+// one checksum and nine tenths of the file, every eleventh: each read is as long as the file, and 11 and 8 are coprime.
 TEST(Recording, EveryFlippedByteIsReportedAndKeepsWhatCameBefore) {
   std::vector<std::byte> bytes = small_recording();
+  constexpr std::size_t kHead = 1024, kTail = 8192;
+  ASSERT_GT(bytes.size(), kHead + kTail);
   std::uint64_t most = 0;
   for (std::size_t at = 0; at < bytes.size(); ++at) {
+    if (at > kHead && at + kTail < bytes.size() && at % 11 != 0) continue;
     // One bit, another one for every position, so that all eight are covered.
     const std::byte original = bytes[at];
     bytes[at] ^= std::byte{1} << (at % 8);
