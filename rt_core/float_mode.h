@@ -1,8 +1,6 @@
 // The processor's floating point while a tick runs.
 #pragma once
 
-#include <immintrin.h>
-
 #include "rt_core/base.h"
 
 namespace palpate {
@@ -13,13 +11,13 @@ namespace palpate {
 // of 11 us for the same instructions (2026-11-22).
 class TickFloatMode {
  public:
-  TickFloatMode() PALPATE_RT : before_(_mm_getcsr()) { _mm_setcsr(kMode); }
-  ~TickFloatMode() PALPATE_RT { _mm_setcsr(before_); }
+  TickFloatMode() PALPATE_RT : before_(__builtin_ia32_stmxcsr()) { __builtin_ia32_ldmxcsr(kMode); }
+  ~TickFloatMode() PALPATE_RT { __builtin_ia32_ldmxcsr(before_); }
   TickFloatMode(const TickFloatMode&) = delete;
   TickFloatMode& operator=(const TickFloatMode&) = delete;
 
   // All exceptions masked, round to nearest, flush to zero, denormals are zero.
-  static constexpr unsigned kMode = 0x1f80u | _MM_FLUSH_ZERO_ON | 0x40u;
+  static constexpr unsigned kMode = 0x9fc0;
 
  private:
   unsigned before_;

@@ -219,7 +219,8 @@ using Matrix6 = double[36];
 
 #define PALPATE_ELASTIC_STATE(X)                             \
   X(std::int32_t, moved, 0, "1: some amplitude is not zero") \
-  X(std::int32_t, reserved, 0, "-")
+  X(std::int32_t, reserved, 0, "-")                          \
+  X(double, swept_m, 0, "no place of the surface moved farther in the last tick")
 #define PALPATE_ELASTIC_POOLS(X) \
   X(double, soft_rootJ, model.params.elastic_soft, soft_rootJ.size(), "amplitudes of the soft modes")
 

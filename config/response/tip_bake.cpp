@@ -6,6 +6,7 @@
 
 #include "config/bake/contact_fit.h"
 #include "config/body/body_card.h"
+#include "config/hand/hand_model.h"
 #include "config/response/corner_normals.h"
 #include "config/response/press_bake.h"
 #include "config/response/table_bake.h"
@@ -115,7 +116,8 @@ namespace {
 // What the scene says about one piece's tip, as it touches the body.
 class TipReader {
  public:
-  TipReader(const SceneDesc& scene, std::size_t piece) : scene_(scene), piece_(scene.piece[piece]), index_(piece) {}
+  TipReader(const SceneDesc& scene, const PieceDesc& piece, std::size_t index)
+      : scene_(scene), piece_(piece), index_(index) {}
 
   TipDesc read(std::string& line) const {
     TipDesc tip;
@@ -277,9 +279,12 @@ void bake_response(const SceneDesc& scene, ImageContents& image, ResponseReport&
     return;
   }
   std::vector<TipDesc> tips;
-  for (std::size_t i = 0; i < scene.piece.size(); ++i) {
+  std::vector<PieceDesc> pieces = scene.articulation == Articulation::kHand ? make_hand(scene.hand).piece : scene.piece;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    // A piece that touches nothing has a law all the same: every piece has a row in the image.
+    if (pieces[i].points == 0 && is_auto(pieces[i].radius_m)) pieces[i].radius_m = scene.contact.max_depth_m;
     std::string line;
-    tips.push_back(TipReader(scene, i).read(line));
+    tips.push_back(TipReader(scene, pieces[i], i).read(line));
     try {
       image.tip_law.push_back(make_tip_law(tips.back(), image.factor));
     } catch (const ConfigError& error) {

@@ -131,7 +131,9 @@ void check_tips(const SceneDesc& scene) {
       fail(scene, label + ".shape",
            "a " + std::string(word_of(piece.shape)) + " has no tip law; allowed " +
                shapes_where([](PieceShape shape) { return card_of(shape).tip != nullptr; }) + ", or points = 0");
-    if (card.check_tip != nullptr) refuse_piece(scene, label, card.check_tip(piece));
+    const bool side =
+        card.has_side_tip && scene.contact.backend == Backend::kElastic && piece.touches == TouchingEnd::kAll;
+    if (card.check_tip != nullptr && !side) refuse_piece(scene, label, card.check_tip(piece));
   }
   const auto pieces = static_cast<std::int32_t>(scene.piece.size());
   for (std::size_t i = 0; i < scene.pair.size(); ++i) {
@@ -219,6 +221,7 @@ void check_elastic(const SceneDesc& scene) {
     check_no_table(scene, table, kBecause);
   check_effect(scene, "contact", {"weight", "surface", "reference_area_mm2"}, {}, kBecause);
   check_effect(scene, "contact.tip", {"body_radius_1_mm", "body_radius_2_mm"}, {}, kBecause);
+  check_effect(scene, "hand", {"points_per_part"}, {}, kBecause);
   check_effect(scene, "body.fem", {"order", "zone_from_mm", "zone_to_mm", "zone_layers", "precision", "strain_gauges"},
                {}, kBecause);
   check_elements(scene);

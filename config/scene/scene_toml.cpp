@@ -334,9 +334,11 @@ SceneDesc scene_from(toml::table&& root, const std::string& file, const SceneOve
   Reader(scene).read(root);
   if (!scene.source.has("body.shape"))
     throw ConfigError(file + ": body.shape: missing; add a [body] table with a shape");
-  // An elastic body has no other tips than those of the pieces' shapes.
-  if (scene.contact.backend == Backend::kElastic && !scene.source.has("contact.law"))
-    scene.contact.law = ContactLaw::kTool;
+  // An elastic body has no other tips than those of the pieces' shapes, one a piece.
+  if (scene.contact.backend == Backend::kElastic) {
+    if (!scene.source.has("contact.law")) scene.contact.law = ContactLaw::kTool;
+    if (!scene.source.has("hand.points_per_part")) scene.hand.points_per_part = 1;
+  }
   check_scene(scene);
   return scene;
 }

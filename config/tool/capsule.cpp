@@ -46,6 +46,7 @@ const PieceCard capsule_piece{.sizes = kSizes,
                               .samples = samples,
                               .profile = profile,
                               .tip = tip,
-                              .check_tip = needs_one_end};
+                              .check_tip = needs_one_end,
+                              .has_side_tip = true};
 
 }  // namespace palpate

@@ -34,6 +34,7 @@ struct PieceCard {
   // Law of its whole tip; nullptr: it has none. Which end presses.
   Indenter (*tip)(const PieceDesc&) = nullptr;
   Refusal (*check_tip)(const PieceDesc&) = nullptr;
+  bool has_side_tip = false;  // on an elastic body it may touch with its side, wherever it is nearest
 };
 
 const PieceCard& card_of(PieceShape shape);

@@ -196,28 +196,44 @@ void show_own_terms(const Model& model, ElasticRow& row) PALPATE_RT {
   row.curvature_gradient = gradient[2];
 }
 
-Vec3 linear_mode_at(const Model& model, const ElasticRow& row, std::int32_t mode) PALPATE_RT {
-  const Triangle& triangle = model.triangle[static_cast<std::size_t>(row.foot.triangle)];
-  Vec3 u;
-  for (int k = 0; k < 3; ++k) {  // bound: 3
-    const float* shape = linear_shapes(model, triangle.vertex[k]) + 3 * mode;
-    u += row.foot.weight[k] *
-         Vec3{static_cast<Real>(shape[0]), static_cast<Real>(shape[1]), static_cast<Real>(shape[2])};
-  }
-  return u;
+// One Newton step along a capsule's axis to where its height is least; `rise` and how the normal turns as the centre
+// moves are the height's slope and curvature. On a flat or hollow place it stays. At most half the half axis.
+void slide_along(const foot::Corners& corners, ElasticRow& row) PALPATE_RT {
+  const Vec3 axis = row.tip.half_axis_w, n = row.foot.normal_w;
+  Vec3 mixed;
+  for (int k = 0; k < 3; ++k) mixed += row.foot.weight[k] * corners.u[k];  // bound: 3
+  Real curvature = 0;
+  for (int k = 0; k < 3; ++k)  // bound: 3
+    curvature +=
+        dot(row.foot.gradient_per_m[k], axis) * (dot(corners.u[k], axis) - dot(corners.u[k], n) * dot(n, axis));
+  curvature /= norm(mixed);
+  // At height t above a surface of curvature k the height bends by k / (1 + k t).
+  const Real slope = dot(row.rise, axis), before = row.tip.along, bend = curvature / squared_norm(axis);
+  row.along_1_per_m = bend / max_of(1.0 - bend * row.foot.height_m, 0.1);
+  if (!(curvature > 1e-3 * norm(axis))) return;  // a radius of a thousand half axes
+  row.tip.along = clamp_to(before + clamp_to(-slope / curvature, -0.5, 0.5), -1.0, 1.0);
+  const Real step = row.tip.along - before;
+  row.travel_m -= step * (slope + 0.5 * step * curvature);
 }
 
 }  // namespace
+
+Real RoundTip::sideness() const PALPATE_RT {
+  const Real length = norm(half_axis_w), from_end = (1.0 - abs_of(along)) * length;
+  const Real share = margin_m > 0 ? clamp_to(from_end / margin_m, 0.0, 1.0) : 0.0;
+  return share * share * (3 - 2 * share);
+}
 
 Vec3 CarriedSurface::displacement(std::int32_t vertex) const PALPATE_RT {
   const Vec3 rest = model.vertex_m[static_cast<std::size_t>(vertex)];
   return carry(model, y, vertex).position_w - rest;
 }
 
-void CarriedSurface::place(Vec3 centre_w, Real margin_m, std::int32_t triangle, Vec3 near_w,
-                           ElasticRow& row) const PALPATE_RT {
+void CarriedSurface::place(const RoundTip& tip, std::int32_t triangle, Vec3 near_w, ElasticRow& row) const PALPATE_RT {
   CarriedTriangle last;
-  row.centre_w = centre_w;
+  row.tip = tip;
+  row.along_1_per_m = 0;
+  const Vec3 centre_w = tip.centre_w();
   row.foot = foot::search(
       model,
       [this, &last](std::int32_t t) PALPATE_RT {
@@ -227,10 +243,14 @@ void CarriedSurface::place(Vec3 centre_w, Real margin_m, std::int32_t triangle, 
       },
       centre_w, triangle, near_w, kStillCarried_m);
   if (row.foot.state == FootState::kFound) {
-    row.travel_m = margin_m - row.foot.height_m;
+    row.travel_m = tip.margin_m - row.foot.height_m;
     show_modes(model, y, travel_slope(model, row, last), row);
+    if (!tip.is_ball()) {
+      slide_along(last.corners, row);
+      *shown += kSlideWork;
+    }
   } else if (place_on_facet(centre_w, triangle, row)) {
-    row.travel_m = margin_m - row.foot.height_m;
+    row.travel_m = tip.margin_m - row.foot.height_m;
     row.rise = row.foot.normal_w;
     show_modes(model, y, facet_slope(row), row);
   } else {
@@ -256,12 +276,18 @@ bool CarriedSurface::place_on_facet(Vec3 centre_w, std::int32_t triangle, Elasti
   return true;
 }
 
-Real linear_compliance_m_per_N(const Model& model, const ElasticRow& a, const ElasticRow& b) PALPATE_RT {
-  Real sum = 0;
-  for (std::int32_t m = 0; m < model.params.elastic_linear; ++m) {  // bound: kMaxLinearModes
-    sum += dot(linear_mode_at(model, a, m), a.foot.normal_w) * dot(linear_mode_at(model, b, m), b.foot.normal_w);
+void show_linear_modes(const Model& model, const ElasticRow& row, Real* along) PALPATE_RT {
+  const Triangle& triangle = model.triangle[static_cast<std::size_t>(row.foot.triangle)];
+  const Vec3 n = row.foot.normal_w;
+  const std::int32_t count = model.params.elastic_linear;
+  for (std::int32_t m = 0; m < count; ++m) along[m] = 0;  // bound: kMaxLinearModes
+  for (int k = 0; k < 3; ++k) {                           // bound: 3 kMaxLinearModes
+    const float* shape = linear_shapes(model, triangle.vertex[k]);
+    const Vec3 push = row.foot.weight[k] * n;
+    for (std::int32_t m = 0; m < count; ++m)
+      along[m] += push.x * static_cast<Real>(shape[3 * m]) + push.y * static_cast<Real>(shape[3 * m + 1]) +
+                  push.z * static_cast<Real>(shape[3 * m + 2]);
   }
-  return sum;
 }
 
 }  // namespace palpate

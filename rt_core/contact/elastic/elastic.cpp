@@ -45,17 +45,31 @@ void place_again(const Model& model, State& state, Scratch& scratch) PALPATE_RT 
     const Contact& contact = scratch.contact[i];
     ElasticRow& row = work_of(scratch).row[contact.piece];
     const ElasticRow before = row;
-    surface.place(row.centre_w, model.tool_point[static_cast<std::size_t>(contact.point)].margin_m, row.foot.triangle,
-                  row.foot.foot_w, row);
+    surface.place(before.tip, before.foot.triangle, before.foot.foot_w, row);
     if (row.foot.triangle < 0) row = before;
+    state.point[contact.point].closest_w = row.foot.foot_w;
     state.point[contact.point].triangle = row.foot.triangle;
   }
+}
+
+// How far the tick moved any place of the surface at most.
+Real swept_m(const Model& model, const State& state, const ElasticWork& work) PALPATE_RT {
+  Real y[kMaxTerms], sum = 0;
+  soft_products(model.params.elastic_soft, state.elastic.soft_rootJ.data(), y);
+  for (std::int32_t t = 0; t < terms(model.params.elastic_soft); ++t)  // bound: terms
+    sum += abs_of(y[t] - work.y_begun[t]) * work.reach_m[t];
+  return sum;
+}
+
+void let_body_rest(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
+  state.elastic.reset();
+  state.elastic.swept_m = swept_m(model, state, work_of(scratch));
 }
 
 void solve(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   sort_rows(state, scratch);
   const std::int32_t regions = scratch.rows.regions;
-  if (regions == 0) return state.elastic.reset();
+  if (regions == 0) return let_body_rest(model, state, scratch);
   state.elastic.moved = 1;
   ElasticLoad load;
   Linearised body(model, state, scratch, load);
@@ -76,6 +90,7 @@ void solve(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   if (work_of(scratch).energy.is_outside) scratch.status |= Status::kDepthBeyondRange;
   scratch.residual_m = max_of(scratch.residual_m, moved_m);
   body.yield_to_rubs();
+  state.elastic.swept_m = swept_m(model, state, work_of(scratch));
   scratch.energy_J += body.energy_J() + body.linear_energy_J(force_N);
   press_regions(load, state, scratch);
   for (std::int32_t r = 0; r < regions; ++r)  // bound: kMaxRegions
@@ -112,15 +127,30 @@ ImageResult check_data(const Model& model) noexcept {
   return {};
 }
 
-// Nothing in it is read before the tick has written it.
 std::size_t work_bytes(const Model&) noexcept { return sizeof(ElasticWork); }
+
+// The shapes' reaches. Nothing else is read before the tick has written it.
+void create_work(const Model& model, void* block) noexcept {
+  ElasticWork& work = *static_cast<ElasticWork*>(block);
+  const std::int32_t count = terms(model.params.elastic_soft);
+  for (std::int32_t t = 0; t < count; ++t) {
+    Real most = 0;
+    for (std::int32_t v = 0; v < static_cast<std::int32_t>(model.vertex_m.size()); ++v) {
+      const float* u = vertex_block(model, v) + kTermFloats * t;
+      const Vec3 shape{static_cast<Real>(u[0]), static_cast<Real>(u[1]), static_cast<Real>(u[2])};
+      most = max_of(most, squared_norm(shape));
+    }
+    work.reach_m[t] = square_root(most);
+  }
+}
 
 // A tip stands on the carried surface after kFootWalk triangles at worst, or on its facet; found twice in a tick that
 // loses it, and placed again for every linearisation but the first.
 void add_most_work(const Model& model, const SceneSizes& n, Work& work) noexcept {
   const std::int32_t soft = model.params.elastic_soft, pair = pairs(soft), again = kElasticLinearisations - 1;
-  const std::int32_t place = (3 * (kFootWalk + 2) + 1) * terms(soft);
+  const std::int32_t place = (3 * (kFootWalk + 2) + 1) * terms(soft) + kSlideWork;
   add_most_points(model, n, work);
+  work.queries += 2 * n.points;  // a capsule asks three times
   add_most_regions(n, kElasticLinearisations * TipLaws::kIterations, work);
   work.shown += n.points * (2 * place + terms(soft));
   work.soft_pairs += soft_work(pair);
@@ -135,7 +165,7 @@ void add_most_work(const Model& model, const SceneSizes& n, Work& work) noexcept
 
 }  // namespace
 
-const ContactMethod elastic_method{find_elastic_tips, solve,         rub,       check_tip_points,
-                                   check_data,        add_most_work, work_bytes};
+const ContactMethod elastic_method{find_elastic_tips, solve,         rub,        check_tip_points,
+                                   check_data,        add_most_work, work_bytes, create_work};
 
 }  // namespace palpate

@@ -48,7 +48,7 @@ struct ElasticLoad : TipLaws {
                        (energy / tip[i].scale * per_curvature[i]) * stands.curvature_gradient;
     // Never steeper than 45 degrees: far beyond the range the second power of the force is no physics.
     const Real length = norm(aside), share = length > f ? f / length : 1.0;
-    return {point, energy, stands.centre_w, share * aside, e > tip[i].local.tip->depth_max_m};
+    return {point, energy, stands.tip.centre_w(), share * aside, e > tip[i].local.tip->depth_max_m};
   }
   Real coupling_J(std::int32_t r, Real force_N, Real) const PALPATE_RT { return far_energy_J(own[r], force_N); }
 };

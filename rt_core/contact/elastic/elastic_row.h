@@ -7,9 +7,26 @@
 
 namespace palpate {
 
+// A rounded tip: a ball, or a capsule whose side touches where it is nearest.
+struct RoundTip {
+  Vec3 middle_w;
+  Vec3 half_axis_w;  // zero: a ball
+  Real margin_m = 0;
+  Real along = 0;  // where on the axis it touches, -1 to 1
+
+  Vec3 centre_w() const PALPATE_RT { return middle_w + along * half_axis_w; }
+  bool is_ball() const PALPATE_RT { return !(squared_norm(half_axis_w) > 0); }
+  void come_near(Vec3 w) PALPATE_RT {
+    if (!is_ball()) along = clamp_to(dot(w - middle_w, half_axis_w) / squared_norm(half_axis_w), -1.0, 1.0);
+  }
+  // 0 at an end, which is a ball, to 1 a margin away from it: a cylinder.
+  Real sideness() const PALPATE_RT;
+};
+
 struct ElasticRow {
   SmoothFoot foot;                                 // on the carried surface
-  Vec3 centre_w;                                   // of the tip
+  RoundTip tip;                                    // where the next linearisation takes it
+  Real along_1_per_m;                              // curvature of the body along a capsule's axis
   Real travel_m;                                   // how far the carried surface and the tip overlap; < 0 apart
   Real pull[kMaxSoftModes];                        // d travel / d p
   Real turn[elastic_layout::kMaxPairs];            // d2 travel / d p2 at a fixed place
@@ -17,6 +34,9 @@ struct ElasticRow {
   Vec3 rise;                                       // gradient of the tip's height: the normal but for the facets' share
   Vec3 c_gradient, c1_gradient, curvature_gradient;
 };
+
+// A capsule's step along its axis, in terms of vertices summed up.
+inline constexpr std::int32_t kSlideWork = 3;
 
 // The surface with the soft modes at given amplitudes.
 struct CarriedSurface {
@@ -27,16 +47,18 @@ struct CarriedSurface {
 
   // Displacement of a vertex.
   Vec3 displacement(std::int32_t vertex) const PALPATE_RT;
-  // Puts the tip of `margin_m` about `centre_w` on the surface, starting at `triangle` below `near_w`. Beyond a sharp
+  // Puts the tip on the surface, starting at `triangle` below `near_w`. A capsule moves along its axis by one step to
+  // where it is deepest, and the travel is that of there, to second order. Beyond a sharp
   // edge, and below the focal surface, on the facet nearest to the centre as it was before the body moved; with
   // foot.triangle -1 where the tick's share of surface work is used up.
-  void place(Vec3 centre_w, Real margin_m, std::int32_t triangle, Vec3 near_w, ElasticRow& row) const PALPATE_RT;
+  void place(const RoundTip& tip, std::int32_t triangle, Vec3 near_w, ElasticRow& row) const PALPATE_RT;
 
  private:
   bool place_on_facet(Vec3 centre_w, std::int32_t triangle, ElasticRow& row) const PALPATE_RT;
 };
 
-// Travel of the linear modes at one row per newton at the other.
-Real linear_compliance_m_per_N(const Model& model, const ElasticRow& a, const ElasticRow& b) PALPATE_RT;
+// How far each linear mode moves the surface along a row's normal, m/J^1/2. The travel at one row per newton at another
+// is the product of both.
+void show_linear_modes(const Model& model, const ElasticRow& row, Real* along) PALPATE_RT;
 
 }  // namespace palpate

@@ -9,8 +9,10 @@ struct ElasticWork {
   ElasticRow row[kMaxPieces];  // by piece
   SoftEnergy energy;           // at the amplitudes that the rows were placed with
   Real y[elastic_layout::kMaxTerms];
-  BodyRub rub[kMaxRegions];         // by region of the tick
-  Real place_N_per_m[kMaxRegions];  // normal stiffness of the place alone, as if the soft modes held still
+  Real y_begun[elastic_layout::kMaxTerms];  // as the tick found it
+  Real reach_m[elastic_layout::kMaxTerms];  // largest displacement of each shape; written when the Scratch is made
+  BodyRub rub[kMaxRegions];                 // by region of the tick
+  Real place_N_per_m[kMaxRegions];          // normal stiffness of the place alone, as if the soft modes held still
 };
 
 // In the block of a Scratch made for the method.

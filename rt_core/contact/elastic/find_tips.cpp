@@ -10,6 +10,14 @@ namespace {
 
 using namespace elastic_layout;
 
+// A body under load is looked for where it may have come to: this far a surface of amplitudes y stands from its place
+// at rest at most.
+Real most_moved_m(const Model& model, const ElasticWork& work) PALPATE_RT {
+  Real sum = 0;
+  for (std::int32_t t = 0; t < terms(model.params.elastic_soft); ++t) sum += abs_of(work.y[t]) * work.reach_m[t];
+  return sum;
+}
+
 class Finder {
  public:
   Finder(const Model& model, State& state, Scratch& scratch) PALPATE_RT
@@ -18,23 +26,23 @@ class Finder {
         scratch_(scratch),
         work_(work_of(scratch)),
         surface_(look(model, state, scratch, scratch.work.soft_pairs, scratch.work.shown)),
-        box_(root_box(model)) {
+        box_(root_box(model)),
+        moved_m_(most_moved_m(model, work_)) {
     let_go(model, work_.energy, let_go_);
-    is_moved_ = state.elastic.moved != 0;
   }
 
   void visit(std::int32_t index) PALPATE_RT {
-    const ToolPoint& tool_point = model_.tool_point[static_cast<std::size_t>(index)];
     PointState& point = state_.point[index];
-    const Vec3 p = transform(carrier_w(model_, state_, tool_point.piece), tool_point.position_tool_m);
     const bool touched = point.triangle >= 0 && point.gap_m < 0;
-    if (!touched && is_far(index, p)) return;
-    ElasticRow& row = work_.row[tool_point.piece];
+    RoundTip tip = tip_at(index, carrier_w(model_, state_, piece_of(index)));
+    if (!touched && is_far(index, tip)) return;
+    ElasticRow& row = work_.row[piece_of(index)];
     if (touched) {
-      surface_.place(p, tool_point.margin_m, point.triangle, point.closest_w, row);
+      tip.come_near(point.closest_w);
+      surface_.place(tip, point.triangle, point.closest_w, row);
       if (row.foot.triangle >= 0 && free_depth(row) > 0) return keep(index, row);
     }
-    search(p, tool_point.margin_m, point, row);
+    search(tip, point, row);
     if (row.foot.triangle < 0) {
       scratch_.status |= Status::kPointsHeld;
       point.gap_m = point.gap_bound_m = 0;
@@ -50,46 +58,74 @@ class Finder {
   }
 
  private:
+  std::int32_t piece_of(std::int32_t index) const PALPATE_RT {
+    return model_.tool_point[static_cast<std::size_t>(index)].piece;
+  }
+  // A capsule that touches all over has its point in its middle; at one end, there.
+  RoundTip tip_at(std::int32_t index, const Pose& carrier) const PALPATE_RT {
+    const ToolPoint& point = model_.tool_point[static_cast<std::size_t>(index)];
+    const ToolPiece& piece = model_.piece[static_cast<std::size_t>(point.piece)];
+    RoundTip tip;
+    tip.margin_m = point.margin_m;
+    tip.middle_w = transform(carrier, point.position_tool_m);
+    if (piece.shape == PieceShape::kCapsule && point.position_tool_m == piece.pose_tool.position_m)
+      tip.half_axis_w =
+          rotate(carrier.orientation, rotate(piece.pose_tool.orientation, Vec3{0, 0, piece.half_extent_m[2]}));
+    return tip;
+  }
+
   // On the body let go; or as it stands, where friction or another finger holds it towards the tip.
   Real free_depth(const ElasticRow& row) const PALPATE_RT {
     return row.travel_m + max_of(dot(row.pull, let_go_, model_.params.elastic_soft), 0.0);
   }
 
-  // Not in reach, and the body at rest: as far as it was less what it moved, or as far as the body's box.
-  bool is_far(std::int32_t index, Vec3 p) PALPATE_RT {
+  // As far as it was less what tool and body have moved, or as far as the body's box less what the body may stand out
+  // of it.
+  bool is_far(std::int32_t index, const RoundTip& tip) PALPATE_RT {
     PointState& point = state_.point[index];
-    const ToolPoint& tool_point = model_.tool_point[static_cast<std::size_t>(index)];
-    const Real box = distance_to(box_, p) - tool_point.margin_m;
-    if (is_moved_) {
-      if (!(box > kBulge * model_.params.surface_size_m)) return false;
-      point.gap_m = point.gap_bound_m = 0;
-      return true;
-    }
-    const Vec3 before = transform(carrier_previous_w(model_, state_, tool_point.piece), tool_point.position_tool_m);
-    const Real bound = max_of(point.gap_bound_m - norm(p - before), box);
+    const RoundTip before = tip_at(index, carrier_previous_w(model_, state_, piece_of(index)));
+    const Real half = norm(tip.half_axis_w);
+    const Real tool_m = norm(tip.middle_w - before.middle_w) + norm(tip.half_axis_w - before.half_axis_w);
+    const Real box = distance_to(box_, tip.middle_w) - tip.margin_m - half - moved_m_;
+    const Real bound = max_of(point.gap_bound_m - tool_m - state_.elastic.swept_m, box);
     if (!(bound > kSearchMargin_m)) return false;
     point.gap_m = point.gap_bound_m = bound;
     return true;
   }
 
-  // From the facet nearest to the centre on the body at rest, as the surface about the last place has moved.
-  void search(Vec3 p, Real margin_m, const PointState& point, ElasticRow& row) PALPATE_RT {
+  // From the facet nearest to the centre on the body at rest, as the surface about the last place has moved. A capsule:
+  // from the nearest of three places on its axis, no point of which is farther than a third from one of them.
+  void search(RoundTip& tip, const PointState& point, ElasticRow& row) PALPATE_RT {
     row.foot.triangle = -1;
-    if (scratch_.surface_work >= surface_work_share(model_.params)) return;
     Vec3 moved;
-    if (is_moved_ && point.triangle >= 0)
+    if (point.triangle >= 0)
       moved = surface_.displacement(model_.triangle[static_cast<std::size_t>(point.triangle)].vertex[0]);
-    const SurfacePoint nearest = closest_surface_point(model_, p - moved, kHuge, point.triangle);
-    scratch_.surface_work += nearest.looked;
-    scratch_.work.queries += 1;
-    reach_m_ = nearest.lower_bound_m - margin_m - model_.params.smooth_slack_m;
-    if (nearest.truncated) scratch_.status |= Status::kTraversalTruncated;
-    if (nearest.found) surface_.place(p, margin_m, nearest.triangle, p, row);
+    const std::int32_t places = tip.is_ball() ? 1 : 3;
+    SurfacePoint best;
+    Real along = tip.along, bound = kHuge;
+    for (std::int32_t i = 0; i < places; ++i) {  // bound: 3
+      if (places > 1) tip.along = (i - 1) * (2.0 / 3);
+      if (scratch_.surface_work >= surface_work_share(model_.params)) return;
+      const SurfacePoint here = closest_surface_point(model_, tip.centre_w() - moved, kHuge, point.triangle);
+      scratch_.surface_work += here.looked;
+      scratch_.work.queries += 1;
+      if (here.truncated) scratch_.status |= Status::kTraversalTruncated;
+      if (!here.found) return;
+      bound = min_of(bound, here.lower_bound_m);
+      if (i > 0 && !(here.signed_distance_m < best.signed_distance_m)) continue;
+      best = here;
+      along = tip.along;
+    }
+    tip.along = along;
+    tip.come_near(best.closest_w + moved);
+    reach_m_ = bound - tip.margin_m - norm(tip.half_axis_w) / 3 - model_.params.smooth_slack_m -
+               (state_.elastic.moved != 0 ? moved_m_ + norm(moved) : 0.0);
+    surface_.place(tip, best.triangle, tip.is_ball() ? tip.centre_w() : best.closest_w + moved, row);
   }
 
   void keep(std::int32_t index, const ElasticRow& row) PALPATE_RT {
-    const ToolPoint& tool_point = model_.tool_point[static_cast<std::size_t>(index)];
     PointState& point = state_.point[index];
+    const ToolPoint& tool_point = model_.tool_point[static_cast<std::size_t>(index)];
     Contact& contact = scratch_.contact[scratch_.contact_count++];
     contact = Contact{};
     contact.row = contact.point = index;
@@ -104,18 +140,15 @@ class Finder {
     point.gap_m = point.gap_bound_m = -contact.depth_m;
   }
 
-  // A body under load may stand out of its box at rest by this share of its size; farther off nothing is looked for.
-  static constexpr Real kBulge = 0.25;
-
   const Model& model_;
   State& state_;
   Scratch& scratch_;
   ElasticWork& work_;
   const CarriedSurface surface_;
   const Box box_;
+  const Real moved_m_;
   Real let_go_[kMaxSoftModes];
   Real reach_m_ = 0;
-  bool is_moved_;
 };
 
 }  // namespace
@@ -127,6 +160,8 @@ void find_elastic_tips(const Model& model, State& state, Scratch& scratch) PALPA
     return;
   }
   Finder finder(model, state, scratch);
+  ElasticWork& work = work_of(scratch);
+  for (std::int32_t t = 0; t < terms(model.params.elastic_soft); ++t) work.y_begun[t] = work.y[t];  // bound: terms
   for (const ToolPiece& piece : model.piece) {  // bound: kMaxPieces, one point each at most
     if (piece.point_count > 0) finder.visit(piece.first_point);
   }

@@ -58,6 +58,7 @@ class Linearised {
   Real factor_[kMaxSoftModes * kMaxSoftModes];
   Real free_step_[kMaxSoftModes];
   Real moved_[kMaxRegions][kMaxSoftModes];
+  Real along_linear_[kMaxRegions][kMaxLinearModes];  // show_linear_modes()
   Real linear_[kMaxRegions][kMaxRegions];
   Real energy_J_ = 0;
 };
