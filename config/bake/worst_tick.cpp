@@ -22,12 +22,12 @@ namespace {
 // A quarter more than was found is allowed: what a longer search would find beyond that waits a tick.
 constexpr int kStarts = 48, kTicks = 40, kRefined = 6;
 constexpr double kSpare = 1.25;
-// Ticks in which the dearest of each stage is looked for. What a thousand times as many find beyond the dearest whole
-// tick is a few per cent, but a small stage of them may be half as dear again (2026-11-22): a quarter of each is stated
+// Ticks in which the dearest of each stage is looked for. What a million find beyond the dearest whole tick is a few
+// per cent, but a stage of them was 44 % dearer (solve of pinch_block, 2026-11-22): four tenths of each are stated
 // beside, and a share of the whole.
 constexpr int kStageTicks = 4000, kQueries = 2000;
 constexpr std::uint64_t kStageSeed = 1;
-constexpr double kReserve = 1.25, kReserveOfAll = 0.08;
+constexpr double kReserve = 1.4, kReserveOfQuery = 1.25, kReserveOfAll = 0.12;
 // An elastic body's dear ticks are rarer: its surface is elsewhere every tick.
 int effort(const Model& model) { return method_of(model) == Method::kElastic ? 4 : 1; }
 constexpr std::int32_t kLeastShare = 1024;  // two queries into the middle of a body
@@ -172,7 +172,8 @@ TickCost bake_costs(ImageContents& image) {
   image.stage_cost.clear();
   for (int i = 0; i < kStageCount; ++i) {
     const auto stage = static_cast<Stage>(i);
-    double stated = kReserve * std::max(found[static_cast<std::size_t>(i)], stage == Stage::kFindRows ? rows : 0);
+    double stated = kReserve * found[static_cast<std::size_t>(i)];
+    if (stage == Stage::kFindRows) stated = std::max(stated, kReserveOfQuery * rows);
     if (is_contact(stage)) stated += kReserveOfAll * cost.found;
     image.stage_cost.push_back({std::clamp(stated, least_stage_cost(model, stage), most_stage_cost(model, stage))});
   }

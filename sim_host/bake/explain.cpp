@@ -99,7 +99,7 @@ std::string explain(const Model& model, std::int32_t budget_instructions) {
   }
   fmt::format_to(out, "  {:<12}{:>12.0f}{:>12.0f}  instructions: {}\n", "tick", worst_tick_instructions(model),
                  capacity,
-                 "what an adversary found and a quarter, to which the controller holds it; every capacity met at once");
+                 "what an adversary found and a reserve, to which the controller holds it; every capacity met at once");
   text += "\nlaws and choices\n";
   const unsigned own = bit_of(method_of(model));
 #define PALPATE_ROW(type, field, unit, lowest, highest, meaning) \
