@@ -6,7 +6,7 @@ root=${1:?usage: include_direction.sh ROOT}
 . "$(dirname "$0")/files.sh"
 
 # Standard headers rt_core may use: types, bits and views. <atomic> is for the two rings shared with the host.
-allowed_std=' array atomic bit concepts cstddef cstdint cstring immintrin.h initializer_list limits span type_traits utility '
+allowed_std=' array atomic bit concepts cstddef cstdint cstring initializer_list limits span type_traits utility '
 
 problems=0
 report() {
