@@ -22,7 +22,7 @@ void state_most_costs(ImageContents& image);
 
 // Fills surface_work_max and stage_cost by what an adversary finds (adversary.h). The share of surface work is for a
 // tool that touches and creeps inside the body, as deep as the contact law reaches and as fast as the scene's device
-// may move; a stage's cost for one that is put anywhere and moved anyhow, with a quarter more. Fixed seeds. The image
+// may move; a stage's cost for one that is put anywhere and moved anyhow, with a reserve. Fixed seeds. The image
 // must be sound.
 TickCost bake_costs(ImageContents& image);
 

@@ -357,7 +357,7 @@ stop_force_N = 100
 // more jaws than there are regions. Two runs, one on dirty scratch memory, agree in every bit of every tick.
 TEST(GraspOverflow, ThousandsOfPointsAndTooManyRegionsDegradeDeterministically) {
   EXPECT_THROW(BakedScene{crowd(0.002, 10)}, ConfigError) << "the worst tick of so many does not fit a period of 1 ms";
-  const BakedScene scene(crowd(0.002, 10) + "[device]\nperiod_ms = 2\n");
+  const BakedScene scene(crowd(0.002, 10) + "[device]\nperiod_ms = 4\n");
   const Model& model = scene.model();
   ASSERT_EQ(model.sizes.n_tool_point, 2000);
   Bench a(model), b(model);

@@ -31,7 +31,7 @@ struct NodalSceneOptions {
 class NodalScene {
  public:
   NodalScene(const CondensedBody& body, const std::vector<PieceDesc>& pieces, const NodalSceneOptions& options) {
-    ImageContents image;
+    ImageContents& image = image_;
     image.name = "nodal";
     image.params = tiny_params();
     add_nodal_body(body, options.precision, "test", image);
@@ -63,20 +63,19 @@ class NodalScene {
     image.piece = tool.piece;
     image.tool_point = tool.point;
     image.hull_vertex_m = tool.hull_vertex_m;
-    state_most_costs(image);
-    const std::vector<std::byte> bytes = write_image(image);
-    bytes_ = std::make_unique<ImageBytes>(bytes.size());
-    std::memcpy(bytes_->bytes().data(), bytes.data(), bytes.size());
     reopen();
     state_ = make_state(model_);
     scratch_ = make_scratch(model_);
     restart();
   }
 
-  ModelParams& params() { return bytes_->params(); }
-  // After a change of the parameters.
+  ModelParams& params() { return image_.params; }
+  // After a change of the parameters, which may change what a tick costs at most.
   void reopen() {
-    bytes_->seal();
+    state_most_costs(image_);
+    const std::vector<std::byte> bytes = write_image(image_);
+    bytes_ = std::make_unique<ImageBytes>(bytes.size());
+    std::memcpy(bytes_->bytes().data(), bytes.data(), bytes.size());
     const ImageResult result = open_image(bytes_->bytes(), model_);
     if (result.error != ImageError::kNone) throw std::runtime_error(result.field);
   }
@@ -112,6 +111,7 @@ class NodalScene {
   const Output& output() const { return output_; }
 
  private:
+  ImageContents image_;
   std::unique_ptr<ImageBytes> bytes_;
   Model model_;
   StatePtr state_;
