@@ -55,7 +55,8 @@ Real sliding_limit_N(const FrictionParameters& parameters, Real normal_N) PALPAT
 // One tick of the stick/slip machine.
 // kReturnMap (default): on slip the stretch is shortened, along itself, to the length that carries the sliding limit,
 // so
-//   friction turns with the motion; never gives back more energy than was put in.
+//   friction turns with the motion; never gives back more energy than was put in. What slides goes on under the sliding
+//   limit, however small its steps, until the force has fallen below 0.8 of it.
 // kPaper (Luo & Xiao 2006): on slip the origin moves by the whole step, so the stretch keeps its direction for ever.
 //   Kept to reproduce the paper's figures: friction on a circular path does almost no work.
 // kMindlin: linear tangential spring, a fixed ratio of the normal stiffness. When the stiffness grows the stretch

@@ -44,6 +44,7 @@ BodyRub begin_rub(const Region& region, Vec3 motion_w) PALPATE_RT {
   const bool usable = is_finite(region.stretch_w) && is_finite(motion_w);
   rub.is_on = region.friction != FrictionMode::kFree && region.tangential_k_N_per_m > 0 && usable;
   if (!rub.is_on) return rub;
+  rub.slides = region.friction == FrictionMode::kSlip;
   rub.spring_N_per_m = region.tangential_k_N_per_m;
   rub.stretch_w = region.stretch_w + motion_w;
   return rub;
@@ -60,11 +61,11 @@ void aim_rub(const Model& model, const Real* y, const FrictionParameters& law, c
   rub.axis[0].force_N = rub.spring_N_per_m * length;
   rub.axis[1].force_N = 0;
   rub.axis[0].stiffness_N_per_m = rub.axis[1].stiffness_N_per_m = rub.spring_N_per_m;
-  if (!is_first && rub.axis[0].force_N > static_limit_N(law, force_N)) {
-    const Real limit = is_presliding(law.law) ? static_limit_N(law, force_N) : sliding_limit_N(law, force_N);
-    rub.axis[0].force_N = limit;
+  const Real sliding = is_presliding(law.law) ? static_limit_N(law, force_N) : sliding_limit_N(law, force_N);
+  if (!is_first && rub.axis[0].force_N > (rub.slides ? sliding : static_limit_N(law, force_N))) {
+    rub.axis[0].force_N = sliding;
     rub.axis[0].stiffness_N_per_m = 0;
-    rub.axis[1].stiffness_N_per_m = limit / length;
+    rub.axis[1].stiffness_N_per_m = sliding / length;
   }
   show_sweep(model, y, row, rub.axis);
 }

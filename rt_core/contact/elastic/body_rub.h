@@ -21,6 +21,7 @@ struct RubAxis {
 
 struct BodyRub {
   bool is_on = false;       // the region has a memory of friction
+  bool slides = false;      // did in the last tick
   Vec3 stretch_w;           // of the spring, had the surface held still: the last tick's and what the tool moved
   Vec3 moved_w;             // by the surface, in the linearisations so far
   Real spring_N_per_m = 0;  // of the last tick
