@@ -38,6 +38,8 @@ inline Vec3 unit_or(Vec3 a, Vec3 fallback) PALPATE_RT {
 }
 // Part of a that lies in the plane with unit normal n.
 inline Vec3 tangential_part(Vec3 a, Vec3 n) PALPATE_RT { return a - dot(a, n) * n; }
+// A coordinate axis well off unit vector n: where any tangent will do, the first step to one.
+inline Vec3 axis_off(Vec3 n) PALPATE_RT { return abs_of(n.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}; }
 
 // Unit quaternion (w, x, y, z), rotating tool or device coordinates into the world.
 struct Quat {

@@ -1,5 +1,4 @@
 #include "config/bake/elastic_image.h"
-#include "config/bake/vertex_slopes.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -8,6 +7,7 @@
 
 #include "config/bake/fem_body.h"
 #include "config/bake/image_rules.h"
+#include "config/bake/vertex_slopes.h"
 #include "config/body/body.h"
 #include "config/body/body_card.h"
 #include "config/elastic/elastic_body.h"

@@ -1,7 +1,5 @@
 #include "config/bake/vertex_slopes.h"
 
-#include <cmath>
-
 #include "rt_core/vec.h"
 
 namespace palpate {
@@ -38,8 +36,8 @@ std::vector<Vec3> vertex_slopes(std::span<const Vec3> vertex_m, std::span<const 
                                 std::span<const Triangle> triangles, std::span<const double> value) {
   std::vector<Fit> fit(vertex_m.size());
   for (std::size_t v = 0; v < fit.size(); ++v) {
-    const Vec3 n = normal[v], any = std::abs(n.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-    fit[v].axis[0] = unit_or(tangential_part(any, n), any);
+    const Vec3 n = normal[v];
+    fit[v].axis[0] = unit_or(tangential_part(axis_off(n), n), axis_off(n));
     fit[v].axis[1] = cross(n, fit[v].axis[0]);
   }
   for (const Triangle& t : triangles)

@@ -120,7 +120,7 @@ struct Curvature {
 Curvature fit_curvature(const SurfaceMesh& mesh, const std::vector<Vec3>& normal,
                         const std::vector<std::int32_t>& patch, const Grid& grid, double radius_m, std::size_t i) {
   const Vec3 n = normal[i];
-  const Vec3 u = unit_or(cross(std::abs(n.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}, n), {});
+  const Vec3 u = unit_or(cross(axis_off(n), n), {});
   const Vec3 v = cross(n, u);
   Eigen::Matrix<double, 6, 6> left = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero();

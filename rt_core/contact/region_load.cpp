@@ -51,8 +51,7 @@ Vec3 carried_motion(const Pose& before, const Pose& now, Vec3 point) PALPATE_RT 
 
 void add_tangential_stiffness(ContactStiffness& stiffness, const FrictionForce& friction, Vec3 normal,
                               Vec3 arm) PALPATE_RT {
-  const Vec3 axis = abs_of(normal.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-  const Vec3 any = unit_or(tangential_part(axis, normal), {});
+  const Vec3 any = unit_or(tangential_part(axis_off(normal), normal), {});
   const Vec3 along = unit_or(friction.direction_w, any), across = cross(normal, along);
   add_spring(stiffness, friction.along_N_per_m, along, cross(arm, along));
   add_spring(stiffness, friction.across_N_per_m, across, cross(arm, across));

@@ -1,6 +1,7 @@
 // Elastic bodies in the tick: small scenes with one sphere, pressed by giving the tool its pose.
 #pragma once
 
+#include <algorithm>
 #include <string>
 
 #include "tests/support/baked_scene.h"
@@ -34,6 +35,17 @@ inline const Output& move_to(Bench& bench, Vec3 from, Vec3 to, double step_m = 2
   for (int i = 1; i <= steps; ++i) bench.tick_at({from + (static_cast<double>(i) / steps) * (to - from), {}}, {});
   for (int i = 0; i < 3; ++i) bench.tick_at({to, {}}, {});
   return bench.output;
+}
+// Largest change of the force from tick to tick while the tool is held for 60 ticks; the first `settling` do not count.
+inline double change_while_held_N(Bench& bench, Vec3 at, int settling) {
+  double change = 0;
+  Vec3 before;
+  for (int i = 0; i < 60; ++i) {
+    const Vec3 force = bench.tick_at({at, {}}, {}).contact_w.force_N;
+    if (i > settling) change = std::max(change, norm(force - before));
+    before = force;
+  }
+  return change;
 }
 // Force upwards on a tip lowered by `depth_m` from `top`.
 inline double press_N(const Model& model, Vec3 top, double depth_m) {

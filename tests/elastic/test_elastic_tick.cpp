@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "config/elastic/fixed_random.h"
 #include "rt_core/status.h"
 #include "tests/elastic/elastic_tick_scene.h"
 
@@ -116,13 +117,7 @@ TEST_F(ArchInTick, ClosedLoopWithoutFrictionReturnsItsWork) {
 TEST_F(ArchInTick, StillToolGetsAStillForce) {
   Bench bench(scene().model());
   move_to(bench, kTop, kTop + Vec3{3e-3, -4e-3, 2e-3}, 1e-4);
-  double before = 0, change = 0;
-  for (int i = 0; i < 60; ++i) {
-    const double force = norm(bench.tick_at({kTop + Vec3{3e-3, -4e-3, 2e-3}, {}}, {}).contact_w.force_N);
-    if (i > 20) change = std::max(change, std::abs(force - before));
-    before = force;
-  }
-  EXPECT_LT(change, 1e-9);
+  EXPECT_LT(change_while_held_N(bench, kTop + Vec3{3e-3, -4e-3, 2e-3}, 20), 1e-9);
 }
 
 // Sliding over facets and their edges at 100 mm/s.
@@ -144,11 +139,8 @@ TEST_F(ArchInTick, ForceOfASlideHasNoSteps) {
 
 TEST_F(ArchInTick, ReleaseAndTeleportsStayFinite) {
   Bench bench(scene().model());
-  std::uint64_t random = 1;
-  const auto uniform = [&] {
-    random = random * 6364136223846793005u + 1442695040888963407u;
-    return static_cast<double>(random >> 11) * 0x1p-53 - 0.5;
-  };
+  elastic::FixedRandom random(1);
+  const auto uniform = [&] { return 0.5 * random.symmetric(); };
   for (int i = 0; i < 3000; ++i) {
     const Vec3 at{0.12 * uniform(), 0.04 + 0.12 * uniform(), 0.12 * uniform()};
     for (int hold = 0; hold < 3; ++hold) {

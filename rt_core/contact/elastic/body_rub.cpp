@@ -55,17 +55,20 @@ void aim_rub(const Model& model, const Real* y, const FrictionParameters& law, c
   if (!rub.is_on) return;
   const Vec3 n = row.foot.normal_w, trial = tangential_part(rub.stretch_w - rub.moved_w, n);
   const Real length = norm(trial);
-  const Vec3 any = tangential_part(abs_of(n.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}, n);
+  const Vec3 any = tangential_part(axis_off(n), n);
   rub.axis[0].unit_w = unit_or(length > 1e-12 ? trial : any, any);
   rub.axis[1].unit_w = cross(n, rub.axis[0].unit_w);
   rub.axis[0].force_N = rub.spring_N_per_m * length;
   rub.axis[1].force_N = 0;
   rub.axis[0].stiffness_N_per_m = rub.axis[1].stiffness_N_per_m = rub.spring_N_per_m;
-  const Real sliding = is_presliding(law.law) ? static_limit_N(law, force_N) : sliding_limit_N(law, force_N);
-  if (!is_first && rub.axis[0].force_N > (rub.slides ? sliding : static_limit_N(law, force_N))) {
-    rub.axis[0].force_N = sliding;
-    rub.axis[0].stiffness_N_per_m = 0;
-    rub.axis[1].stiffness_N_per_m = sliding / length;
+  if (!is_first) {
+    const Real sticking = static_limit_N(law, force_N);
+    const Real sliding = is_presliding(law.law) ? sticking : sliding_limit_N(law, force_N);
+    if (rub.axis[0].force_N > (rub.slides ? sliding : sticking)) {
+      rub.axis[0].force_N = sliding;
+      rub.axis[0].stiffness_N_per_m = 0;
+      rub.axis[1].stiffness_N_per_m = sliding / length;
+    }
   }
   show_sweep(model, y, row, rub.axis);
 }

@@ -143,10 +143,10 @@ void show_modes(const Model& model, const Real* y, const TravelSlope& slope, Ela
 // the gradient has no kink. Straight between the vertices, c1's kink on the crest of a ring threw the tip aside by 0.5
 // N of 10 N and to the other side beyond the edge (2026-11-22).
 struct VertexCubic {
-  const Vec3* edge_m;  // X_(k+1) - X_k
   Real corner[3], next[3], before[3], middle;
 
-  VertexCubic(const Vec3* edges_m, const float* const* own, std::int32_t which) PALPATE_RT : edge_m(edges_m) {
+  // `edge_m`: X_(k+1) - X_k.
+  VertexCubic(const Vec3* edge_m, const float* const* own, std::int32_t which) PALPATE_RT {
     Real sides = 0, corners = 0;
     for (int k = 0; k < 3; ++k) {  // bound: 3
       const float* g = own[k] + kOwnValues + 3 * which;
