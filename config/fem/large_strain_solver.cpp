@@ -17,6 +17,9 @@ namespace {
 // 100 need three times the Newton steps, because points then cannot slide along a curved tool (measured 2026-11-21).
 constexpr double kPenaltyShare = 10;
 
+// Of the shortest facet: the step off a saddle.
+constexpr double kSaddleStep = 0.1;
+
 void check_body(const StrainBody& body, int dim) {
   if (!(body.youngs_modulus_Pa > 0))
     throw ConfigError("large-strain solver: Young's modulus must be above 0 Pa, got " +
@@ -160,7 +163,7 @@ struct LargeStrainSolver<kDim>::Impl {
   bool direction(const Eigen::VectorXd& reduced, Eigen::VectorXd& step) {
     double shift = 0;
     for (int attempt = 0; attempt < 8; ++attempt) {
-      if (factor.factorise(tangent, shift)) {
+      if (factor.factorise(tangent, shift) && !(options.stable && factor.negative_pivots() > 0)) {
         step = -factor.solve(reduced);
         if (step.allFinite() && step.dot(reduced) < 0) return true;
       }
@@ -169,13 +172,28 @@ struct LargeStrainSolver<kDim>::Impl {
     return false;
   }
 
+  // Where the tangent has a negative eigenvalue, a step along its vector, found by inverse iteration.
+  bool leave_saddle(Eigen::VectorXd& at) {
+    if (!factor.factorise(tangent, 0) || factor.negative_pivots() == 0) return false;
+    Eigen::VectorXd v(assembly.free_count());
+    for (Eigen::Index i = 0; i < v.size(); ++i) v[i] = 1 + 0.1 * static_cast<double>(i % 7);
+    for (int i = 0; i < 8; ++i) v = factor.solve(v.normalized());
+    v *= kSaddleStep * shortest_facet_m / v.cwiseAbs().maxCoeff();
+    for (int dof = 0; dof < at.size(); ++dof)
+      if (const int q = assembly.equation(dof); q >= 0) at[dof] += v[q];
+    return true;
+  }
+
   bool minimise(const Situation& s, Eigen::VectorXd& at, double tolerance) {
     Eigen::VectorXd residual, step, trial;
     for (int iteration = 0; iteration < options.max_newton; ++iteration) {
       const double value = potential(s, at, &residual, true);
       if (!std::isfinite(value)) return false;
       const Eigen::VectorXd reduced = gather(residual);
-      if (!(reduced.cwiseAbs().maxCoeff() > tolerance * internal_scale + force_floor())) return true;
+      if (!(reduced.cwiseAbs().maxCoeff() > tolerance * internal_scale + force_floor())) {
+        if (!options.stable || !leave_saddle(at)) return true;
+        continue;
+      }
       ++newton_steps;
       if (!direction(reduced, step)) return false;
       const double slope = step.dot(reduced);
@@ -241,7 +259,7 @@ struct LargeStrainSolver<kDim>::Impl {
     double step = std::numeric_limits<double>::infinity();
     for (const RigidTool& tool : tools)
       if (tool.shape == RigidShape::kPunch) step = std::min(step, 0.5 * tool.fillet_m);
-    return body.law == StrainLaw::kLinear ? step : std::min(step, shortest_facet_m);
+    return body.law == StrainLaw::kLinear ? step : std::min(step, options.step_facets * shortest_facet_m);
   }
 
   // One step, first from the last one continued: a guess without the dents that a tool jumping into the rest makes.

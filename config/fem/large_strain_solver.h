@@ -38,6 +38,9 @@ struct StrainOptions {
   double residual_tolerance = 1e-9;  // share of the largest nodal force
   int max_newton = 40;
   int max_augmentations = 12;
+  double step_facets = 1;  // longest step, in shortest facets
+  // Off saddles: a slender body goes aside as it does, not on in the symmetric shape that a symmetric press allows.
+  bool stable = false;
   int max_cuts = 7;  // a step that does not converge is halved at most so often
 };
 

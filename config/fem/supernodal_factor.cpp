@@ -257,6 +257,10 @@ bool SupernodalFactor::factorise(const Eigen::SparseMatrix<double>& lower, doubl
   return true;
 }
 
+int SupernodalFactor::negative_pivots() const {
+  return static_cast<int>(std::count_if(diagonal_.begin(), diagonal_.end(), [](double d) { return d < 0; }));
+}
+
 Eigen::VectorXd SupernodalFactor::solve(const Eigen::VectorXd& b) const {
   std::vector<double> x(static_cast<std::size_t>(size_));
   for (int i = 0; i < size_; ++i) x[static_cast<std::size_t>(new_of_old_[static_cast<std::size_t>(i)])] = b[i];

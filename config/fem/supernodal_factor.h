@@ -17,6 +17,8 @@ class SupernodalFactor {
   // not finite.
   bool factorise(const Eigen::SparseMatrix<double>& lower, double shift);
   Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
+  // Pivots below zero: as many as eigenvalues.
+  int negative_pivots() const;
   std::size_t entries() const { return panel_.size(); }
 
  private:

@@ -98,6 +98,40 @@ TEST(LargeStrain, SlenderCantileverBendsLikeTheElastica) {
   }
 }
 
+// A symmetric press keeps a strut straight; a stable solution gives way sideways, at Euler's load.
+TEST(StableSolver, StrutBucklesAsEulerSays) {
+  constexpr double kLength_m = 0.04, kThickness_m = 0.002, kModulus_Pa = 1e6;
+  const StrainMesh<2> mesh = make_plane_mesh({{uniform_steps(0, kThickness_m, 1), uniform_steps(0, kLength_m, 16),
+                                               [](double s, double t) {
+                                                 return Point<2>{s, t};
+                                               }}},
+                                             1e-8);
+  StrainBody body;
+  body.youngs_modulus_Pa = kModulus_Pa;
+  body.poisson_ratio = 0;
+  body.kinematics = Kinematics::kPlaneStrain;
+  std::vector<bool> fixed;
+  for (const Point<2>& p : mesh.nodes_m) fixed.insert(fixed.end(), 2, p[1] < 1e-9);
+  const auto touching = nodes_where<2>(mesh, [](const Point<2>& p) { return p[1] > kLength_m - 1e-9; });
+  RigidTool plate;
+  plate.shape = RigidShape::kPlane;
+  plate.axis = {0, -1, 0};
+  const auto force = [&](bool stable) {
+    StrainOptions options;
+    options.stable = stable;
+    LargeStrainSolver<2> solver(mesh, body, fixed, touching, {plate}, options);
+    solver.place_tools({{0, kLength_m}});
+    const auto state = solver.move_tools({{0, kLength_m - 6e-4}});
+    EXPECT_TRUE(state.converged);
+    return state.force_on_tool_N[0][1];
+  };
+  // Clamped below; above it turns about an edge on the slippery plate: pi^2 E I / (4 L^2).
+  const double inertia = std::pow(kThickness_m, 3) / 12;
+  const double euler_N = 9.8696 * kModulus_Pa * inertia / (4 * kLength_m * kLength_m);
+  EXPECT_GT(force(false), 5 * euler_N);        // straight on
+  EXPECT_NEAR(force(true) / euler_N, 1, 0.2);  // 1.13: leaning, it stands on its edge
+}
+
 TEST(LargeStrain, BadMaterialsAndMeshesAreRefusedWithTheirReason) {
   const StrainMesh<2> mesh = rectangle(1, 1, 1, 1);
   const std::vector<bool> fixed(18, true);

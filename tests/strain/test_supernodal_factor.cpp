@@ -69,6 +69,20 @@ TEST(SupernodalFactor, TakesUnknownsThatNothingConnects) {
   EXPECT_LT(residual(lower, 0, factor.solve(b), b), 1e-15);
 }
 
+TEST(SupernodalFactor, CountsNegativeEigenvalues) {
+  Sparse lower(3, 3);  // eigenvalues 1, 3 and -2
+  for (int i = 0; i < 2; ++i) lower.insert(i, i) = 2;
+  lower.insert(1, 0) = 1;
+  lower.insert(2, 2) = -2;
+  lower.makeCompressed();
+  SupernodalFactor factor;
+  factor.analyse(lower);
+  ASSERT_TRUE(factor.factorise(lower, 0));
+  EXPECT_EQ(factor.negative_pivots(), 1);
+  ASSERT_TRUE(factor.factorise(lower, 2.5));
+  EXPECT_EQ(factor.negative_pivots(), 0);
+}
+
 TEST(SupernodalFactor, ReportsAPivotThatIsZeroOrNoNumber) {
   Sparse lower(2, 2);
   lower.insert(0, 0) = 1;
