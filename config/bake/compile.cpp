@@ -13,6 +13,7 @@
 #include "config/body/anchors.h"
 #include "config/body/body.h"
 #include "config/body/patches.h"
+#include "config/body/supports.h"
 #include "config/hand/hand_model.h"
 #include "config/hand/preshape.h"
 #include "config/scene/config_error.h"
@@ -413,23 +414,19 @@ class Compiler {
     const BeamTableReport& beams = report_.beams;
     for (std::size_t a = 0; a < beams.dropped_by_anchor.size(); ++a)
       if (beams.dropped_by_anchor[a] == report_.vertices)
-        warn("anchor " + std::to_string(a) + " at (" + position_text(image_.anchor[a].position_m) +
-             ") mm: no beam reaches it inside the body; lower skeleton.beam_width_mm or remove the anchor "
+        warn("anchor " + std::to_string(a) + " at " + position_text(image_.anchor[a].position_m) +
+             ": no beam reaches it inside the body; lower skeleton.beam_width_mm or remove the anchor "
              "(skeleton.anchors_max)");
     if (beams.lonely_vertices > 0)
       warn(std::to_string(beams.lonely_vertices) +
            " surface vertices have no beam at all; contacts there move no anchor: lower skeleton.beam_width_mm");
-  }
-  static std::string position_text(Vec3 p) {
-    return number_text(std::round(1e4 * p.x) / 10) + ", " + number_text(std::round(1e4 * p.y) / 10) + ", " +
-           number_text(std::round(1e4 * p.z) / 10);
   }
 
   // Sections: the beams share the body's volume, S = V / sum of lengths, lengths from the volume's centre; release
   // length s = pi r (1 - nu^2) / 2, which gives the beam's end the compliance of a rigid circular foot on a half space.
   void add_anchors(const std::vector<AnchorPoint>& anchors) {
     const Vec3 centre = volume_centre_m(mesh_);
-    const double base = bounds_of(mesh_).lower_m.y + scene_.fixed.base_height_m;
+    const double lowest = bounds_of(mesh_).lower_m.y;
     double length = 0;
     for (const AnchorPoint& a : anchors) length += norm(a.position_m - centre);
     const double radius = is_auto(scene_.skeleton.section_radius_m)
@@ -444,16 +441,16 @@ class Compiler {
       anchor.section_inertia_m4 = 0.25 * area * radius * radius;
       anchor.section_radius_m = radius;
       anchor.release_length_m = 0.5 * kPi * radius * (1 - nu * nu);
-      anchor.fixed = a.position_m.y <= base ? 1 : 0;
+      anchor.fixed = is_fixed(scene_, a.position_m, lowest) ? 1 : 0;
       image_.anchor.push_back(anchor);
       report_.fixed_anchors += anchor.fixed;
     }
     report_.anchors = static_cast<std::int32_t>(anchors.size());
     report_.section_radius_m = radius;
     if (report_.fixed_anchors == 0)
-      warn("no anchor lies on the fixed base; raise body.fixed.base_height_mm if the body should rest on it");
+      warn("no anchor lies where body.fixed holds; raise its base_height_mm if the body should rest on its base");
     if (report_.fixed_anchors == report_.anchors)
-      warn("every anchor is fixed, so the drawn shape moves only near contacts; lower body.fixed.base_height_mm");
+      warn("every anchor is fixed, so the drawn shape moves only near contacts; make body.fixed smaller");
   }
 
   void add_costs() {

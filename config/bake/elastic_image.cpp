@@ -10,6 +10,7 @@
 #include "config/bake/vertex_slopes.h"
 #include "config/body/body.h"
 #include "config/body/body_card.h"
+#include "config/body/supports.h"
 #include "config/elastic/elastic_body.h"
 #include "config/elastic/solid_mesh.h"
 #include "config/fem/large_strain_elements.h"

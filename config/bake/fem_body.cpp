@@ -1,6 +1,8 @@
 #include "config/bake/fem_body.h"
 #include "config/body/body.h"
 #include "config/body/body_card.h"
+#include "config/body/body_pose.h"
+#include "config/body/supports.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,10 +19,6 @@ namespace palpate {
 
 namespace {
 
-std::string text_mm(Vec3 p) {
-  return "(" + number_text(1e3 * p.x) + ", " + number_text(1e3 * p.y) + ", " + number_text(1e3 * p.z) + ")";
-}
-
 // Flags of the elements that the scene's zone keeps quadratic.
 std::vector<char> zone_elements(const SceneDesc& scene, const TetMesh& mesh, std::vector<std::string>& warnings) {
   const Vec3 from = scene.fem.zone_from_m, to = scene.fem.zone_to_m;
@@ -33,8 +31,8 @@ std::vector<char> zone_elements(const SceneDesc& scene, const TetMesh& mesh, std
   if (count == 0) {
     const Bounds body = bounds_of(surface_of(mesh).mesh);
     throw ConfigError(where + "no corner of a tetrahedron lies in the zone; the body reaches from " +
-                      text_mm(body.lower_m) + " to " + text_mm(body.upper_m) +
-                      " mm: move the zone there, or make it larger than an element");
+                      position_text(body.lower_m) + " to " + position_text(body.upper_m) +
+                      ": move the zone there, or make it larger than an element");
   }
   if (count == static_cast<std::ptrdiff_t>(quadratic.size()))
     warnings.push_back(where + "the zone makes all elements quadratic; order = \"quadratic\" says so");
@@ -51,14 +49,6 @@ void add_gauges(const SceneDesc& scene, const LinearBody& solver, FemBody& body,
 
 }  // namespace
 
-Supports supports_of(const SceneDesc& scene, const TetMesh& mesh) {
-  if (const auto supports = card_of(scene.body.shape).supports; supports != nullptr) return supports(mesh);
-  double lowest = kHuge;
-  for (const Vec3& x : mesh.node_m) lowest = std::min(lowest, x.y);
-  const double base = lowest + scene.fixed.base_height_m + 1e-9;
-  return hold_where(mesh, [base](Vec3 x) { return x.y <= base; });
-}
-
 double tet_edge_m(const SceneDesc& scene, Vec3 size_m) {
   return is_auto(scene.fem.edge_m) ? std::max({size_m.x, size_m.y, size_m.z}) / 8 : scene.fem.edge_m;
 }
@@ -67,6 +57,7 @@ TetMesh make_tet_mesh(const SceneDesc& scene, std::vector<std::string>& warnings
   TetMesh mesh;
   if (const auto tets = card_of(scene.body.shape).tets; tets != nullptr) {
     mesh = tets(scene, warnings);
+    place(scene.body, mesh.node_m);
   } else {
     const SurfaceMesh surface = make_body(scene, warnings);
     mesh = tetrahedralise(surface, tet_edge_m(scene, bounds_of(surface).size_m()), scene.source.where("body.shape"));

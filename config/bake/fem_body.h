@@ -18,8 +18,6 @@ struct FemBody {
 
 // Length of the edges: the scene's, or an eighth of the largest extent.
 double tet_edge_m(const SceneDesc& scene, Vec3 size_m);
-// What of the mesh is held: as the body says, or up to body.fixed.base_height_mm.
-Supports supports_of(const SceneDesc& scene, const TetMesh& mesh);
 // Mesh only: made, read, or filled by gmsh, as the scene says. Throws ConfigError.
 TetMesh make_tet_mesh(const SceneDesc& scene, std::vector<std::string>& warnings);
 // Mesh, supports, compliance and strain gauges. Throws ConfigError. Adds warnings.

@@ -1,8 +1,7 @@
 #include "config/body/body.h"
 
-#include <cmath>
-
 #include "config/body/body_card.h"
+#include "config/body/body_pose.h"
 #include "config/body/self_intersection.h"
 #include "config/scene/config_error.h"
 #include "config/scene/schema.h"
@@ -20,10 +19,9 @@ void check_crossings(const SurfaceMesh& mesh, const std::string& label, std::vec
                        ": looked for places where the surface goes through itself in part of it only (long thin "
                        "triangles); remesh it");
   if (found.pairs == 0) return;
-  const auto mm = [](double x_m) { return number_text(std::round(1e5 * x_m) / 100); };
-  throw ConfigError(label + ": the surface goes through itself at (" + mm(found.where_m.x) + ", " +
-                    mm(found.where_m.y) + ", " + mm(found.where_m.z) + ") mm, triangle " + std::to_string(found.first) +
-                    " (" + std::to_string(found.pairs) + (found.pairs >= kMostCounted ? " or more" : "") +
+  throw ConfigError(label + ": the surface goes through itself at " + position_text(found.where_m) + ", triangle " +
+                    std::to_string(found.first) + " (" + std::to_string(found.pairs) +
+                    (found.pairs >= kMostCounted ? " or more" : "") +
                     " pairs of triangles cross): which side is inside is not defined there; unite the parts, or remove "
                     "the fold, in a mesh editor");
 }
@@ -32,7 +30,9 @@ void check_crossings(const SurfaceMesh& mesh, const std::string& label, std::vec
 
 SurfaceMesh make_body(const SceneDesc& scene, std::vector<std::string>& warnings) {
   std::string label = scene.source.where("body.shape");
-  SurfaceMesh mesh = card_of(scene.body.shape).make(scene, label, warnings);
+  const BodyCard& card = card_of(scene.body.shape);
+  SurfaceMesh mesh = card.make(scene, label, warnings);
+  if (!card.own_tets) place(scene.body, mesh.vertex_m);  // whose tetrahedra are placed already
   check_mesh(mesh, label);
   if (!scene.body.mesh.empty()) check_crossings(mesh, label, warnings);
   return mesh;

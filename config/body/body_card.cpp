@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "config/body/body_pose.h"
 #include "config/scene/schema.h"
 
 namespace palpate {
@@ -19,7 +20,14 @@ const BodyCard& card_of(BodyShape shape) {
 
 std::vector<AnchorPoint> exact_anchors(const BodyDesc& body) {
   const auto anchors = card_of(body.shape).anchors;
-  return anchors == nullptr ? std::vector<AnchorPoint>{} : anchors(body);
+  std::vector<AnchorPoint> found = anchors == nullptr ? std::vector<AnchorPoint>{} : anchors(body);
+  if (!is_moved(body)) return found;
+  const Pose pose = body_pose(body);
+  for (AnchorPoint& anchor : found) {
+    anchor.position_m = transform(pose, anchor.position_m);
+    anchor.normal = rotate(pose.orientation, anchor.normal);
+  }
+  return found;
 }
 bool has_exact_anchors(BodyShape shape) { return card_of(shape).anchors != nullptr; }
 

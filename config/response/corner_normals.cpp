@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "config/body/body_card.h"
+#include "config/body/body_pose.h"
 #include "rt_core/math.h"
 
 namespace palpate {
@@ -29,10 +30,9 @@ int corner_of(const Triangle& t, std::int32_t vertex) {
   return -1;
 }
 
-}  // namespace
-
-std::vector<CornerNormals> corner_normals(const BodyDesc& body, const std::vector<Vec3>& vertex_m,
-                                          const std::vector<Triangle>& triangle) {
+// Of a body where its shape is made.
+std::vector<CornerNormals> own_normals(const BodyDesc& body, const std::vector<Vec3>& vertex_m,
+                                       const std::vector<Triangle>& triangle) {
   std::vector<Vec3> face(triangle.size());
   for (std::size_t t = 0; t < triangle.size(); ++t) face[t] = face_normal(vertex_m, triangle[t]);
   double top = 0;
@@ -68,6 +68,20 @@ std::vector<CornerNormals> corner_normals(const BodyDesc& body, const std::vecto
       result[t].normal[k] = unit_or(sum, face[t]);
     }
   }
+  return result;
+}
+
+}  // namespace
+
+std::vector<CornerNormals> corner_normals(const BodyDesc& body, const std::vector<Vec3>& vertex_m,
+                                          const std::vector<Triangle>& triangle) {
+  std::vector<Vec3> own_m = vertex_m;
+  take_back(body, own_m);
+  std::vector<CornerNormals> result = own_normals(body, own_m, triangle);
+  if (!is_moved(body)) return result;
+  const Quat turn = body_pose(body).orientation;
+  for (CornerNormals& corner : result)
+    for (Vec3& normal : corner.normal) normal = rotate(turn, normal);
   return result;
 }
 

@@ -8,6 +8,7 @@
 #include "config/bake/contact_fit.h"
 #include "config/bake/fem_body.h"
 #include "config/body/body.h"
+#include "config/body/supports.h"
 #include "config/fem/linear_body.h"
 #include "config/fem/tet_procedural.h"
 
@@ -227,7 +228,7 @@ PlaceCompliance place_compliance(const SceneDesc& scene, const std::vector<Press
   const TetMesh mesh = coarse_mesh(scene, edge_m);
   result.nodes = mesh.node_m.size();
   result.patch_m = std::max(edge_m, contact_m);
-  const double base = scene.fixed.base_height_m + 1e-9;
+  const double base = standing_base_m(scene, "a press by finite elements") + 1e-9;
   const Supports supports = hold_where(mesh, [base](Vec3 x) { return x.y <= base; });
   const FemMaterial material{scene.material.youngs_modulus_Pa,
                              std::min(effective_poisson_ratio(scene.material), 0.495)};

@@ -5,6 +5,7 @@
 
 #include "config/bake/contact_fit.h"
 #include "config/body/body_card.h"
+#include "config/body/supports.h"
 #include "config/scene/config_error.h"
 
 namespace palpate {
@@ -22,7 +23,7 @@ fem::PressBody pressed_body(const SceneDesc& scene, const std::string& key) {
   body.poisson_ratio = std::min(effective_poisson_ratio(scene.material), kLargestRatio);
   body.slip_base = scene.layer.base == LayerBase::kSlip;
   const auto press = card_of(scene.body.shape).press;
-  if (press == nullptr || !press(scene.body, scene.fixed.base_height_m, body))
+  if (press == nullptr || !press(scene.body, standing_base_m(scene, "a press by finite elements"), body))
     throw ConfigError(
         scene.source.where(key) +
         ": presses are computed for a standing cylinder, a box, a sphere, or an ellipsoid with equal half axes along x "

@@ -27,6 +27,13 @@ PALPATE_CHOICE(FemOrder, PALPATE_FEM_ORDERS);
 #define PALPATE_FEM_PRECISIONS(X) X(kByError, auto) X(kSingle, single) X(kDouble, double)
 PALPATE_CHOICE(FemPrecision, PALPATE_FEM_PRECISIONS);
 
+// Where an entry of body.fixed holds, and which components of the displacement.
+#define PALPATE_FIXED_REGIONS(X) X(kBase, base) X(kBox, box) X(kBall, ball)
+PALPATE_CHOICE(FixedRegion, PALPATE_FIXED_REGIONS);
+
+#define PALPATE_HELD_COMPONENTS(X) X(kAll, all) X(kX, x) X(kY, y) X(kZ, z) X(kXy, xy) X(kXz, xz) X(kYz, yz)
+PALPATE_CHOICE(HeldComponents, PALPATE_HELD_COMPONENTS);
+
 #define PALPATE_ANCHOR_SOURCES(X) X(kShape, auto) X(kMesh, mesh)
 PALPATE_CHOICE(AnchorSource, PALPATE_ANCHOR_SOURCES);
 

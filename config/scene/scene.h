@@ -34,6 +34,8 @@ struct BodyDesc {
   double scale = 1e-3;
   bool fix_orientation = false;
   std::int32_t triangles = 3000;
+  Vec3 position_m;
+  Vec3 rotation_rad;  // rotation vector
 };
 // Finite elements of a body (contact.backend = "nodal").
 struct FemDesc {
@@ -56,8 +58,14 @@ struct MaterialDesc {
   double density_kg_per_m3 = 1100;
   bool legacy_paper_material = false;
 };
+// One place where the body is held; see config/body/supports.h.
 struct FixedDesc {
+  FixedRegion region = FixedRegion::kBase;
   double base_height_m = 0.002;
+  Vec3 from_m{kAuto, kAuto, kAuto}, to_m{kAuto, kAuto, kAuto};
+  Vec3 centre_m{kAuto, kAuto, kAuto};
+  double radius_m = kAuto;
+  HeldComponents holds = HeldComponents::kAll;
 };
 
 struct SkeletonDesc {
@@ -252,7 +260,7 @@ struct SceneDesc {
   BodyDesc body;
   FemDesc fem;
   MaterialDesc material;
-  FixedDesc fixed;
+  std::vector<FixedDesc> fixed;  // none: the default base
   SkeletonDesc skeleton;
   ContactDesc contact;
   NodalDesc nodal;

@@ -193,6 +193,31 @@ void check_order(const SceneDesc& scene) {
          "\"mixed\" needs body.material.poisson_ratio of at most 0.49, where linear elements lock; use \"quadratic\"");
 }
 
+// Each entry of body.fixed has the keys of its region and no other.
+void check_fixed(const SceneDesc& scene) {
+  for (std::size_t i = 0; i < scene.fixed.size(); ++i) {
+    const FixedDesc& entry = scene.fixed[i];
+    const std::string numbered = "body.fixed[" + std::to_string(i) + "]";
+    const std::string table = scene.source.has(numbered) ? numbered : "body.fixed";
+    const FixedRegion region = entry.region;
+    const std::string because = "with region = \"" + std::string(word_of(region)) + "\"";
+    const auto needs = [&](std::initializer_list<const char*> keys, FixedRegion of) {
+      if (region != of) return check_effect(scene, table, keys, {}, because);
+      for (const char* key : keys)
+        if (!scene.source.has(table + "." + key))
+          fail(scene, table, std::string(key) + ": missing; a " + std::string(word_of(of)) + " needs it");
+    };
+    if (region != FixedRegion::kBase) check_effect(scene, table, {"base_height_mm"}, {}, because);
+    needs({"from_mm", "to_mm"}, FixedRegion::kBox);
+    needs({"centre_mm", "radius_mm"}, FixedRegion::kBall);
+    const Vec3 from = entry.from_m, to = entry.to_m;
+    if (region == FixedRegion::kBox && !(from.x < to.x && from.y < to.y && from.z < to.z))
+      fail(scene, table + ".to_mm", "must be greater than from_mm along x, y and z; exchange the corners");
+    if (scene.contact.backend == Backend::kResponse)
+      check_effect(scene, table, {"holds"}, {}, "with tool points, whose anchors stand still or do not");
+  }
+}
+
 void check_no_table(const SceneDesc& scene, const char* name, const char* because) {
   if (scene.source.has(name)) fail(scene, name, std::string("has no effect ") + because + "; remove the table");
 }
@@ -337,6 +362,7 @@ void check_device_and_path(const SceneDesc& scene) {
 
 void check_scene(const SceneDesc& scene) {
   check_body(scene);
+  check_fixed(scene);
   check_contact(scene);
   check_friction(scene);
   check_backend(scene);

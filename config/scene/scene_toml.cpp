@@ -139,7 +139,8 @@ class Reader {
 
   void read_child(const toml::node& value, const std::string& path) {
     const TableSpec* spec = find_table(path);
-    if (spec != nullptr && spec->is_array) {
+    const bool list_alone = spec != nullptr && spec->count == TableCount::kList;
+    if (list_alone || (spec != nullptr && spec->count == TableCount::kOneOrList && value.is_array())) {
       const toml::array* list = value.as_array();
       if (list == nullptr) fail(value, path, "must be a list of tables; write [[" + path + "]]");
       std::int32_t index = 0;
@@ -339,6 +340,9 @@ SceneDesc scene_from(toml::table&& root, const std::string& file, const SceneOve
     if (!scene.source.has("contact.law")) scene.contact.law = ContactLaw::kTool;
     if (!scene.source.has("hand.points_per_part")) scene.hand.points_per_part = 1;
   }
+  // Whole tips have no points' springs: of the laws they take, the default is the one without a constant to choose.
+  if (!scene.source.has("friction.law") && scene.contact.backend != Backend::kNodal && is_tip_law(scene.contact.law))
+    scene.friction.law = FrictionLaw::kMindlin;
   check_scene(scene);
   return scene;
 }

@@ -86,6 +86,10 @@ const KeySpec kBody[] = {
     boolean<&BodyDesc::fix_orientation>("fix_orientation", "turn triangles that face inwards"),
     integer<&BodyDesc::triangles>("triangles", kFewestTriangles, kMostTriangles,
                                   "about this many triangles; the tick's cost hardly depends on it"),
+    list<&BodyDesc::position_m>(kVec3, "position_mm", -1e4, 1e4, kMilli,
+                                "where the origin of the shape or file goes in the world"),
+    list<&BodyDesc::rotation_rad>(kVec3, "rotation_deg", -360, 360, kDegree,
+                                  "rotation vector (axis times angle) about that origin, before it goes there"),
 };
 const KeySpec kFem[] = {
     choice<&FemDesc::order>("order",
@@ -121,8 +125,18 @@ const KeySpec kMaterial[] = {
         "legacy_paper_material", "accept the nu = 1.0 printed by Cui & Xiao 2008 and use 0.47 instead, with a warning"),
 };
 const KeySpec kFixed[] = {
+    choice<&FixedDesc::region>("region",
+                               "what of the body is held: its base, or what lies in a box or a ball; with tool points "
+                               "the anchors there stand still, with finite elements the nodes"),
     number<&FixedDesc::base_height_m>("base_height_mm", 0, 10000, kMilli,
-                                      "everything of the body up to this height above its lowest point is clamped"),
+                                      "base: everything of the body up to this height above its lowest point"),
+    list<&FixedDesc::from_m>(kVec3, "from_mm", -10000, 10000, kMilli, "box: its lowest corner"),
+    list<&FixedDesc::to_m>(kVec3, "to_mm", -10000, 10000, kMilli, "box: its highest corner"),
+    list<&FixedDesc::centre_m>(kVec3, "centre_mm", -10000, 10000, kMilli, "ball: its centre"),
+    number<&FixedDesc::radius_m>("radius_mm", 0.001, 10000, kMilli, "ball: its radius"),
+    choice<&FixedDesc::holds>("holds",
+                              "components of the displacement that are held; y alone over a flat base is a rigid "
+                              "plate without friction. Finite elements only"),
 };
 const KeySpec kSkeleton[] = {
     choice<&SkeletonDesc::law>("law",
@@ -402,6 +416,7 @@ void* open(SceneDesc& scene) {
   return &(scene.*member);
 }
 void* open_top(SceneDesc& scene) { return &scene; }
+void* open_fixed(SceneDesc& scene) { return &scene.fixed.emplace_back(); }
 void* open_piece(SceneDesc& scene) { return &scene.piece.emplace_back(); }
 void* open_pair(SceneDesc& scene) { return &scene.pair.emplace_back(); }
 void* open_point(SceneDesc& scene) { return &scene.path.point.emplace_back(); }
@@ -415,38 +430,46 @@ void* open_gripper(SceneDesc& scene) {
 }
 
 const TableSpec kTables[] = {
-    {"", false, "Top level.", kTop, open_top},
-    {"body", false, "The elastic object.", kBody, open<&SceneDesc::body>},
-    {"body.fem", false, "Finite elements, with contact.backend = \"nodal\" or \"elastic\".", kFem,
+    {"", TableCount::kOne, "Top level.", kTop, open_top},
+    {"body", TableCount::kOne, "The elastic object.", kBody, open<&SceneDesc::body>},
+    {"body.fem", TableCount::kOne, "Finite elements, with contact.backend = \"nodal\" or \"elastic\".", kFem,
      open<&SceneDesc::fem>},
-    {"body.elastic", false, "Its modes, with contact.backend = \"elastic\".", kElastic, open<&SceneDesc::elastic>},
-    {"body.material", false, "Homogeneous, isotropic.", kMaterial, open<&SceneDesc::material>},
-    {"body.fixed", false, "What is clamped to the world.", kFixed, open<&SceneDesc::fixed>},
-    {"skeleton", false, "Beams from each contact region to the anchors.", kSkeleton, open<&SceneDesc::skeleton>},
-    {"contact", false, "The contact law.", kContact, open<&SceneDesc::contact>},
-    {"contact.duffing", false, "With law = \"duffing\".", kDuffing, open<&SceneDesc::duffing>},
-    {"contact.cubic", false, "With law = \"cubic\".", kCubic, open<&SceneDesc::cubic>},
-    {"contact.hertz", false, "With law = \"hertz\".", kHertz, open<&SceneDesc::hertz>},
-    {"contact.tip", false, "With law = \"tool\".", kTip, open<&SceneDesc::tip>},
-    {"contact.layer", false, "With law = \"tool\": exact response of a thin body.", kLayer, open<&SceneDesc::layer>},
-    {"contact.series", false, "With law = \"tool\": the body's own give, travel = tip's + c0 F + c1 F^2.", kSeries,
-     open<&SceneDesc::series>},
-    {"contact.pair", true, "With law = \"tool\": how two tips lean on one another; other pairs use the far field.",
-     kPair, open_pair},
-    {"contact.table", false, "With law = \"table\": presses, measured or computed.", kTable, open<&SceneDesc::table>},
-    {"contact.nodal", false, "With backend = \"nodal\".", kNodal, open<&SceneDesc::nodal>},
-    {"friction", false, "Friction per contact region.", kFriction, open<&SceneDesc::friction>},
-    {"shape", false, "How the deformed surface is drawn. No effect on forces.", kShape, open<&SceneDesc::shape>},
-    {"coupling", false, "Several contact regions at once.", kCoupling, open<&SceneDesc::coupling>},
-    {"tool.piece", true, "The rigid tool: convex pieces, at least one with points.", kPiece, open_piece},
-    {"hand", false, "Makes the tool a human hand of 21 joints; there are no tool pieces then.", kHand, open_hand},
-    {"gripper", false, "Makes the tool a gripper: pieces with slide_mm move by the closing of path or device.",
-     kGripper, open_gripper},
-    {"device", false, "The haptic device: what it admits and where it must be stopped.", kDevice,
+    {"body.elastic", TableCount::kOne, "Its modes, with contact.backend = \"elastic\".", kElastic,
+     open<&SceneDesc::elastic>},
+    {"body.material", TableCount::kOne, "Homogeneous, isotropic.", kMaterial, open<&SceneDesc::material>},
+    {"body.fixed", TableCount::kOneOrList,
+     "What holds the body: one table, or several of [[body.fixed]]. Heights, boxes and balls are those of the world.",
+     kFixed, open_fixed},
+    {"skeleton", TableCount::kOne, "Beams from each contact region to the anchors.", kSkeleton,
+     open<&SceneDesc::skeleton>},
+    {"contact", TableCount::kOne, "The contact law.", kContact, open<&SceneDesc::contact>},
+    {"contact.duffing", TableCount::kOne, "With law = \"duffing\".", kDuffing, open<&SceneDesc::duffing>},
+    {"contact.cubic", TableCount::kOne, "With law = \"cubic\".", kCubic, open<&SceneDesc::cubic>},
+    {"contact.hertz", TableCount::kOne, "With law = \"hertz\".", kHertz, open<&SceneDesc::hertz>},
+    {"contact.tip", TableCount::kOne, "With law = \"tool\".", kTip, open<&SceneDesc::tip>},
+    {"contact.layer", TableCount::kOne, "With law = \"tool\": exact response of a thin body.", kLayer,
+     open<&SceneDesc::layer>},
+    {"contact.series", TableCount::kOne, "With law = \"tool\": the body's own give, travel = tip's + c0 F + c1 F^2.",
+     kSeries, open<&SceneDesc::series>},
+    {"contact.pair", TableCount::kList,
+     "With law = \"tool\": how two tips lean on one another; other pairs use the far field.", kPair, open_pair},
+    {"contact.table", TableCount::kOne, "With law = \"table\": presses, measured or computed.", kTable,
+     open<&SceneDesc::table>},
+    {"contact.nodal", TableCount::kOne, "With backend = \"nodal\".", kNodal, open<&SceneDesc::nodal>},
+    {"friction", TableCount::kOne, "Friction per contact region.", kFriction, open<&SceneDesc::friction>},
+    {"shape", TableCount::kOne, "How the deformed surface is drawn. No effect on forces.", kShape,
+     open<&SceneDesc::shape>},
+    {"coupling", TableCount::kOne, "Several contact regions at once.", kCoupling, open<&SceneDesc::coupling>},
+    {"tool.piece", TableCount::kList, "The rigid tool: convex pieces, at least one with points.", kPiece, open_piece},
+    {"hand", TableCount::kOne, "Makes the tool a human hand of 21 joints; there are no tool pieces then.", kHand,
+     open_hand},
+    {"gripper", TableCount::kOne,
+     "Makes the tool a gripper: pieces with slide_mm move by the closing of path or device.", kGripper, open_gripper},
+    {"device", TableCount::kOne, "The haptic device: what it admits and where it must be stopped.", kDevice,
      open<&SceneDesc::device>},
-    {"path", false, "What the simulated hand does in the demonstration. Not stored in the image.", kPath,
+    {"path", TableCount::kOne, "What the simulated hand does in the demonstration. Not stored in the image.", kPath,
      open<&SceneDesc::path>},
-    {"path.point", true, "Points of the path, joined smoothly in time.", kPathPoint, open_point},
+    {"path.point", TableCount::kList, "Points of the path, joined smoothly in time.", kPathPoint, open_point},
 };
 
 }  // namespace

@@ -24,9 +24,15 @@ struct KeySpec {
   std::int32_t (*get_choice)(const void* table);
 };
 
+enum class TableCount {
+  kOne,
+  kList,       // [[tool.piece]]
+  kOneOrList,  // [body.fixed] or [[body.fixed]]
+};
+
 struct TableSpec {
-  const char* name;  // "" is the top level; "tool.piece" and "path.point" are arrays of tables
-  bool is_array;
+  const char* name;  // "" is the top level
+  TableCount count;
   const char* meaning;
   std::span<const KeySpec> keys;
   void* (*open)(SceneDesc& scene);  // the table's struct; a new element for arrays
@@ -36,6 +42,8 @@ std::span<const TableSpec> scene_schema();
 
 // Number in the key's unit, shortest text that reads back the same.
 std::string number_text(double value);
+// "(1.2, 0, -35.01) mm", rounded to a hundredth.
+std::string position_text(Vec3 p_m);
 // "0.001 to 1000 mm", "one of a, b, c", ...
 std::string allowed_text(const KeySpec& key);
 

@@ -1,5 +1,6 @@
 // Text made from the schema: ranges for error messages, tables for docs/scene_format.md.
 #include <charconv>
+#include <cmath>
 
 #include "config/body/body_card.h"
 #include "config/scene/schema.h"
@@ -11,6 +12,11 @@ std::string number_text(double value) {
   char text[32];
   const auto end = std::to_chars(text, text + sizeof text, value).ptr;
   return std::string(text, end);
+}
+
+std::string position_text(Vec3 p_m) {
+  const auto mm = [](double x_m) { return number_text(std::round(1e5 * x_m) / 100 + 0.0); };
+  return "(" + mm(p_m.x) + ", " + mm(p_m.y) + ", " + mm(p_m.z) + ") mm";
 }
 
 namespace {
@@ -166,7 +172,9 @@ std::string schema_markdown() {
     SceneDesc defaults;
     void* fields = table.open(defaults);
     const std::string name = table.name;
-    text += name.empty() ? "### Top level\n" : table.is_array ? "### `[[" + name + "]]`\n" : "### `[" + name + "]`\n";
+    text += name.empty()                       ? "### Top level\n"
+            : table.count == TableCount::kList ? "### `[[" + name + "]]`\n"
+                                               : "### `[" + name + "]`\n";
     text += std::string(table.meaning) + "\n\n| key | default | allowed | meaning |\n|---|---|---|---|\n";
     for (const KeySpec& key : table.keys)
       text += "| `" + std::string(key.key) + "` | " + default_text(key, fields) + " | " + allowed_text(key) + " | " +

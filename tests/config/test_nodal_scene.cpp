@@ -63,7 +63,7 @@ const Mistake kMistakes[] = {
     {"zone_inside_out", "[body.fem]\norder = \"mixed\"\nzone_from_mm = [-5, 25, -5]\nzone_to_mm = [5, 15, 5]\n",
      "s.toml:16: body.fem.zone_to_mm", "exchange"},
     {"zone_nowhere", "[body.fem]\norder = \"mixed\"\nzone_from_mm = [-5, 25, -5]\nzone_to_mm = [5, 35, 5]\n",
-     "s.toml:15: body.fem.zone_from_mm", "from (-10, 0, -10) to (10, 20, 10) mm"},
+     "s.toml:15: body.fem.zone_from_mm", "from (-10, 0, -10) mm to (10, 20, 10) mm"},
     {"zone_within_an_element",
      "[body.fem]\norder = \"mixed\"\nedge_mm = 5\nzone_from_mm = [1, 16, 1]\nzone_to_mm = [2, 17, 2]\n",
      "s.toml:16: body.fem.zone_from_mm", "larger than an element"},
