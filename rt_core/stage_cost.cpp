@@ -80,6 +80,19 @@ double least_stage_cost(const Model& model, Stage stage) noexcept {
   return counted_instructions(work, stage);
 }
 
+bool is_beyond_stated(const Model& model, const Work& work) PALPATE_RT {
+  double sum[kStageCount];
+  for (int i = 0; i < kStageCount; ++i) sum[i] = kStageInstructions[i];  // bound: kStageCount
+#define PALPATE_UNIT(unit, of_stage, price, what) \
+  sum[static_cast<int>(Stage::of_stage)] += price * static_cast<double>(work.unit);
+  PALPATE_WORK_UNITS(PALPATE_UNIT)
+#undef PALPATE_UNIT
+  bool beyond = false;
+  for (std::size_t i = 0; i < model.stage_cost.size() && i < std::size_t{kStageCount}; ++i)  // bound: kStageCount
+    beyond = beyond || sum[i] > model.stage_cost[i].instructions;
+  return beyond;
+}
+
 double worst_tick_instructions(const Model& model) noexcept {
   double sum = 0;
   for (const StageCost& stage : model.stage_cost) sum += stage.instructions;

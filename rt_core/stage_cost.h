@@ -37,6 +37,10 @@ double least_stage_cost(const Model& model, Stage stage) noexcept;
 void add_most_points(const Model& model, const SceneSizes& n, Work& work) noexcept;
 void add_most_regions(const SceneSizes& n, std::int32_t steps, Work& work) noexcept;
 
+// Whether a stage counted more than the image states for it: the statement, by which the controller judged whether the
+// scene fits its period, is wrong. Bound: kStageCount.
+bool is_beyond_stated(const Model& model, const Work& work) PALPATE_RT;
+
 // Sum over the stages that the image states.
 double worst_tick_instructions(const Model& model) noexcept;
 

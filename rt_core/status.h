@@ -47,7 +47,9 @@ namespace palpate {
     "move the handle out of the body, then arm again")                                                                 \
   X(kPointsHeld, 20,                                                                                                   \
     "a tick's share of surface work was spent; the other tool points keep their last place of contact",                \
-    "fewer tool points (tool.piece.points), or a mesh without fans of thin triangles")
+    "fewer tool points (tool.piece.points), or a mesh without fans of thin triangles")                                 \
+  X(kWorkBeyondStated, 21, "a stage counted more work than the image states for its worst tick",                       \
+    "bake the scene again; with the same result, report it with the recording")
 
 // X(name, bit, cause, remedy)
 #define PALPATE_FAULT_BITS(X)                                                                                        \

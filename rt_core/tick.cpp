@@ -1,6 +1,7 @@
 #include "rt_core/tick.h"
 
 #include "rt_core/float_mode.h"
+#include "rt_core/stage_cost.h"
 
 namespace palpate {
 
@@ -32,6 +33,7 @@ void tick(const Model& model, State& state, Scratch& scratch, const Input& input
   probe.passed(Stage::kArticulate);
   contact(model, state, scratch, probe);
   make_safe(model, state, scratch, input, output);
+  if (is_beyond_stated(model, scratch.work)) scratch.status |= Status::kWorkBeyondStated;
   probe.passed(Stage::kSafety);
   publish(state, scratch, output);
   probe.passed(Stage::kPublish);

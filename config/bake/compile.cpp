@@ -344,7 +344,7 @@ class Compiler {
 
   // The coupling a scene states, refused above the bound; or its share of the bound.
   double coupling(double stated, const StiffnessBound& bound, double lowest, const char* key, const char* unit) const {
-    const std::string reason = bound.by_damping ? "2b / (T + 2 tau)" : "2 f_c / Delta";
+    const std::string reason = reason_of(bound);
     const double value = is_auto(stated) ? kCouplingShare * bound.value : stated;
     if (!(value <= bound.value))
       fail(key, number_text(stated) + " " + unit + " is above what the device admits, " + number_text(bound.value) +

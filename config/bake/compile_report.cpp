@@ -45,8 +45,6 @@ void size_lines(std::string& text, const CompileReport& r) {
   text += "image      " + parts + '\n';
 }
 
-const char* reason(const StiffnessBound& bound) { return bound.by_damping ? "2b / (T + 2 tau)" : "2 f_c / Delta"; }
-
 }  // namespace
 
 std::string report_text(const CompileReport& r) {
@@ -85,7 +83,7 @@ std::string report_text(const CompileReport& r) {
     line(text, "           smooth surface up to %.4g um from its facets", 1e6 * r.response.slack_m);
   line(text, "friction   K = %.6g N^(1-beta), sliding coefficient %.4g", r.friction.k_N, r.friction.mu_dynamic);
   line(text, "coupling   %.5g N/m of %.5g admitted (%s); %.4g N m/rad of %.4g (%s)", r.coupling_N_per_m, r.bound.value,
-       reason(r.bound), r.coupling_Nm_per_rad, r.rotational_bound.value, reason(r.rotational_bound));
+       reason_of(r.bound), r.coupling_Nm_per_rad, r.rotational_bound.value, reason_of(r.rotational_bound));
   line(text, "tool       %d points in %d pieces", r.tool_points, static_cast<int>(r.gap_m.size()));
   for (std::size_t i = 0; i < r.gap_m.size(); ++i)
     line(text, "           piece %d: surface at most %.2f mm from its points' spheres", static_cast<int>(i),

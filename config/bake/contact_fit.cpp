@@ -77,12 +77,4 @@ FrictionCoefficients friction_coefficients(const FrictionDesc& friction) {
   return c;
 }
 
-StiffnessBound admissible_stiffness(double damping, double friction, double encoder_step, double period_s,
-                                    double delay_s) {
-  const double by_damping = 2 * damping / (period_s + 2 * delay_s);
-  // A device without quantisation needs no friction; one with neither is bounded by its damping alone.
-  const double by_friction = encoder_step > 0 ? 2 * friction / encoder_step : kHuge;
-  return {std::min(by_damping, by_friction), by_damping <= by_friction};
-}
-
 }  // namespace palpate

@@ -39,15 +39,6 @@ struct FrictionCoefficients {
 };
 FrictionCoefficients friction_coefficients(const FrictionDesc& friction);
 
-// Stiffest spring a sampled device keeps passive: min(2b / (T + 2 tau), 2 f_c / Delta): viscous damping against
-// sampling and delay (Colgate & Brown 1994), Coulomb friction against the encoder's step (Abbott & Okamura 2005).
-struct StiffnessBound {
-  double value = 0;
-  bool by_damping = true;  // which of the two is smaller
-};
-StiffnessBound admissible_stiffness(double damping, double friction, double encoder_step, double period_s,
-                                    double delay_s);
-
 // Share of the bound used when a scene says "auto": the bound assumes exact device data.
 inline constexpr double kCouplingShare = 0.8;
 

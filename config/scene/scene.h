@@ -11,6 +11,7 @@
 #include "config/body/procedural.h"
 #include "config/response/layer_contact.h"
 #include "config/scene/choices.h"
+#include "rt_core/device_profile.h"
 #include "rt_core/model.h"
 
 namespace palpate {
@@ -203,17 +204,9 @@ struct GripperDesc {
 struct DeviceDesc {
   std::string name = "sim-6dof";
   double period_s = 1e-3;
-  double mass_kg = 0.1;
-  double inertia_kg_m2 = 1e-4;
-  double damping_Ns_per_m = 2.5;
-  double damping_Nms_per_rad = 1e-3;
-  double friction_N = 0.06;
-  double friction_Nm = 5e-4;
-  double encoder_step_m = 3e-5;
-  double encoder_step_rad = 1e-3;
-  double delay_s = 5e-4;
-  double force_max_N = 8.5;
-  double torque_max_Nm = 0.188;
+#define PALPATE_KEY(member, key, value, lowest, highest, scale, meaning) double member = value;
+  PALPATE_PROFILE_KEYS(PALPATE_KEY)
+#undef PALPATE_KEY
   double force_rate_max_N_per_s = kAuto;
   double coupling_N_per_m = kAuto;
   double coupling_Nm_per_rad = kAuto;

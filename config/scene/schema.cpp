@@ -360,21 +360,13 @@ const KeySpec kGripper[] = {
 const KeySpec kDevice[] = {
     text<&DeviceDesc::name>("name", 63, "name of the device"),
     number<&DeviceDesc::period_s>("period_ms", 0.01, 100, kMilli, "tick period T"),
-    number<&DeviceDesc::mass_kg>("mass_kg", 1e-3, 100, 1, "moving mass at the handle"),
-    number<&DeviceDesc::inertia_kg_m2>("inertia_kg_m2", 1e-8, 10, 1, "moving inertia at the handle"),
-    number<&DeviceDesc::damping_Ns_per_m>("damping_Ns_per_m", 0, 1000, 1, "physical damping b"),
-    number<&DeviceDesc::damping_Nms_per_rad>("damping_Nms_per_rad", 0, 10, 1, "physical rotational damping"),
-    number<&DeviceDesc::friction_N>("friction_N", 0, 100, 1, "Coulomb friction f_c"),
-    number<&DeviceDesc::friction_Nm>("friction_Nm", 0, 10, 1, "rotational Coulomb friction"),
-    number<&DeviceDesc::encoder_step_m>("encoder_step_mm", 0, 10, kMilli, "position resolution Delta"),
-    number<&DeviceDesc::encoder_step_rad>("encoder_step_rad", 0, 1, 1, "angular resolution"),
-    number<&DeviceDesc::delay_s>("delay_ms", 0, 100, kMilli, "delay tau from sample to force, beyond the tick"),
-    number<&DeviceDesc::force_max_N>("force_max_N", 0.01, kWireForceMax_N, 1,
-                                     "largest force commanded; the highest is what a command can carry"),
-    number<&DeviceDesc::torque_max_Nm>("torque_max_Nm", 0, kWireTorqueMax_Nm, 1, "largest torque commanded; the same"),
-    number_or_auto<&DeviceDesc::force_rate_max_N_per_s>(
-        "force_rate_max_N_per_s", 1, 1e7, 1,
-        "fault limiter of the force change; auto: force_max_N in 5 ms. In no tick more than 10 % of force_max_N"),
+#define PALPATE_KEY(member, key, value, lowest, highest, scale, meaning) \
+  number<&DeviceDesc::member>(key, lowest, highest, scale, meaning),
+    PALPATE_PROFILE_KEYS(PALPATE_KEY)
+#undef PALPATE_KEY
+        number_or_auto<&DeviceDesc::force_rate_max_N_per_s>(
+            "force_rate_max_N_per_s", 1, 1e7, 1,
+            "fault limiter of the force change; auto: force_max_N in 5 ms. In no tick more than 10 % of force_max_N"),
     number_or_auto<&DeviceDesc::coupling_N_per_m>(
         "coupling_N_per_m", 1, 1e6, 1,
         "virtual coupling; auto: 0.8 of what the device admits, min(2b / (T + 2 tau), 2 f_c / Delta)"),

@@ -3,7 +3,9 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <stdexcept>
 
+#include "hal/device/device_profile.h"
 #include "sim_host/bake/explain.h"
 #include "sim_host/bake/scene_model.h"
 #include "sim_host/cli.h"
@@ -15,13 +17,21 @@ namespace {
 struct ExplainOptions {
   std::string scene;
   SceneOverlays overlays;
+  std::string profile;
 };
 
 int run_explain(const ExplainOptions& options) {
   const SceneModel scene(options.scene, options.overlays);
   const std::int32_t budget = scene.scene() ? scene.scene()->budget_instructions : 0;
   fmt::print("{}", explain(scene.model(), budget));
-  return kExitOk;
+  if (options.profile.empty()) return kExitOk;
+  DeviceProfile profile;
+  const std::string refusal = refuse_profile(false, "", options.profile, scene.model().params, &profile);
+  if (!profile.name.empty()) fmt::print("device  {}\n", profile_text(profile, scene.model().params));
+  if (refusal.empty()) return kExitOk;
+  if (profile.name.empty()) throw std::runtime_error(refusal);
+  fmt::print("{}\n", refusal);
+  return kExitFailed;
 }
 
 }  // namespace
@@ -34,6 +44,9 @@ void add_explain_command(CLI::App& app, int& exit_code) {
   command->add_option("--with", options->overlays.file,
                       "lay a file with some of the scene's tables over it; repeatable");
   command->add_option("--set", options->overlays.setting, "KEY=VALUE: set one key of the scene; repeatable");
+  command->add_option(
+      "--profile", options->profile,
+      "a device's profile (config/devices/*.toml): what the scene asks of it; exits with 1 when too much");
   command->footer(
       "Arrays that hold nothing are left out. What is baked but read by nobody does not pass the project's tests.\n"
       "Examples:\n"

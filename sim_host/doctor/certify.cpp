@@ -72,6 +72,7 @@ RunOptions run_options(const CertifyOptions& options, const TemporaryFolder& fol
   }
   run.image = folder.file("certify.pal");
   run.device = options.device;
+  run.profile = options.profile;
   run.duration_s = options.duration_s;
   run.record.clear();
   run.path = options.path;

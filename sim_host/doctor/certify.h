@@ -23,6 +23,7 @@ struct CertifyOptions {
   std::string scene;                // .toml or .pal; empty: a ball pressed and stroked, built in
   std::string path;                 // CSV of the simulated hand; empty: the scene's own, repeated
   std::string device = "loopback";  // as for palpate run
+  std::string profile;              // of the device, as for palpate run
   int cpu = -1, priority = 80;
   bool host_load = false;  // load made here; otherwise the load is the user's
   CertifyLimits limits;

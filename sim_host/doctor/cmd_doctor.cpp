@@ -10,7 +10,7 @@ namespace palpate {
 namespace {
 
 struct Options {
-  std::string device = "loopback";
+  std::string device = "loopback", profile;
   int cpu = -1;
   int priority = 80;
 };
@@ -36,13 +36,14 @@ void add_doctor_command(CLI::App& app, int& exit_code) {
       ->add_option("--device", options->device,
                    "device address: loopback, can:IFACE, usb:/dev/hidrawN, with ,classic and ,node=N")
       ->capture_default_str();
+  command->add_option("--profile", options->profile, "the device's profile (config/devices/*.toml)");
   command->add_option("--cpu", options->cpu, "CPU the controller will run on");
   command->add_option("--priority", options->priority, "SCHED_FIFO priority of the loop")
       ->capture_default_str()
       ->check(CLI::Range(1, 98));
   command->footer(
       "Exits with 1 when an item fails; unknown ones do not count.\n"
-      "Examples:\n  palpate doctor\n  palpate doctor --device can:can0 --cpu 3");
+      "Examples:\n  palpate doctor\n  palpate doctor --device can:can0 --profile arm.toml --cpu 3");
   command->callback([options, &exit_code] {
     DoctorSources sources = this_machine();
     sources.cpu = options->cpu;
@@ -50,6 +51,8 @@ void add_doctor_command(CLI::App& app, int& exit_code) {
     std::vector<DoctorItem> items = examine_machine(sources);
     const std::vector<DoctorItem> device = examine_device(sources, options->device);
     items.insert(items.end(), device.begin(), device.end());
+    const std::vector<DoctorItem> profile = examine_profile(options->device, options->profile);
+    items.insert(items.end(), profile.begin(), profile.end());
     const std::vector<DoctorItem> heard = listen_to_device(options->device);
     items.insert(items.end(), heard.begin(), heard.end());
     fmt::print("{}", doctor_table(items));

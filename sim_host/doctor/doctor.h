@@ -30,6 +30,8 @@ struct DoctorSources {
 std::vector<DoctorItem> examine_machine(const DoctorSources& sources);
 // The device's bus. `device` is an address as `palpate run --device` takes it (can:IFACE, usb:/dev/hidrawN, loopback).
 std::vector<DoctorItem> examine_device(const DoctorSources& sources, const std::string& device);
+// The device's profile, without which nothing real is driven. No item for a simulated device without one.
+std::vector<DoctorItem> examine_profile(const std::string& device, const std::string& profile);
 // What the device itself sends, listened to for a second without a word to it. The simulated one of a run of its own
 // ("loopback" without a name) has nothing to listen to: no items.
 std::vector<DoctorItem> listen_to_device(const std::string& device);

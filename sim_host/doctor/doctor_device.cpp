@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 #include "hal/bus/device_address.h"
+#include "hal/device/device_profile.h"
 #include "sim_host/doctor/doctor.h"
 #include "sim_host/doctor/doctor_files.h"
 
@@ -107,6 +108,27 @@ std::vector<DoctorItem> examine_device(const DoctorSources& s, const std::string
   if (address->kind == TransportKind::kCan) return examine_can(s, address->name, address->profile);
   if (address->kind == TransportKind::kUsb) return examine_usb(s, address->name);
   return {judged("device " + device, true, "simulated: nothing to check on a bus", "")};
+}
+
+std::vector<DoctorItem> examine_profile(const std::string& device, const std::string& profile) {
+  std::string line, error;
+  const std::optional<DeviceAddress> address = parse_device_address(device, line, error);
+  const bool real = address && address->kind != TransportKind::kLoopback;
+  if (profile.empty() && !real) return {};
+  if (profile.empty())
+    return {judged("device profile", false, "none given",
+                   "--profile FILE: copy config/devices/example-can.toml and put in "
+                   "the device's numbers (docs/devices.md)")};
+  const std::optional<DeviceProfile> found = read_device_profile(profile, error);
+  if (!found) return {judged("device profile", false, error, "docs/devices.md says what a profile holds")};
+  constexpr double kUsualPeriod_s = 1e-3;
+  const double admitted = admissible_stiffness(found->damping_Ns_per_m, found->friction_N, found->encoder_step_m,
+                                               kUsualPeriod_s, found->delay_s)
+                              .value;
+  return {judged("device profile", true,
+                 fmt::format("{}: {:.4g} N, {:.4g} N m, admits {:.4g} N/m at 1 kHz", found->name, found->force_max_N,
+                             found->torque_max_Nm, admitted),
+                 "")};
 }
 
 std::string failing_items(const std::vector<DoctorItem>& items) {

@@ -165,6 +165,8 @@ void add_certify_options(CLI::App& command, LatencyOptions& options, CLI::Option
   command.add_option("--device", c.device, "device to certify with: loopback (simulated), can:IFACE, usb:/dev/hidrawN")
       ->capture_default_str()
       ->needs(certify);
+  command.add_option("--profile", c.profile, "of that device, as for palpate run; needed on can: and usb:")
+      ->needs(certify);
   command.add_option("--load", options.load, "load made meanwhile: none, or host (memory copies, system calls, files)")
       ->capture_default_str()
       ->check(CLI::IsMember({"none", "host"}))

@@ -104,6 +104,9 @@ void add_run_command(CLI::App& app, int& exit_code) {
       ->add_option("--device", options->device,
                    "auto, loopback (simulated device and hand), can:IFACE or usb:/dev/hidrawN")
       ->capture_default_str();
+  command->add_option("--profile", options->profile,
+                      "what the device can do (config/devices/*.toml; docs/devices.md): needed on can: and usb:; the "
+                      "simulated device of a .toml scene becomes like it");
   command->add_option("--duration", options->duration_s, "seconds")
       ->capture_default_str()
       ->check(CLI::Range(0.1, 86400.0));
@@ -139,7 +142,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command->add_option("--worst", settings->worst, "how many of the worst ticks to list at the end, with their parts")
       ->capture_default_str()
       ->check(CLI::Range(0, static_cast<int>(kWorstTicksKept)));
-  add_allow_option(*command, settings->limits, {"stale", "unconverged", "clamped", "armed", "lost"});
+  add_allow_option(*command, settings->limits, {"stale", "unconverged", "clamped", "armed", "lost", "work"});
   command->add_flag("--no-black-box", settings->no_black_box,
                     "do not write the last seconds (RECORD.fault-N.plr and .log) when a fault latches");
   command->footer(
@@ -151,7 +154,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
       "it, in RECORD.fault-1.log (candump -L format: canplayer vcan0=palpate0 -I RECORD.fault-1.log).\n"
       "Examples:\n"
       "  palpate run config/scenes/ellipsoid_mallet.toml --duration 10 --record run.plr\n"
-      "  palpate run mallet.pal --device can:can0 --cpu 3 --priority 80 --no-record\n"
+      "  palpate run mallet.pal --device can:can0 --profile arm.toml --cpu 3 --priority 80 --no-record\n"
       "  palpate run mallet.pal --path hand.csv --live --worst 16\n"
       "  palpate run config/scenes/grasp_cylinder_5.toml --close 0.7 --joint index_tip_flexion=20");
   command->callback([settings, &exit_code] { exit_code = run(*settings); });

@@ -14,6 +14,7 @@
 #include "hal/bus/device_address.h"
 #include "hal/bus/link_report.h"
 #include "hal/bus/loopback.h"
+#include "hal/device/device_profile.h"
 #include "hal/loop/lockstep.h"
 #include "hal/loop/loop.h"
 #include "hal/system/device_lock.h"
@@ -46,6 +47,7 @@ constexpr char kHelp[] =
     "  --image FILE        baked scene (palpate bake)\n"
     "  --device ADDRESS    auto, can:IFACE, usb:/dev/hidrawN or loopback[:NAME], each with optional ,classic and "
     ",node=N\n"
+    "  --profile FILE      what the device can do (config/devices/*.toml); needed on can: and usb:\n"
     "  --device-fd N       use the inherited socket N instead of opening the loopback\n"
     "  --control-fd N      inherited Unix socket to the host: telemetry and commands; default: none; then\n"
     "                      SIGUSR1 arms: an operator's act, never by itself\n"
@@ -59,14 +61,14 @@ constexpr char kHelp[] =
     "time\n"
     "Exit codes: 0 done, 2 bad arguments or image, 3 device, host or memory unavailable, 4 the device sent nothing at\n"
     "            start, 5 a fault was latched. In every case the last commands sent are zero force, drives off.\n"
-    "Example: palpate-rt --image mallet.pal --device can:can0 --cpu 3 --duration 60\n";
+    "Example: palpate-rt --image mallet.pal --device can:can0 --profile arm.toml --cpu 3 --duration 60\n";
 
 constexpr int kSocketTimeout_ms = 2000;
 constexpr double kHostSilence_s = 2.0;  // forty heartbeats; see host_port.h
 constexpr double kStartTimeout_s = 3.0;
 
 struct Arguments {
-  std::string image, device = "auto", crash_file;
+  std::string image, device = "auto", profile, crash_file;
   int device_fd = -1, control_fd = -1, cpu = -1, priority = 80;
   int device_turn_fd = -1, host_turn_fd = -1;
   bool require_rt = false, allow_no_rt = false;
@@ -89,18 +91,21 @@ double number(const char* option, const char* text, double lowest, double highes
 
 Arguments parse(int argc, char** argv) {
   Arguments arguments;
-  const option options[] = {
-      {"image", 1, nullptr, 'i'},          {"device", 1, nullptr, 'd'},       {"device-fd", 1, nullptr, 'f'},
-      {"control-fd", 1, nullptr, 'c'},     {"duration", 1, nullptr, 's'},     {"cpu", 1, nullptr, 'u'},
-      {"priority", 1, nullptr, 'p'},       {"help", 0, nullptr, 'h'},         {"version", 0, nullptr, 'v'},
-      {"device-turn-fd", 1, nullptr, 'D'}, {"host-turn-fd", 1, nullptr, 'H'}, {"crash-file", 1, nullptr, 'x'},
-      {"require-rt", 0, nullptr, 'q'},     {"allow-no-rt", 0, nullptr, 'a'},  {nullptr, 0, nullptr, 0}};
+  const option options[] = {{"image", 1, nullptr, 'i'},        {"device", 1, nullptr, 'd'},
+                            {"device-fd", 1, nullptr, 'f'},    {"control-fd", 1, nullptr, 'c'},
+                            {"duration", 1, nullptr, 's'},     {"cpu", 1, nullptr, 'u'},
+                            {"priority", 1, nullptr, 'p'},     {"help", 0, nullptr, 'h'},
+                            {"version", 0, nullptr, 'v'},      {"device-turn-fd", 1, nullptr, 'D'},
+                            {"host-turn-fd", 1, nullptr, 'H'}, {"crash-file", 1, nullptr, 'x'},
+                            {"require-rt", 0, nullptr, 'q'},   {"allow-no-rt", 0, nullptr, 'a'},
+                            {"profile", 1, nullptr, 'P'},      {nullptr, 0, nullptr, 0}};
   const auto integer = [](const char* name, double low, double high) {
     return static_cast<int>(number(name, optarg, low, high));
   };
   for (int c; (c = getopt_long(argc, argv, "", options, nullptr)) != -1;) {
     if (c == 'i') arguments.image = optarg;
     if (c == 'd') arguments.device = optarg;
+    if (c == 'P') arguments.profile = optarg;
     if (c == 'x') arguments.crash_file = optarg;
     if (c == 'f') arguments.device_fd = integer("--device-fd", 0, 1 << 20);
     if (c == 'c') arguments.control_fd = integer("--control-fd", 0, 1 << 20);
@@ -165,14 +170,24 @@ void check_bus(const DeviceAddress& address, double period_s) {
   if (!verdict.fits) throw Failure{kUnavailable, "the bus cannot carry this traffic in every period"};
 }
 
-std::unique_ptr<Transport> connect_device(const Arguments& arguments, double period_s, DeviceAddress& address,
+// Nothing is driven that the scene could overstrain, and nothing real of which that is not known.
+void check_profile(const Arguments& arguments, const DeviceAddress& address, const ModelParams& scene) {
+  DeviceProfile profile;
+  const bool real = address.kind != TransportKind::kLoopback;
+  const std::string refusal = refuse_profile(real, arguments.device, arguments.profile, scene, &profile);
+  if (!refusal.empty()) throw Failure{kUsage, refusal};
+  if (!arguments.profile.empty()) std::fprintf(stderr, "profile %s\n", profile_text(profile, scene).c_str());
+}
+
+std::unique_ptr<Transport> connect_device(const Arguments& arguments, const ModelParams& scene, DeviceAddress& address,
                                           DeviceLock& lock) {
   std::string line, error;
   const std::optional<DeviceAddress> parsed = parse_device_address(arguments.device, line, error);
   if (!parsed) throw Failure{kUsage, error};
   address = *parsed;
   std::fprintf(stderr, "%s\n", line.c_str());
-  check_bus(address, period_s);
+  check_profile(arguments, address, scene);
+  check_bus(address, scene.period_s);
   // A real device has one controller at a time.
   if (const std::string name = lock_name(address); !name.empty()) {
     lock = DeviceLock::take(name, error);
@@ -364,7 +379,7 @@ int run(int argc, char** argv) {
   if (arguments.control_fd >= 0) connect_host(arguments, model, host);
   DeviceAddress address;
   DeviceLock lock;
-  const std::unique_ptr<Transport> transport = connect_device(arguments, model.params.period_s, address, lock);
+  const std::unique_ptr<Transport> transport = connect_device(arguments, model.params, address, lock);
   DeviceBus bus(*transport, address.profile, address.node);
   const bool real = address.kind != TransportKind::kLoopback;
   arguments.require_rt = (arguments.require_rt || real) && !arguments.allow_no_rt && !arguments.virtual_time();

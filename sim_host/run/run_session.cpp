@@ -13,6 +13,7 @@
 
 #include "hal/bus/bus_budget.h"
 #include "hal/bus/device_address.h"
+#include "hal/device/device_profile.h"
 #include "sim_host/bake/image_file.h"
 #include "sim_host/bake/scene_image.h"
 #include "sim_host/exit_codes.h"
@@ -72,6 +73,7 @@ std::vector<std::string> controller_arguments(const RunOptions& options, const s
   if (!options.record.empty()) arguments.insert(arguments.end(), {"--crash-file", crash_path(options.record)});
   if (options.cpu >= 0) arguments.insert(arguments.end(), {"--cpu", std::to_string(options.cpu)});
   if (options.allow_no_rt) arguments.emplace_back("--allow-no-rt");
+  if (!options.profile.empty()) arguments.insert(arguments.end(), {"--profile", options.profile});
   if (device_inherited) {
     arguments.insert(arguments.end(), {"--device-fd", std::to_string(ControllerLink::kDeviceDescriptor)});
   }
@@ -104,6 +106,20 @@ void check_bus(const DeviceAddress& address, double period_s) {
   if (verdict.fits) return;
   throw std::runtime_error(
       fmt::format("{} cannot carry this scene's traffic in every period:\n{}", address.name, verdict.text));
+}
+
+// The controller refuses the same; here it is said before a scene is baked, and the simulated device becomes the one
+// that the profile describes.
+void check_profile(const RunOptions& options, const DeviceAddress& address, const ModelParams& params,
+                   SceneImage& scene) {
+  DeviceProfile profile;
+  const bool real = address.kind != TransportKind::kLoopback;
+  const std::string refusal = refuse_profile(real, options.device, options.profile, params, &profile);
+  if (!refusal.empty()) throw std::runtime_error(refusal);
+  if (options.profile.empty() || !scene.scene) return;
+#define PALPATE_KEY(member, key, value, lowest, highest, scale, meaning) scene.scene->device.member = profile.member;
+  PALPATE_PROFILE_KEYS(PALPATE_KEY)
+#undef PALPATE_KEY
 }
 
 // The motion over and over, with a second to return to its first pose, until `duration_s` is over.
@@ -328,6 +344,8 @@ bool runs_in_virtual_time(const RunOptions& options) {
 RunResult run_session(const RunOptions& options) {
   const StopSignals signals;
   const DeviceAddress address = device_address(options.device);
+  if (options.profile.empty() && address.kind != TransportKind::kLoopback)
+    throw std::runtime_error(refuse_profile(true, options.device, "", {}));
   // First of all: a name that is taken is no reason to bake, let alone to move anything.
   std::optional<PartFile> record;
   if (!options.record.empty()) {
@@ -335,6 +353,7 @@ RunResult run_session(const RunOptions& options) {
   }
   SceneImage scene = prepare_scene(options.scene, options.image, options.record);
   const ImageFile image(scene.image_path);
+  check_profile(options, address, image.model().params, scene);
   check_bus(address, image.model().params.period_s);
   if (record) require_space(options.record, recording_bytes(options.duration_s, image));
   std::vector<TimedJoints> scripted;

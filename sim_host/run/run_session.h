@@ -19,6 +19,7 @@ enum class RunTime { kAutomatic, kReal, kVirtual };
 struct RunOptions {
   std::string scene;            // .toml or .pal
   std::string device = "auto";  // auto, loopback, can:IFACE
+  std::string profile;          // of the device (hal/device/device_profile.h); needed on can: and usb:
   RunTime time = RunTime::kAutomatic;
   bool pace = false;  // virtual time no faster than real time
   double duration_s = 10;

@@ -23,6 +23,7 @@ double& limit_named(VerdictLimits& limits, const std::string& name) {
   if (name == "stale") return limits.stale;
   if (name == "unconverged") return limits.unconverged;
   if (name == "clamped") return limits.clamped;
+  if (name == "work") return limits.work;
   return limits.lost;
 }
 
@@ -64,6 +65,8 @@ std::vector<RunVerdict> judge(const RunSummary& summary, const RunFacts& facts, 
                       "of rendered ticks were cut to the device's limit"});
   verdicts.push_back(
       {"lost", share(facts.lost, summary.ticks + facts.lost), limits.lost, false, "of ticks are not in the recording"});
+  verdicts.push_back({"work", share(summary.status_ticks[std::countr_zero(Status::kWorkBeyondStated)], summary.ticks),
+                      limits.work, false, "of ticks did more work than the image states"});
   return verdicts;
 }
 

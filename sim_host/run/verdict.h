@@ -20,6 +20,7 @@ struct VerdictLimits {
   double unconverged = 0.01;
   double clamped = 0.1;
   double lost = 0;
+  double work = 0;
 };
 
 struct RunVerdict {

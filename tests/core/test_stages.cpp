@@ -71,5 +71,32 @@ TEST(Stages, TheProbeIsToldOfEachOnceInOrder) {
   EXPECT_EQ(seen, kStageCount);
 }
 
+// An image that states less for a stage than it takes, yet enough for the loader, shows in the tick that finds it out.
+TEST(Stages, WorkBeyondWhatTheImageStatesIsSaid) {
+  for (const bool honest : {true, false}) {
+    ImageBytes image = tiny_image();
+    Model model;
+    ASSERT_EQ(open_image(image.bytes(), model).error, ImageError::kNone);
+    if (!honest) {
+      constexpr Stage kStage = Stage::kFindRows;
+      image.array<StageCost>(k_stage_cost)[static_cast<int>(kStage)] = {least_stage_cost(model, kStage)};
+      image.seal();
+      ASSERT_EQ(open_image(image.bytes(), model).error, ImageError::kNone);
+    }
+    StatePtr state = make_state(model);
+    ScratchPtr scratch = make_scratch(model);
+    Input input;
+    input.drive = Drive::kTool;
+    Output output;
+    std::uint32_t seen = 0;
+    for (int i = 0; i < 100; ++i) {
+      input.pose_w.position_m = model.vertex_m[0] * (2 - 0.01 * i);
+      tick(model, *state, *scratch, input, output);
+      seen |= output.status;
+    }
+    EXPECT_EQ((seen & Status::kWorkBeyondStated) != 0, !honest);
+  }
+}
+
 }  // namespace
 }  // namespace palpate::test

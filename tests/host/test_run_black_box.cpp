@@ -64,6 +64,7 @@ TEST_F(RunBlackBox, AKilledControllerLeavesItsLastSecondsEvenWithoutARecording) 
 
 TEST_F(RunBlackBox, ABusThatCannotCarryTheSceneIsRefusedWithTheTable) {
   std::ofstream(options_.scene, std::ios::app) << "[device]\nperiod_ms = 0.5\n";
+  options_.profile = std::string(PALPATE_SOURCE_DIR) + "/config/devices/sim-6dof.toml";
   const auto error_of = [&](const char* device) {
     options_.device = device;
     try {

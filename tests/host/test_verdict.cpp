@@ -99,6 +99,15 @@ TEST(Verdict, UnconvergedFailsAboveOnePercent) {
   EXPECT_FALSE(judge_unconverged(11, 1000, {}).ok());
 }
 
+// An image that states too little for its worst tick is not to be trusted with the period: one tick is enough.
+TEST(Verdict, WorkBeyondTheImagesStatementFails) {
+  const RunSummary beyond =
+      run_with([](std::uint64_t i, TickRecord& r) { r.output.status = i == 500 ? Status::kWorkBeyondStated : 0; });
+  EXPECT_EQ(failing(beyond), "work");
+  EXPECT_EQ(exit_code_of({}, judge(beyond, {}, {})), kExitFailed);
+  EXPECT_THAT(summary_text(beyond, 0), testing::HasSubstr("WorkBeyondStated in 1 ticks"));
+}
+
 TEST(Verdict, ClampedFailsAboveTenPercent) {
   const auto clamped = [](std::uint64_t number) {
     return run_with([=](std::uint64_t i, TickRecord& r) {
@@ -214,7 +223,10 @@ TEST_F(ExitCodeOf, GoodRunUsageAndUnavailable) {
   EXPECT_EQ((*this)(run("--allow armed=x")), kExitUsage);
   EXPECT_EQ((*this)("run " + options_.scene + " --virtual-time --device can:nothing0"), kExitUsage);
   EXPECT_THAT(text_, testing::HasSubstr("--virtual-time"));
-  EXPECT_EQ((*this)("run " + options_.scene + " --device can:nothing0 --quiet --no-record"), kExitUnavailable) << text_;
+  EXPECT_EQ((*this)("run " + options_.scene + " --device can:nothing0 --quiet --no-record --profile " +
+                    PALPATE_SOURCE_DIR "/config/devices/sim-6dof.toml"),
+            kExitUnavailable)
+      << text_;
 }
 
 // 0.3 N of device against 0.5 N and more of contact.

@@ -1,8 +1,8 @@
-// lab_host IMAGE DEVICE SECONDS FLOOD_MS RESULTS: a host as bad as it can be. It starts the controller as `palpate run`
-// does, and for FLOOD_MS out of every 4 s writes the command region as fast as it can, with every command but stop;
-// in between it shows that it lives and asks for force. It reads every tick all the time, leaves the histograms in
-// RESULTS, prints the summary, and dies without a word to the controller. The controller must not be late for any of
-// it.
+// lab_host IMAGE DEVICE PROFILE SECONDS FLOOD_MS RESULTS: a host as bad as it can be. It starts the controller as
+// `palpate run` does, and for FLOOD_MS out of every 4 s writes the command region as fast as it can, with every command
+// but stop; in between it shows that it lives and asks for force. It reads every tick all the time, leaves the
+// histograms in RESULTS, prints the summary, and dies without a word to the controller. The controller must not be late
+// for any of it.
 #include <fmt/format.h>
 #include <signal.h>
 #include <unistd.h>
@@ -55,12 +55,13 @@ void write_histograms(const LatencyData& data, const std::string& folder) {
 
 [[noreturn]] void run(char** argument) {
   ControllerLink link(sibling_program("palpate-rt"),
-                      {"--image", argument[1], "--device", argument[2], "--priority", "80"}, -1);
+                      {"--image", argument[1], "--device", argument[2], "--profile", argument[3], "--priority", "80"},
+                      -1);
   const auto data = std::make_unique<LatencyData>();
   Recorder recorder(link.telemetry(), nullptr, [&](const TickRecord& record) { add(*data, record); });
   recorder.start();
-  const auto end = Clock::now() + std::chrono::duration<double>(std::atof(argument[3]));
-  const milliseconds flooding{std::atoi(argument[4])};
+  const auto end = Clock::now() + std::chrono::duration<double>(std::atof(argument[4]));
+  const milliseconds flooding{std::atoi(argument[5])};
   std::uint64_t written = 0;
   bool arming = false;
   for (auto start = Clock::now(); start < end; start += kCycle) {
@@ -74,7 +75,7 @@ void write_histograms(const LatencyData& data, const std::string& folder) {
     }
   }
   recorder.stop();
-  write_histograms(*data, argument[5]);
+  write_histograms(*data, argument[6]);
   std::printf("flooded with %llu commands\n%s", static_cast<unsigned long long>(written),
               summary_text(data->summary, recorder.lost(), 10).c_str());
   std::fflush(nullptr);
@@ -86,7 +87,7 @@ void write_histograms(const LatencyData& data, const std::string& folder) {
 }  // namespace palpate
 
 int main(int argc, char** argv) {
-  if (argc != 6) return std::fputs("lab_host IMAGE DEVICE SECONDS FLOOD_MS RESULTS\n", stderr), 2;
+  if (argc != 7) return std::fputs("lab_host IMAGE DEVICE PROFILE SECONDS FLOOD_MS RESULTS\n", stderr), 2;
   try {
     palpate::run(argv);
   } catch (const std::exception& error) {

@@ -250,7 +250,7 @@ for one in $scenes; do
   "$programs/lab_scene" "$root/config/scenes/$one.toml" "$out/scenes" || die "$one.toml cannot be read"
 done
 bash "$here/guest.sh" "$cache" "$out" "$programs"/{palpate,palpate-rt,palpate-device,lab_host,lab_check,lab_idle} -- \
-  "$here"/{scenarios,faults,hand.csv,press.csv} "$out/scenes" || die "cannot build the guest"
+  "$here"/{scenarios,faults,hand.csv,press.csv} "$root/config/devices" "$out/scenes" || die "cannot build the guest"
 echo "lab: booting the guest" >&2
 bash "$here/boot.sh" save "$out" || die "the guest does not boot"
 mkdir -p "$results"

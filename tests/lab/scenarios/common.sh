@@ -1,5 +1,6 @@
 # Sourced by the scenarios. $seconds is the guest time to render.
 image=/lab/scenes/ellipsoid_mallet.pal
+profile=/lab/devices/sim-6dof.toml
 
 # raise PATTERN PRIORITY: puts kernel threads whose name matches at that SCHED_FIFO priority.
 raise() {
@@ -75,7 +76,7 @@ render() {
 
 render_recorded() {
   status=0
-  palpate run "$image" --device "$controller_at" --duration "$seconds" --record /tmp/run.plr \
+  palpate run "$image" --device "$controller_at" --profile "$profile" --duration "$seconds" --record /tmp/run.plr \
     --priority 80 --quiet || status=$?
   kill $device 2> /dev/null || true
   palpate latency --recording /tmp/run.plr --histfile /results/latency.txt --json /results/latency.json \
@@ -87,7 +88,7 @@ render_recorded() {
 
 render_hostile() {
   disturb & chaos=$!
-  lab_host "$image" "$controller_at" "$seconds" 30 /results || [ $? -eq 137 ]
+  lab_host "$image" "$controller_at" "$profile" "$seconds" 30 /results || [ $? -eq 137 ]
   kill $chaos 2> /dev/null || true
   ends_alone
   kill $device

@@ -11,7 +11,7 @@ for script in /lab/faults/*.txt; do
   rm -f /tmp/run.*
   start_device can:vcan0 --faults "$script"
   # A script that loses samples on purpose is not judged by how many.
-  palpate run "$image" --device can:vcan0 --duration $length --record /tmp/run.plr --priority 80 --quiet --allow stale=50 ||
+  palpate run "$image" --device can:vcan0 --profile "$profile" --duration $length --record /tmp/run.plr --priority 80 --quiet --allow stale=50 ||
     [ "$fault" != none ]
   kill $device 2> /dev/null || true
   lab_check "$image" /tmp/run.plr "$fault"

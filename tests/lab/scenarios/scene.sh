@@ -5,5 +5,6 @@ cp "/lab/scenes/$scene.csv" /tmp/hand.csv
 # shellcheck disable=SC2046  # options, one a word
 start_device can:vcan0 $(cat "/lab/scenes/$scene.args") --bus-model fd
 image=/lab/scenes/$scene.pal
+profile=/lab/devices/$(cat "/lab/scenes/$scene.device").toml
 controller_at=can:vcan0
 render_recorded

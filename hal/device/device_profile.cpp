@@ -1,0 +1,202 @@
+#include "hal/device/device_profile.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <iterator>
+#include <span>
+#include <sstream>
+#include <vector>
+
+#include "hal/system/private_file.h"
+
+namespace palpate {
+namespace {
+
+struct Key {
+  double DeviceProfile::*member;
+  const char* name;
+  double lowest, highest, scale;
+};
+
+constexpr Key kKeys[] = {
+#define PALPATE_KEY(member, key, value, lowest, highest, scale, meaning) \
+  {&DeviceProfile::member, key, lowest, highest, scale},
+    PALPATE_PROFILE_KEYS(PALPATE_KEY)
+#undef PALPATE_KEY
+};
+constexpr std::size_t kLongestName = 63, kLongestFile = 1 << 16;
+
+std::string short_text(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+std::string range(const Key& key) { return short_text(key.lowest) + " to " + short_text(key.highest); }
+
+std::string trimmed(const std::string& text) {
+  const auto first = text.find_first_not_of(" \t\r");
+  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+// Reads lines into a profile; every function answers "" or what is wrong.
+class Reader {
+ public:
+  std::string line(const std::string& text) {
+    if (text == "[device]") {
+      if (in_device_) return "a second [device]; one file describes one device";
+      in_device_ = true;
+      return "";
+    }
+    if (text[0] == '[') return text + ": a profile holds only [device]";
+    const auto equals = text.find('=');
+    if (equals == std::string::npos) return "'" + text + "': write KEY = VALUE";
+    if (!in_device_) return "a key before [device]; begin the file with [device]";
+    const std::string key = trimmed(text.substr(0, equals)), value = trimmed(text.substr(equals + 1));
+    if (std::ranges::find(seen_, key) != seen_.end()) return key + ": given twice; keep one";
+    seen_.push_back(key);
+    return key == "name" ? name(value) : number(key, value);
+  }
+
+  // Keys that no line gave.
+  std::string missing() const {
+    std::string text;
+    const auto add = [&](const std::string& key) {
+      if (std::ranges::find(seen_, key) == seen_.end()) text += (text.empty() ? "" : ", ") + key;
+    };
+    add("name");
+    for (const Key& key : kKeys) add(key.name);
+    return text;
+  }
+
+  DeviceProfile profile;
+
+ private:
+  std::string name(const std::string& value) {
+    const bool quoted = value.size() > 2 && value.front() == '"' && value.back() == '"';
+    const std::string text = quoted ? value.substr(1, value.size() - 2) : "";
+    const bool printable =
+        std::ranges::all_of(text, [](char c) { return c >= ' ' && c <= '~' && c != '"' && c != '\\'; });
+    if (text.empty() || text.size() > kLongestName || !printable)
+      return "name: allowed is \"text\" of 1 to 63 printable letters of ASCII";
+    profile.name = text;
+    return "";
+  }
+
+  std::string number(const std::string& name, const std::string& value) {
+    const Key* key = std::ranges::find_if(kKeys, [&](const Key& k) { return name == k.name; });
+    if (key == std::end(kKeys)) return name + ": unknown key; see docs/devices.md";
+    // Only what TOML and C read alike: no hexadecimal, no "inf".
+    const bool plain = !value.empty() && value.find_first_not_of("+-.0123456789eE") == std::string::npos;
+    char* end = nullptr;
+    const double read = plain ? std::strtod(value.c_str(), &end) : 0;
+    if (!plain || *end != '\0' || !(read >= key->lowest && read <= key->highest))
+      return name + ": '" + value + "' is not a number in the range " + range(*key);
+    profile.*key->member = read * key->scale;
+    return "";
+  }
+
+  std::vector<std::string> seen_;
+  bool in_device_ = false;
+};
+
+// A number that the scene states and the device must reach.
+void compare(std::string& text, const char* key, double asked, double has, const char* unit, const std::string& why) {
+  if (asked <= has * (1 + 1e-9)) return;  // the same digits, rounded
+  text += std::string(text.empty() ? "" : "\n") + "device." + key + ": the scene states " + short_text(asked) + " " +
+          unit + ", the device " + why + " " + short_text(has) + " " + unit;
+}
+
+struct Bounds {
+  StiffnessBound translation, rotation;
+};
+Bounds bounds_of(const DeviceProfile& p, double period_s) {
+  return {admissible_stiffness(p.damping_Ns_per_m, p.friction_N, p.encoder_step_m, period_s, p.delay_s),
+          admissible_stiffness(p.damping_Nms_per_rad, p.friction_Nm, p.encoder_step_rad, period_s, p.delay_s)};
+}
+
+}  // namespace
+
+std::optional<DeviceProfile> parse_device_profile(const std::string& text, const std::string& file,
+                                                  std::string& error) {
+  Reader reader;
+  std::istringstream input(text);
+  std::string row;
+  for (int number = 1; std::getline(input, row); ++number) {
+    row.erase(std::min(row.find('#'), row.size()));
+    const std::string line = trimmed(row);
+    if (line.empty()) continue;
+    const std::string wrong = reader.line(line);
+    if (wrong.empty()) continue;
+    error = file + ":" + std::to_string(number) + ": " + wrong;
+    return std::nullopt;
+  }
+  // "force_max_N = 20" cut to "force_max_N = 2" reads well.
+  if (!text.empty() && text.back() != '\n') {
+    error = file + ": the last line has no end: cut off? Add an empty line";
+    return std::nullopt;
+  }
+  if (const std::string missing = reader.missing(); !missing.empty()) {
+    error = file + ": missing: " + missing + "; a profile gives every key (docs/devices.md says how to measure them)";
+    return std::nullopt;
+  }
+  return reader.profile;
+}
+
+std::optional<DeviceProfile> read_device_profile(const std::string& path, std::string& error) {
+  error.clear();
+  const PrivateFile file = PrivateFile::read(path, error);
+  if (!file) return std::nullopt;
+  const std::span<const std::byte> bytes = file.bytes();
+  if (bytes.size() > kLongestFile) {
+    error = path + ": " + std::to_string(bytes.size()) + " bytes are no device profile; give a config/devices/*.toml";
+    return std::nullopt;
+  }
+  return parse_device_profile({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path, error);
+}
+
+std::string profile_contradictions(const DeviceProfile& profile, const ModelParams& scene) {
+  const Bounds bounds = bounds_of(profile, scene.period_s);
+  std::string text;
+  compare(text, "force_max_N", scene.force_max_N, profile.force_max_N, "N", "has");
+  compare(text, "torque_max_Nm", scene.torque_max_Nm, profile.torque_max_Nm, "N m", "has");
+  compare(text, "coupling_N_per_m", scene.coupling_N_per_m, bounds.translation.value, "N/m",
+          std::string("admits, by ") + reason_of(bounds.translation) + ",");
+  // Without torque the rotational spring moves nothing.
+  if (scene.torque_max_Nm > 0)
+    compare(text, "coupling_Nm_per_rad", scene.coupling_Nm_per_rad, bounds.rotation.value, "N m/rad",
+            std::string("admits, by ") + reason_of(bounds.rotation) + ",");
+  return text;
+}
+
+std::string profile_text(const DeviceProfile& profile, const ModelParams& scene) {
+  const Bounds bounds = bounds_of(profile, scene.period_s);
+  const auto part = [](double asked, double has, const char* unit) {
+    return short_text(asked) + " of " + short_text(has) + " " + unit;
+  };
+  return profile.name + ": the scene asks " + part(scene.force_max_N, profile.force_max_N, "N") + ", " +
+         part(scene.torque_max_Nm, profile.torque_max_Nm, "N m") + ", a coupling of " +
+         part(scene.coupling_N_per_m, bounds.translation.value, "N/m") + " and " +
+         part(scene.coupling_Nm_per_rad, bounds.rotation.value, "N m/rad");
+}
+
+std::string refuse_profile(bool real_device, const std::string& device, const std::string& profile,
+                           const ModelParams& scene, DeviceProfile* read) {
+  if (profile.empty()) {
+    if (!real_device) return "";
+    return "refused: " + device +
+           " is driven only with a profile that says what it can do: --profile FILE. Copy "
+           "config/devices/example-can.toml, put in your device's numbers (docs/devices.md)";
+  }
+  std::string error;
+  const std::optional<DeviceProfile> found = read_device_profile(profile, error);
+  if (!found) return error;
+  if (read != nullptr) *read = *found;
+  const std::string against = profile_contradictions(*found, scene);
+  if (against.empty()) return "";
+  return "refused: the scene asks more than " + profile + " allows:\n" + against +
+         "\nbake it for this device: palpate bake SCENE --with " + profile;
+}
+
+}  // namespace palpate

@@ -1,0 +1,38 @@
+// What is known of a haptic device (config/devices/*.toml), and whether a scene asks more of it than it can do. The
+// controller drives no device on a bus without one: force limit and coupling of an image are claims about hardware.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "rt_core/device_profile.h"
+#include "rt_core/model.h"
+
+namespace palpate {
+
+struct DeviceProfile {
+  std::string name;
+#define PALPATE_KEY(member, key, value, lowest, highest, scale, meaning) double member = 0;
+  PALPATE_PROFILE_KEYS(PALPATE_KEY)
+#undef PALPATE_KEY
+};
+
+// Reads the file: a [device] table of `key = number` lines and `name = "text"`, a subset of TOML, so that the
+// controller needs no parser of it and the file can be laid over a scene too (palpate bake --with). Every key is
+// needed: what was not measured is not known. On failure empty, and `error` names file, line, key, range and remedy.
+std::optional<DeviceProfile> read_device_profile(const std::string& path, std::string& error);
+// The same from text; `file` names it in errors.
+std::optional<DeviceProfile> parse_device_profile(const std::string& text, const std::string& file, std::string& error);
+
+// Where the scene's numbers contradict the profile: its largest force or torque above the device's, or a coupling above
+// what damping, delay, friction and encoder admit at the scene's period. One line each; empty when there is none.
+std::string profile_contradictions(const DeviceProfile& profile, const ModelParams& scene);
+// What a scene asks of what the device has, in one line.
+std::string profile_text(const DeviceProfile& profile, const ModelParams& scene);
+
+// Whether this run may begin: real devices need a profile, and a profile must fit the scene. `profile`: path, or empty.
+// "" when it may, otherwise why not and what to do. `read`, when not null, receives what was read.
+std::string refuse_profile(bool real_device, const std::string& device, const std::string& profile,
+                           const ModelParams& scene, DeviceProfile* read = nullptr);
+
+}  // namespace palpate

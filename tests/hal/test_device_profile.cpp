@@ -1,0 +1,155 @@
+// Device profiles: what is read, what is refused with which words, and what a scene may not ask of a device.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <random>
+
+#include "hal/device/device_profile.h"
+#include "tests/support/tiny_image.h"
+
+namespace palpate {
+namespace {
+
+using testing::HasSubstr;
+
+// Admits 2 * 2.5 / (1 ms + 2 * 0.5 ms) = 2500 N/m and 2 * 0.001 / 2 ms = 1 N m/rad at 1 kHz.
+constexpr char kGood[] = R"(# an arm
+[device]
+name = "arm"   # of the laboratory
+mass_kg = 0.1
+inertia_kg_m2 = 1e-4
+damping_Ns_per_m = 2.5
+damping_Nms_per_rad = 0.001
+friction_N = 1
+friction_Nm = 5e-1
+encoder_step_mm = 0.03
+encoder_step_rad = 0.001
+delay_ms = 0.5
+force_max_N = 8.5
+torque_max_Nm = 0.2
+)";
+
+std::string refusal(const std::string& text) {
+  std::string error;
+  return parse_device_profile(text, "arm.toml", error) ? "accepted" : error;
+}
+std::string with(const std::string& old, const std::string& line) {
+  std::string text = kGood;
+  const auto at = text.find(old);
+  EXPECT_NE(at, std::string::npos) << old;
+  return text.replace(at, old.size(), line);
+}
+DeviceProfile good() {
+  std::string error;
+  const auto profile = parse_device_profile(kGood, "arm.toml", error);
+  EXPECT_TRUE(profile) << error;
+  return profile.value_or(DeviceProfile{});
+}
+ModelParams scene() {
+  ModelParams params = test::tiny_params();
+  params.coupling_N_per_m = 2500;
+  params.coupling_Nm_per_rad = 1;
+  return params;
+}
+
+TEST(DeviceProfile, IsReadInSiUnits) {
+  const DeviceProfile profile = good();
+  EXPECT_EQ(profile.name, "arm");
+  EXPECT_DOUBLE_EQ(profile.encoder_step_m, 3e-5);
+  EXPECT_DOUBLE_EQ(profile.delay_s, 5e-4);
+  EXPECT_DOUBLE_EQ(profile.friction_Nm, 0.5);
+  EXPECT_DOUBLE_EQ(profile.force_max_N, 8.5);
+}
+
+TEST(DeviceProfile, IsRefusedWithFileLineKeyRangeAndRemedy) {
+  EXPECT_EQ(refusal(with("mass_kg = 0.1", "mass_kg = 0")),
+            "arm.toml:4: mass_kg: '0' is not a number in the range 0.001 to 100");
+  EXPECT_THAT(refusal(with("mass_kg = 0.1\n", "")), HasSubstr("missing: mass_kg; a profile gives every key"));
+  EXPECT_THAT(refusal(""), HasSubstr("missing: name, mass_kg, inertia_kg_m2"));
+  EXPECT_THAT(refusal(with("mass_kg", "mass_g")), HasSubstr("arm.toml:4: mass_g: unknown key"));
+  EXPECT_THAT(refusal(with("[device]", "")), HasSubstr("begin the file with [device]"));
+  EXPECT_THAT(refusal(with("delay_ms = 0.5", "delay_ms = 0.5\ndelay_ms = 1")),
+              HasSubstr("arm.toml:13: delay_ms: given twice"));
+  EXPECT_THAT(refusal(with("[device]", "[device]\n[device]")), HasSubstr("a second [device]"));
+  EXPECT_THAT(refusal(with("[device]", "[body]")), HasSubstr("[body]: a profile holds only [device]"));
+  EXPECT_THAT(refusal(with("delay_ms = 0.5", "delay")), HasSubstr("write KEY = VALUE"));
+  for (const char* bad : {"nan", "inf", "-1", "1e999", "0x10", "", "0.5 ms", "\"0.5\"", "101", "--1", "1e", "."})
+    EXPECT_THAT(refusal(with("delay_ms = 0.5", std::string("delay_ms = ") + bad)), HasSubstr("arm.toml:12: delay_ms:"))
+        << bad;
+  for (const char* bad : {"arm", "\"\"", "\"a\\n\"", "\"\x01\"", "\"arm"})
+    EXPECT_THAT(refusal(with("\"arm\"", bad)), HasSubstr("arm.toml:3: name:")) << bad;
+  EXPECT_THAT(refusal(with("\"arm\"", '"' + std::string(64, 'x') + '"')), HasSubstr("1 to 63"));
+}
+
+// No prefix and no random edit is anything but read or refused.
+TEST(DeviceProfile, AnyTextIsReadOrRefused) {
+  const std::string whole = kGood;
+  for (std::size_t length = 0; length < whole.size(); ++length)
+    EXPECT_NE(refusal(whole.substr(0, length)), "accepted") << length;
+  std::mt19937 random(3);
+  int accepted = 0;
+  for (int i = 0; i < 20000; ++i) {
+    std::string text = whole;
+    for (unsigned n = 0; n <= random() % 4; ++n) text[random() % text.size()] = static_cast<char>(random());
+    std::string error;
+    const auto profile = parse_device_profile(text, "f", error);
+    ASSERT_EQ(profile.has_value(), error.empty());
+    if (!profile) continue;
+    accepted += 1;
+    ASSERT_TRUE(profile->force_max_N > 0 && profile->force_max_N <= kWireForceMax_N && profile->delay_s >= 0);
+  }
+  EXPECT_GT(accepted, 100);
+  EXPECT_LT(accepted, 19000);
+}
+
+TEST(DeviceProfile, NoOrdinaryFileOfItsSizeIsRefused) {
+  std::string error;
+  for (const char* file : {"/nonexistent", "/", "/dev/zero", "/dev/null"}) {
+    error.clear();
+    EXPECT_FALSE(read_device_profile(file, error)) << file;
+    EXPECT_THAT(error, HasSubstr(file));
+  }
+  const auto large = std::filesystem::temp_directory_path() / ("palpate_profile_" + std::to_string(getpid()));
+  std::ofstream(large) << kGood << std::string(1 << 16, '\n');
+  EXPECT_FALSE(read_device_profile(large, error));
+  EXPECT_THAT(error, HasSubstr("no device profile"));
+  std::ofstream(large) << kGood;
+  EXPECT_TRUE(read_device_profile(large, error)) << error;
+  std::filesystem::remove(large);
+}
+
+TEST(DeviceProfile, ASceneAtTheDevicesLimitsFits) { EXPECT_EQ(profile_contradictions(good(), scene()), ""); }
+
+TEST(DeviceProfile, ASceneThatAsksMoreIsRefusedKeyByKey) {
+  ModelParams asks = scene();
+  asks.force_max_N = 8.6;
+  EXPECT_EQ(profile_contradictions(good(), asks), "device.force_max_N: the scene states 8.6 N, the device has 8.5 N");
+  asks = scene();
+  asks.torque_max_Nm = 0.21;
+  EXPECT_THAT(profile_contradictions(good(), asks), HasSubstr("device.torque_max_Nm: the scene states 0.21 N m"));
+  asks = scene();
+  asks.coupling_N_per_m = 2501;
+  EXPECT_THAT(profile_contradictions(good(), asks), HasSubstr("admits, by 2b / (T + 2 tau), 2500 N/m"));
+  asks = scene();
+  asks.coupling_Nm_per_rad = 1.01;
+  EXPECT_THAT(profile_contradictions(good(), asks), HasSubstr("device.coupling_Nm_per_rad: the scene states 1.01"));
+  asks.torque_max_Nm = 0;  // nothing turns the handle
+  EXPECT_EQ(profile_contradictions(good(), asks), "");
+  asks = scene();
+  asks.period_s = 2e-3;  // slower: less is admitted
+  EXPECT_THAT(profile_contradictions(good(), asks), HasSubstr("1666.67 N/m"));
+}
+
+TEST(DeviceProfile, ARealDeviceNeedsOneAndASimulatedOneDoesNot) {
+  EXPECT_EQ(refuse_profile(false, "loopback", "", scene()), "");
+  EXPECT_THAT(refuse_profile(true, "can:can0", "", scene()),
+              HasSubstr("refused: can:can0 is driven only with a profile"));
+  EXPECT_THAT(refuse_profile(true, "can:can0", "", scene()), HasSubstr("--profile FILE"));
+  EXPECT_THAT(refuse_profile(false, "loopback", "/nonexistent", scene()), HasSubstr("/nonexistent"));
+}
+
+}  // namespace
+}  // namespace palpate
