@@ -107,6 +107,15 @@ figures 2026-01-02 2026-01-01 './run bench'
 printf 'int y;\n' >"$work/figures/rt_core/a.cpp"
 expect fail "figures on code changed since" "$gates/../bench/figures.sh" "$work/figures"
 
+unit="$gates/../../hal/system/palpate@.service"
+expect pass "unit_security on the service" "$gates/unit_security.sh" "$unit"
+sed 's/^NoNewPrivileges=yes/NoNewPrivileges=no/' "$unit" >"$work/palpate@.service"
+expect fail "unit_security on a service that may gain rights" "$gates/unit_security.sh" "$work/palpate@.service"
+grep -v '^User=' "$unit" >"$work/palpate@.service"
+expect fail "unit_security on a service of root" "$gates/unit_security.sh" "$work/palpate@.service"
+sed 's/ --profile [^ ]*//' "$unit" >"$work/palpate@.service"
+expect fail "unit_security on a service without a device profile" "$gates/unit_security.sh" "$work/palpate@.service"
+
 compile() { "$compiler" -std=c++20 -O1 -fPIC "$@"; }
 archive() { # NAME TEXT
   printf '%b' "$2" >"$work/$1.cpp"
