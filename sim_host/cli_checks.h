@@ -21,6 +21,18 @@ inline CLI::Validator ends_in(std::vector<std::string> endings) {
       "");
 }
 
+// CLI::Range lets a NaN through, which is not below its limits either.
+inline CLI::Validator number_in(double lowest, double highest) {
+  return CLI::Validator(
+      [lowest, highest](const std::string& text) {
+        double value = 0;
+        if (CLI::detail::lexical_cast(text, value) && value >= lowest && value <= highest) return std::string();
+        return text + " is not a number from " + CLI::detail::to_string(lowest) + " to " +
+               CLI::detail::to_string(highest);
+      },
+      "");
+}
+
 // CLI::PositiveNumber names the largest double as the upper limit.
 inline CLI::Validator above_zero() {
   return CLI::Validator(

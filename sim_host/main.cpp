@@ -1,5 +1,6 @@
 // `palpate`: everything a person types. Registers the commands and turns errors into one line and an exit code.
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <string>
@@ -23,6 +24,7 @@ std::string unknown_command(const CLI::App& app, const std::string& word) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit on files is an error that is told, not the end of a run
   // Lines in their order where standard output and standard error go to one file.
   std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
   CLI::App app{"Feel soft objects: a haptic controller that is never late."};

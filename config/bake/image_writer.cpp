@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 
 #include "config/scene/config_error.h"
 #include "rt_core/image.h"
@@ -70,6 +71,12 @@ std::vector<std::byte> write_image(const ImageContents& contents) {
 }
 
 bool save_image(const std::string& path, const std::vector<std::byte>& bytes, std::string& error) {
+  // Renaming onto a device node puts a file in its place: root's `palpate bake -o /dev/null` did (2026-11-22).
+  std::error_code none;
+  if (std::filesystem::exists(path, none) && !std::filesystem::is_regular_file(path, none)) {
+    error = path + ": is no ordinary file and is not replaced; choose another name";
+    return false;
+  }
   // A new file of its own name: what lies at a name that can be guessed, a link say, is never written through.
   std::string temporary = path + ".XXXXXX";
   const int fd = mkostemp(temporary.data(), O_CLOEXEC);

@@ -188,7 +188,7 @@ void add_latency_command(CLI::App& app, int& exit_code) {
                    ->excludes(recording);
   command->add_option("--duration", options->measure.duration_s, "seconds to measure")
       ->capture_default_str()
-      ->check(CLI::Range(0.01, 604800.0))
+      ->check(number_in(0.01, 604800))
       ->excludes(recording);
   command->add_option("--cpu", options->measure.cpu, "CPU to measure on; -1: any")
       ->capture_default_str()

@@ -10,6 +10,7 @@
 #include "config/hand/hand_model.h"
 #include "sim_host/bake/scene_model.h"
 #include "sim_host/cli.h"
+#include "sim_host/cli_checks.h"
 #include "sim_host/press/grasp_run.h"
 #include "sim_host/run/verdict.h"
 #include "sim_host/view/line_plot.h"
@@ -134,7 +135,7 @@ void add_grasp_command(CLI::App& app, int& exit_code) {
       ->add_option("--hand", settings->hand_N_per_m,
                    "stiffness (N/m) of the arm that holds the wrist; 0: the wrist is where the path says")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 1e6));
+      ->check(number_in(0, 1e6));
   add_allow_option(*command, settings->limits, {"unconverged"});
   command->add_flag("--order", settings->order, "also close the thumb first and last, with both coupling laws");
   command->footer(

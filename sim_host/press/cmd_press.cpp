@@ -243,7 +243,7 @@ void add_press_command(CLI::App& app, int& exit_code) {
       ->add_option("--hand", options->hand_N_per_m,
                    "stiffness (N/m) of a hand that pulls the tool towards the poses; 0: the tool is at the poses; "
                    "default: 0, or the scene's hand with `--path demo`")
-      ->check(CLI::Range(0.0, 1e6));
+      ->check(number_in(0, 1e6));
   command->add_flag("--resample", options->resample, "interpolate the poses by their time_s to one per tick period");
   add_joint_options(*command, options->joints);
   add_allow_option(*command, options->limits, {"unconverged"});

@@ -57,6 +57,11 @@ PartFile::PartFile(std::string path, WhenItExists existing, const char* suffix)
   if (existing_ == WhenItExists::kRefuse && exists(path_)) {
     throw RecordingError(path_ + ": exists already and is not replaced; choose another name, or --overwrite");
   }
+  // Renaming onto a device node puts a file in its place.
+  std::error_code none;
+  if (std::filesystem::exists(path_, none) && !std::filesystem::is_regular_file(path_, none)) {
+    throw RecordingError(path_ + ": is no ordinary file and is not replaced; choose another name");
+  }
   const std::string part = part_path();
   fd_ = open(part.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0644);
   if (fd_ < 0 && errno == EEXIST) throw RecordingError(in_the_way(part));

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "sim_host/cli.h"
+#include "sim_host/cli_checks.h"
 #include "sim_host/doctor/doctor.h"
 #include "sim_host/run/run_session.h"
 #include "sim_host/run/verdict.h"
@@ -109,7 +110,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
                       "simulated device of a .toml scene becomes like it");
   command->add_option("--duration", options->duration_s, "seconds")
       ->capture_default_str()
-      ->check(CLI::Range(0.1, 86400.0));
+      ->check(number_in(0.1, 86400));
   CLI::Option* virtual_time =
       command->add_flag("--virtual-time", settings->virtual_time,
                         "controller, simulated device and hand in lock step: as fast as the machine can, the same bits "

@@ -2,6 +2,7 @@
 // itself a real-time thread, and runs the loop. No parser, no graphics; everything is allocated before the first tick.
 #include <getopt.h>
 
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -408,6 +409,7 @@ int run(int argc, char** argv) {
 }  // namespace palpate
 
 int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // the crash file is written while the force ramps out: a full limit must not end that
   try {
     return palpate::run(argc, argv);
   } catch (const palpate::Failure& failure) {

@@ -2,6 +2,7 @@
 // that were not given. (A tool that starts inside: Safety.DoesNotArmAToolThatStartsInside.)
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -102,6 +103,45 @@ TEST_F(Refusal, TheDoctorMissesTheProfile) {
   EXPECT_THAT(text_, HasSubstr("sim-6dof: 8.5 N, 0.188 N m, admits 2500 N/m at 1 kHz"));
   (*this)("palpate doctor --device can:nocan0 --profile " + options_.scene);
   EXPECT_THAT(text_, HasSubstr("FAIL    device profile"));
+}
+
+// NaN is not below the least nor above the most.
+TEST_F(Refusal, NumbersThatAreNoneAreNoDurations) {
+  for (const char* command : {"run %s --virtual-time --no-record --duration nan", "latency --duration nan",
+                              "press %s --path demo --hand nan", "run %s --virtual-time --no-record --duration -inf"}) {
+    std::string text = command;
+    if (const auto at = text.find("%s"); at != std::string::npos) text.replace(at, 2, options_.scene);
+    EXPECT_EQ((*this)("palpate " + text), kExitUsage) << text_;
+    EXPECT_THAT(text_, HasSubstr("is not a number from")) << command;
+  }
+}
+
+// Root's `palpate bake -o /dev/null` replaced the device by a file, for it was written elsewhere and renamed.
+TEST_F(Refusal, WhatIsNoFileIsNotReplaced) {
+  const std::string pipe = (folder_ / "pipe").string();
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_EQ((*this)("palpate bake " + options_.scene + " -o " + pipe), kExitUsage) << text_;
+  EXPECT_THAT(text_, HasSubstr("is no ordinary file and is not replaced"));
+  EXPECT_EQ((*this)("palpate run " + options_.scene + " --virtual-time --quiet --overwrite --record " + pipe),
+            kExitUsage);
+  EXPECT_THAT(text_, HasSubstr("is no ordinary file and is not replaced"));
+  EXPECT_TRUE(std::filesystem::is_fifo(pipe));
+}
+
+// A limit on the size of files ended the program by a signal, without a word.
+TEST_F(Refusal, ALimitOnFilesIsSaid) {
+  const std::string image_path = image(), path = (folder_ / "hand.csv").string();
+  std::ofstream(path) << "time_s,x_mm,y_mm,z_mm\n0,0,200,0\n60,0,200,0\n";
+  const std::string output = (folder_ / "limited.txt").string();
+  const int status =
+      std::system(("ulimit -f 64; " + options_.program_folder + "/palpate run " + image_path + " --path " + path +
+                   " --virtual-time --quiet --no-record --duration 0.5 > " + output + " 2>&1")
+                      .c_str());
+  std::ifstream stream(output);
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  ASSERT_TRUE(WIFEXITED(status)) << text;
+  EXPECT_EQ(WEXITSTATUS(status), kExitUnavailable) << text;
+  EXPECT_THAT(text, HasSubstr("File too large"));
 }
 
 // What a device on a bus asks by itself; here asked for on the loopback, which has no bus.
