@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "config/bake/bvh_build.h"
-#include "config/bake/elastic_image.h"
+#include "config/bake/elastic_choice.h"
 #include "config/bake/fem_body.h"
 #include "config/bake/image_rules.h"
 #include "config/bake/rbf_system.h"
@@ -40,12 +40,12 @@ class Compiler {
     } else {
       add_surface();
     }
-    if (is_elastic()) report_.elastic = add_elastic_body(scene_, image_, report_.warnings, progress_);
     add_articulation();
     add_distances();
     bake_response(scene_, image_, report_.response, report_.warnings);
     add_device();
     add_skeleton();
+    if (is_elastic()) report_.elastic = bake_elastic_body(scene_, image_, report_.warnings, progress_);
     add_costs();
     report_.array = array_bytes(image_);
     CompileResult result{write_image(image_), std::move(report_)};

@@ -21,6 +21,16 @@ struct ElasticReport {
   std::int32_t soft = 0, linear = 0, samples = 0;
   double radius_rootJ = 0;
   double softest_N_per_m = 0;  // stiffness of the softest mode against its largest motion
+  // A ball pressed into large-strain elements and into the baked body.
+  struct Check {
+    Vec3 place_m;
+    double radius_m = 0, depth_m = 0;  // depth 0: nothing to compare
+    bool slides = false;               // deeper, the body goes out from under it
+    double reference_N = 0, force_N = 0;
+    double worst_error = 0;  // relative, on the way to the depth
+  };
+  std::vector<Check> check;
+  double add_c_mpN = 0;  // to every self term, by the presses
 };
 
 struct CompileReport {

@@ -45,6 +45,29 @@ void size_lines(std::string& text, const CompileReport& r) {
   text += "image      " + parts + '\n';
 }
 
+void elastic_lines(std::string& text, const ElasticReport& e) {
+  line(text,
+       "elastic    %lld nodes, %lld tetrahedra; %d soft modes %s up to %.3g J, the softest %.4g N/m; %d linear; "
+       "%d samples",
+       static_cast<long long>(e.nodes), static_cast<long long>(e.elements), e.soft,
+       e.check.empty() ? "trusted" : "checked", 0.5 * e.radius_rootJ * e.radius_rootJ, e.softest_N_per_m, e.linear,
+       e.samples);
+  if (e.add_c_mpN != 0)
+    line(text, "           %.4g um/N added to the self terms by the check presses", 1e6 * e.add_c_mpN);
+  for (const ElasticReport::Check& c : e.check) {
+    const char* end = c.slides ? "; deeper, the body goes out from under it" : "";
+    if (c.depth_m > 0)
+      line(text,
+           "check      ball of %.4g mm at (%.4g, %.4g, %.4g) mm: %.4g mm deep %.4g N, by elements %.4g N; worst %.1f "
+           "%%%s",
+           1e3 * c.radius_m, 1e3 * c.place_m.x, 1e3 * c.place_m.y, 1e3 * c.place_m.z, 1e3 * c.depth_m, c.force_N,
+           c.reference_N, 100 * c.worst_error, end);
+    else
+      line(text, "check      ball of %.4g mm at (%.4g, %.4g, %.4g) mm: nothing to compare%s", 1e3 * c.radius_m,
+           1e3 * c.place_m.x, 1e3 * c.place_m.y, 1e3 * c.place_m.z, end);
+  }
+}
+
 }  // namespace
 
 std::string report_text(const CompileReport& r) {
@@ -55,13 +78,7 @@ std::string report_text(const CompileReport& r) {
        r.mass_kg);
   line(text, "hierarchy  %d nodes, %d levels, traversal stack at most %d of %d", r.bvh_nodes, r.bvh_depth,
        r.traversal_stack, kMaxTraversalStack);
-  if (r.elastic.nodes > 0)
-    line(text,
-         "elastic    %lld nodes, %lld tetrahedra; %d soft modes up to %.3g J, the softest %.4g N/m; %d linear; "
-         "%d samples",
-         static_cast<long long>(r.elastic.nodes), static_cast<long long>(r.elastic.elements), r.elastic.soft,
-         0.5 * r.elastic.radius_rootJ * r.elastic.radius_rootJ, r.elastic.softest_N_per_m, r.elastic.linear,
-         r.elastic.samples);
+  if (r.elastic.nodes > 0) elastic_lines(text, r.elastic);
   if (r.fem_nodes > 0) {
     line(text, "elements   %lld nodes, %lld tetrahedra, %d strain gauges", static_cast<long long>(r.fem_nodes),
          static_cast<long long>(r.fem_elements), r.fem_gauges);

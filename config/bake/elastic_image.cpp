@@ -3,18 +3,14 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <set>
 
+#include "config/bake/elastic_mesh.h"
 #include "config/bake/fem_body.h"
-#include "config/bake/image_rules.h"
 #include "config/bake/vertex_slopes.h"
-#include "config/body/body.h"
-#include "config/body/body_card.h"
 #include "config/body/supports.h"
 #include "config/elastic/elastic_body.h"
 #include "config/elastic/solid_mesh.h"
 #include "config/fem/large_strain_elements.h"
-#include "config/fem/tet_io.h"
 #include "config/response/corner_normals.h"
 #include "config/scene/config_error.h"
 #include "config/scene/schema.h"
@@ -39,63 +35,6 @@ constexpr double kLeastOwnShare = 0.4;
 std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 Vec3 vec(const Vector<3>& v) { return {v[0], v[1], v[2]}; }
 Vector<3> eigen(Vec3 v) { return {v.x, v.y, v.z}; }
-
-// The body's surface of about as many triangles as edges of the scene's length make.
-SurfaceMesh coarse_surface(const SceneDesc& scene, const ImageContents& image, double edge_m,
-                           std::vector<std::string>& warnings) {
-  double area = 0;
-  for (const Triangle& t : image.triangle) {
-    const Vec3 a = image.vertex_m[at(t.vertex[0])];
-    area += 0.5 * norm(cross(image.vertex_m[at(t.vertex[1])] - a, image.vertex_m[at(t.vertex[2])] - a));
-  }
-  SceneDesc coarse = scene;
-  const double wanted = area / (0.25 * std::sqrt(3.0) * edge_m * edge_m);
-  coarse.body.triangles = std::clamp(static_cast<std::int32_t>(wanted), kFewestTriangles, scene.body.triangles);
-  return make_body(coarse, warnings);
-}
-
-// Middles of boundary edges go to the nearest place of the scene's surface.
-EdgeProjection bend_to(const TetMesh& mesh, const Model& surface) {
-  std::set<std::pair<std::int32_t, std::int32_t>> edges;
-  const TetSurface skin = surface_of(mesh);
-  for (const Corners& t : skin.mesh.triangle)
-    for (std::size_t k = 0; k < 3; ++k) edges.insert(std::minmax(skin.node[at(t[k])], skin.node[at(t[(k + 1) % 3])]));
-  return [edges = std::move(edges), surface](Vec3 middle, std::int32_t a, std::int32_t b) {
-    if (!edges.contains(std::minmax(a, b))) return middle;
-    const SurfacePoint nearest = closest_surface_point(surface, middle, kHuge, -1);
-    return nearest.found ? nearest.closest_w : middle;
-  };
-}
-
-// Elements that bending has folded, or nearly, get straight edges again.
-void straighten_folds(TetMesh& mesh) {
-  constexpr double kLeastShare = 0.2;  // of the straight element's volume, at its worst node
-  const auto tables = fem::element_tables<3>(fem::StrainElement::kT10);
-  const auto is_folded = [&](const Tet& tet) {
-    for (std::size_t n = 0; n < 10; ++n) {
-      Eigen::Matrix3d x = Eigen::Matrix3d::Zero();
-      for (std::size_t a = 0; a < 10; ++a) {
-        const auto& slope = tables.gradient_at_nodes[n * 10 + a];
-        x += eigen(mesh.node_m[at(tet.node[a])]) * Eigen::RowVector3d(slope[0], slope[1], slope[2]);
-      }
-      if (!(x.determinant() > kLeastShare * 6 * corner_volume_m3(mesh, tet))) return true;
-    }
-    return false;
-  };
-  for (bool again = true; again;) {  // each pass straightens an element for good
-    again = false;
-    for (const Tet& tet : mesh.tet) {
-      if (!is_folded(tet)) continue;
-      for (std::size_t e = 0; e < kTetEdge.size(); ++e) {
-        Vec3& middle = mesh.node_m[at(tet.node[4 + e])];
-        const Vec3 straight =
-            0.5 * (mesh.node_m[at(tet.node[at(kTetEdge[e][0])])] + mesh.node_m[at(tet.node[at(kTetEdge[e][1])])]);
-        again = again || !(middle == straight);
-        middle = straight;
-      }
-    }
-  }
-}
 
 // du_i/dX_j of a field at every surface node, [node * 9 + 3 i + j]: the mean of the elements' own there.
 class NodalGradient {
@@ -300,15 +239,14 @@ Shapes term_shapes(const elastic::ElasticBody<3>& body, const NodalGradient& gra
 }
 
 void add_vertices(const elastic::ElasticBody<3>& body, const Shapes& shapes, const SelfField& self,
-                  ImageContents& image, const std::vector<CornerNormals>& normals) {
+                  const std::vector<FacetFoot>& feet, ImageContents& image, const std::vector<CornerNormals>& normals) {
   using namespace elastic_layout;
   const int s = body.soft, linear = static_cast<int>(body.modes.lambda_Npm3.size()) - s;
   const std::vector<double> curvature = mean_curvatures(image, normals);
-  const FacetFinder finder(body.rest->surface());
   const auto stride = at(vertex_floats(s, linear));
   image.elastic_vertex.assign(stride * image.vertex_m.size(), 0);
   for (std::size_t v = 0; v < image.vertex_m.size(); ++v) {
-    const FacetFoot foot = finder.find(image.vertex_m[v]);
+    const FacetFoot& foot = feet[v];
     float* out = &image.elastic_vertex[stride * v];
     const auto show = [&](const Field& field, int width, int component) {
       double sum = 0;
@@ -351,63 +289,90 @@ void add_own_slopes(const elastic::ElasticBody<3>& body, ImageContents& image) {
   }
 }
 
-}  // namespace
-
-TetMesh make_elastic_mesh(const SceneDesc& scene, const ImageContents& image, std::vector<std::string>& warnings) {
-  if (card_of(scene.body.shape).tets != nullptr) {
-    TetMesh mesh = make_tet_mesh(scene, warnings);
-    return mesh;
-  }
-  const std::string label = scene.source.where("body.shape");
-  Model surface = model_of(image);
-  const double edge = is_auto(scene.fem.edge_m) ? surface.params.surface_size_m / 8 : scene.fem.edge_m;
-  TetMesh mesh = tetrahedralise(coarse_surface(scene, image, edge, warnings), edge, label);
-  add_middle_nodes(mesh, {}, bend_to(mesh, surface));
-  straighten_folds(mesh);
-  check_tet_mesh(mesh, label);
-  return mesh;
+std::vector<FacetFoot> feet_of(const ImageContents& image, const elastic::Surface<3>& surface) {
+  const FacetFinder finder(surface);
+  std::vector<FacetFoot> feet;
+  for (const Vec3 p : image.vertex_m) feet.push_back(finder.find(p));
+  return feet;
 }
 
-ElasticReport add_elastic_body(const SceneDesc& scene, ImageContents& image, std::vector<std::string>& warnings,
-                               const Progress&) {
-  const std::string label = scene.source.where("body.shape");
-  const TetMesh mesh = make_elastic_mesh(scene, image, warnings);
-  const Supports supports = supports_of(scene, mesh);
-  check_supports(mesh, supports, label);
-  const std::vector<bool> fixed = elastic::fixed_components(supports);
+fem::StrainBody solid_material(const ModelParams& params) {
   fem::StrainBody material;
-  material.youngs_modulus_Pa = image.params.youngs_modulus_Pa;
-  material.poisson_ratio = image.params.poisson_ratio;
+  material.youngs_modulus_Pa = params.youngs_modulus_Pa;
+  material.poisson_ratio = params.poisson_ratio;
   material.kinematics = fem::Kinematics::kSolid;
-  const elastic::RestBody<3> rest(elastic::solid_mesh(mesh, label), material, fixed);
-  const double spacing = kSampleSpacing * rest.surface().extent_m();
+  return material;
+}
+
+elastic::ElasticOptions options_of(int soft, int linear) {
   elastic::ElasticOptions options;
-  options.soft = scene.elastic.soft;
-  options.linear = scene.elastic.linear;
+  options.soft = soft;
+  options.linear = linear;
   options.second_order = true;
   options.patch_edges = kPatchEdges;
-  const std::vector<int> samples = sample_nodes(rest.surface(), fixed, spacing);
-  elastic::ElasticBody<3> body = elastic::make_elastic_body(rest, samples, options);
+  return options;
+}
+
+}  // namespace
+
+struct ElasticBake::Parts {
+  TetMesh mesh;
+  std::vector<bool> fixed;
+  elastic::RestBody<3> rest;
+  double spacing_m;
+  elastic::ElasticStock<3> stock;
+  NodalGradient gradient;
+  std::vector<FacetFoot> feet;
+  std::vector<CornerNormals> normals;
+
+  Parts(const SceneDesc& scene, const ImageContents& image, int modes, TetMesh body, std::vector<bool> held)
+      : mesh(std::move(body)),
+        fixed(std::move(held)),
+        rest(elastic::solid_mesh(mesh, scene.source.where("body.shape")), solid_material(image.params), fixed),
+        spacing_m(kSampleSpacing * rest.surface().extent_m()),
+        stock(elastic::make_elastic_stock(rest, sample_nodes(rest.surface(), fixed, spacing_m), modes,
+                                          options_of(modes, 0))),
+        gradient(mesh, rest.surface()),
+        feet(feet_of(image, rest.surface())),
+        normals(corner_normals(scene.body, image.vertex_m, image.triangle)) {}
+};
+
+ElasticBake::ElasticBake(const SceneDesc& scene, const ImageContents& image, int modes,
+                         std::vector<std::string>& warnings) {
+  TetMesh mesh = make_elastic_mesh(scene, image, warnings);
+  const Supports supports = supports_of(scene, mesh);
+  check_supports(mesh, supports, scene.source.where("body.shape"));
+  parts_ = std::make_unique<Parts>(scene, image, modes, std::move(mesh), elastic::fixed_components(supports));
+}
+ElasticBake::~ElasticBake() = default;
+
+const TetMesh& ElasticBake::mesh() const { return parts_->mesh; }
+
+ElasticReport ElasticBake::write(int soft, int linear, double add_c_mpN, ImageContents& image) const {
+  const Parts& parts = *parts_;
+  elastic::ElasticBody<3> body = elastic::make_elastic_body(parts.stock, options_of(soft, linear));
+  for (const int node : body.self.nodes) body.self.self_mpN[at(node)] += add_c_mpN;
   double radius = 0;
   for (const ToolPoint& point : image.tool_point) radius = std::max(radius, point.margin_m);
-  const double least_c = radius > 0 ? -kLeastOwnShare / (2 * rest.contact_modulus() * radius) : 0;
-  const SelfField self(rest.surface(), body.self, spacing, least_c);
-  const Shapes shapes = term_shapes(body, NodalGradient(mesh, rest.surface()));
+  const double least_c = radius > 0 ? -kLeastOwnShare / (2 * parts.rest.contact_modulus() * radius) : 0;
+  const SelfField self(parts.rest.surface(), body.self, parts.spacing_m, least_c);
   add_energy(body.maps.potential, image);
-  add_vertices(body, shapes, self, image, corner_normals(scene.body, image.vertex_m, image.triangle));
+  add_vertices(body, term_shapes(body, parts.gradient), self, parts.feet, image, parts.normals);
   add_own_slopes(body, image);
   ModelParams& p = image.params;
   p.elastic_soft = body.soft;
   p.elastic_linear = static_cast<std::int32_t>(body.modes.lambda_Npm3.size()) - body.soft;
   p.elastic_radius_rootJ = body.maps.potential.radius_rootJ;
   const double largest = body.modes.phi_1pm.col(0).cwiseAbs().maxCoeff();
-  return {static_cast<std::int64_t>(mesh.node_m.size()),
-          static_cast<std::int64_t>(mesh.tet.size()),
-          p.elastic_soft,
-          p.elastic_linear,
-          static_cast<std::int32_t>(samples.size()),
-          p.elastic_radius_rootJ,
-          body.modes.lambda_Npm3[0] / (largest * largest)};
+  ElasticReport report;
+  report.nodes = static_cast<std::int64_t>(parts.mesh.node_m.size());
+  report.elements = static_cast<std::int64_t>(parts.mesh.tet.size());
+  report.soft = p.elastic_soft;
+  report.linear = p.elastic_linear;
+  report.samples = static_cast<std::int32_t>(parts.stock.samples.size());
+  report.radius_rootJ = p.elastic_radius_rootJ;
+  report.softest_N_per_m = body.modes.lambda_Npm3[0] / (largest * largest);
+  return report;
 }
 
 }  // namespace palpate

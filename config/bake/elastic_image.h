@@ -1,17 +1,26 @@
 // An elastic body for the image: modes, soft energy and self terms (config/elastic), shown at the surface's vertices.
 #pragma once
 
+#include <memory>
+
 #include "config/bake/compile.h"
 #include "config/fem/tet_mesh.h"
 
 namespace palpate {
 
-// Finite elements of the body the scene describes: made, read, or filled by gmsh below a surface of triangles about
-// body.fem.edge_mm long, with its edges bent to the surface in `image`. Throws ConfigError.
-TetMesh make_elastic_mesh(const SceneDesc& scene, const ImageContents& image, std::vector<std::string>& warnings);
+// What all choices of modes share, made once: elements, factor, a pool of modes, samples.
+class ElasticBake {
+ public:
+  // The surface in `image` is complete. Up to `modes` modes can be written. Throws ConfigError.
+  ElasticBake(const SceneDesc& scene, const ImageContents& image, int modes, std::vector<std::string>& warnings);
+  ~ElasticBake();
+  const TetMesh& mesh() const;
+  // Fills the elastic arrays and parameters. `add_c_mpN` goes to every self term.
+  ElasticReport write(int soft, int linear, double add_c_mpN, ImageContents& image) const;
 
-// Fills the elastic arrays and parameters. The surface in `image` is complete. Throws ConfigError.
-ElasticReport add_elastic_body(const SceneDesc& scene, ImageContents& image, std::vector<std::string>& warnings,
-                               const Progress& progress);
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
 
 }  // namespace palpate

@@ -28,7 +28,21 @@ struct ElasticBody {
   SelfTerms self;
 };
 
-// `contact_nodes`: where tools may touch. `rest` must outlive the result.
+// What does not depend on how many modes are taken: a pool of modes, and the samples under contacts.
+template <int kDim>
+struct ElasticStock {
+  const RestBody<kDim>* rest = nullptr;
+  SurfaceModes modes;
+  std::vector<SelfSample> samples;
+};
+// `modes`: at most so many will be asked for. `rest` must outlive the result.
+template <int kDim>
+ElasticStock<kDim> make_elastic_stock(const RestBody<kDim>& rest, const std::vector<int>& contact_nodes, int modes,
+                                      const ElasticOptions& options = {});
+template <int kDim>
+ElasticBody<kDim> make_elastic_body(const ElasticStock<kDim>& stock, const ElasticOptions& options);
+
+// Both at once. `contact_nodes`: where tools may touch. `rest` must outlive the result.
 template <int kDim>
 ElasticBody<kDim> make_elastic_body(const RestBody<kDim>& rest, const std::vector<int>& contact_nodes,
                                     const ElasticOptions& options = {});

@@ -94,39 +94,55 @@ double soft_third_order(const SoftMaps& maps, const Eigen::VectorXd& g, const Ei
 }  // namespace
 
 template <int kDim>
-SelfTerms self_terms(const RestBody<kDim>& body, const SurfaceModes& modes, const SoftMaps& maps,
-                     const std::vector<int>& nodes, double probe_m, double patch_edges) {
+std::vector<SelfSample> self_samples(const RestBody<kDim>& body, const std::vector<int>& nodes, double probe_m,
+                                     double patch_edges) {
   const Surface<kDim>& surface = body.surface();
-  const Eigen::Index soft = maps.potential.size();
-  SelfTerms terms;
-  terms.nodes = nodes;
-  terms.self_mpN.assign(static_cast<std::size_t>(body.size() / kDim), std::numeric_limits<double>::quiet_NaN());
-  terms.curvature_1pm = terms.second_mpN2 = terms.self_mpN;
-  terms.length_m = surface.extent_m();
+  std::vector<SelfSample> samples;
   for (const int node : nodes) {
     if (surface.facets_at(node).empty())
       throw ConfigError("elastic body: contact node " + std::to_string(node) + " lies inside the body");
-    const std::size_t at = static_cast<std::size_t>(node);
     const double sigma = patch_edges * surface.edge_m(node);
-    const Eigen::VectorXd g = gaussian_patch<kDim>(body, surface.rest(node), node_normal(surface, node), sigma);
-    const Eigen::VectorXd u = body.solve(g), pull = modes.phi_1pm.leftCols(soft).transpose() * g,
-                          q1 = pull.cwiseQuotient(maps.potential.lambda());
-    terms.curvature_1pm[at] = node_curvature(surface, node);
-    terms.self_mpN[at] = g.dot(u) - pull.dot(q1) -
-                         gaussian_self_compliance_mpN(kDim == 2, body.contact_modulus(), sigma, terms.length_m);
+    const Eigen::VectorXd g = gaussian_patch<kDim>(body, surface.rest(node), node_normal(surface, node), sigma),
+                          u = body.solve(g);
+    SelfSample sample;
+    sample.node = node;
+    sample.load_N = g.sparseView();
+    sample.give_mpN =
+        g.dot(u) - gaussian_self_compliance_mpN(kDim == 2, body.contact_modulus(), sigma, surface.extent_m());
+    sample.curvature_1pm = node_curvature(surface, node);
     const double scale = probe_m / u.cwiseAbs().maxCoeff();
-    const double third = (body.internal_force(scale * u) + body.internal_force(-scale * u)).dot(u) / (scale * scale);
-    terms.second_mpN2[at] = -0.5 * third - 3 * soft_third_order(maps, g, q1);
+    sample.third_mpN2 = (body.internal_force(scale * u) + body.internal_force(-scale * u)).dot(u) / (scale * scale);
+    samples.push_back(std::move(sample));
+  }
+  return samples;
+}
+
+template <int kDim>
+SelfTerms self_terms(const RestBody<kDim>& body, const SurfaceModes& modes, const SoftMaps& maps,
+                     const std::vector<SelfSample>& samples) {
+  SelfTerms terms;
+  terms.self_mpN.assign(static_cast<std::size_t>(body.size() / kDim), std::numeric_limits<double>::quiet_NaN());
+  terms.curvature_1pm = terms.second_mpN2 = terms.self_mpN;
+  terms.length_m = body.surface().extent_m();
+  for (const SelfSample& sample : samples) {
+    const std::size_t at = static_cast<std::size_t>(sample.node);
+    const Eigen::VectorXd g = sample.load_N, pull = modes.phi_1pm.leftCols(maps.potential.size()).transpose() * g,
+                          q1 = pull.cwiseQuotient(maps.potential.lambda());
+    terms.nodes.push_back(sample.node);
+    terms.curvature_1pm[at] = sample.curvature_1pm;
+    terms.self_mpN[at] = sample.give_mpN - pull.dot(q1);
+    terms.second_mpN2[at] = -0.5 * sample.third_mpN2 - 3 * soft_third_order(maps, g, q1);
   }
   return terms;
 }
 
-#define PALPATE_ELASTIC_SELF(kDim)                                                                               \
-  template Vector<kDim> node_normal<kDim>(const Surface<kDim>&, int);                                            \
-  template Eigen::VectorXd gaussian_patch<kDim>(const RestBody<kDim>&, const Vector<kDim>&, const Vector<kDim>&, \
-                                                double);                                                         \
-  template SelfTerms self_terms<kDim>(const RestBody<kDim>&, const SurfaceModes&, const SoftMaps&,               \
-                                      const std::vector<int>&, double, double);
+#define PALPATE_ELASTIC_SELF(kDim)                                                                                     \
+  template Vector<kDim> node_normal<kDim>(const Surface<kDim>&, int);                                                  \
+  template Eigen::VectorXd gaussian_patch<kDim>(const RestBody<kDim>&, const Vector<kDim>&, const Vector<kDim>&,       \
+                                                double);                                                               \
+  template std::vector<SelfSample> self_samples<kDim>(const RestBody<kDim>&, const std::vector<int>&, double, double); \
+  template SelfTerms self_terms<kDim>(const RestBody<kDim>&, const SurfaceModes&, const SoftMaps&,                     \
+                                      const std::vector<SelfSample>&);
 PALPATE_ELASTIC_SELF(2)
 PALPATE_ELASTIC_SELF(3)
 #undef PALPATE_ELASTIC_SELF

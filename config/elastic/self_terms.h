@@ -7,11 +7,21 @@
 // u = K^-1 g, U3 the soft modes' own complementary energy of third order.
 #pragma once
 
+#include <Eigen/SparseCore>
 #include <vector>
 
 #include "config/elastic/soft_maps.h"
 
 namespace palpate::elastic {
+
+// A place's patch and what it meets, whatever modes are chosen.
+struct SelfSample {
+  int node = 0;
+  Eigen::SparseVector<double> load_N;  // g
+  double give_mpN = 0;                 // g . K^-1 g less the half space's
+  double third_mpN2 = 0;               // K2(u, u) . u
+  double curvature_1pm = 0;            // at rest: mean of the principal ones; convex positive
+};
 
 struct SelfTerms {
   std::vector<int> nodes;                     // where contact may be
@@ -35,7 +45,10 @@ Vector<kDim> node_normal(const Surface<kDim>& surface, int node);
 // At the given surface nodes. `probe_m`: largest displacement of the second order's difference. `patch_edges`: the
 // patch's deviation in edges of the mesh there.
 template <int kDim>
+std::vector<SelfSample> self_samples(const RestBody<kDim>& body, const std::vector<int>& nodes, double probe_m,
+                                     double patch_edges);
+template <int kDim>
 SelfTerms self_terms(const RestBody<kDim>& body, const SurfaceModes& modes, const SoftMaps& maps,
-                     const std::vector<int>& nodes, double probe_m, double patch_edges);
+                     const std::vector<SelfSample>& samples);
 
 }  // namespace palpate::elastic

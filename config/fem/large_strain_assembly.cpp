@@ -70,6 +70,7 @@ LargeStrainAssembly<kDim>::LargeStrainAssembly(const StrainMesh<kDim>& mesh, con
       body_(body),
       shear_Pa_(body.youngs_modulus_Pa / (2 * (1 + body.poisson_ratio))),
       bulk_Pa_(body.youngs_modulus_Pa / (3 * (1 - 2 * body.poisson_ratio))),
+      point_bulk_Pa_(std::min(bulk_Pa_, body.point_bulk * shear_Pa_)),
       connectivity_(mesh.connectivity),
       equation_(std::move(equation_of_dof)) {
   for (const int q : equation_) free_count_ = std::max(free_count_, q + 1);
@@ -243,6 +244,7 @@ template <int kDim>
 bool LargeStrainAssembly<kDim>::evaluate_element(int e, const Eigen::VectorXd& u, bool tangent,
                                                  ElementSums& out) const {
   const int dofs = tables_.nodes * kDim;
+  const double projected_Pa = bulk_Pa_ - point_bulk_Pa_;
   out.energy = 0;
   out.force.head(dofs).setZero();
   if (tangent) out.stiffness.topLeftCorner(dofs, dofs).setZero();
@@ -276,9 +278,12 @@ bool LargeStrainAssembly<kDim>::evaluate_element(int e, const Eigen::VectorXd& u
     const DistortionEnergy<kDim> w = distortion_energy<kDim>(f[g], v[g], shear_Pa_);
     double dilatation = -1;
     for (int k = 0; k < tables_.modes; ++k) dilatation += projected[k] * mode(g, k);
-    const double p = bulk_Pa_ * dilatation, volume = weight_[point_index(e, g)];
-    out.energy += volume * (w.value + 0.5 * p * dilatation);
-    add_point(e, g, w.slope + p * v[g].slope, w.curvature + p * v[g].curvature, tangent, out);
+    const double own = v[g].value - 1, volume = weight_[point_index(e, g)];
+    const double p = projected_Pa * dilatation + point_bulk_Pa_ * own;
+    out.energy += volume * (w.value + 0.5 * projected_Pa * dilatation * dilatation + 0.5 * point_bulk_Pa_ * own * own);
+    GradientSquare<kDim> curvature = w.curvature + p * v[g].curvature;
+    if (point_bulk_Pa_ > 0) curvature += point_bulk_Pa_ * v[g].slope * v[g].slope.transpose();
+    add_point(e, g, w.slope + p * v[g].slope, curvature, tangent, out);
     if (!tangent) continue;
     const std::size_t first = point_index(e, g) * static_cast<std::size_t>(tables_.nodes);
     for (int q = 0; q < dofs; ++q) {
@@ -292,7 +297,7 @@ bool LargeStrainAssembly<kDim>::evaluate_element(int e, const Eigen::VectorXd& u
   }
   if (tangent) {
     const auto slope = mode_slope.topLeftCorner(dofs, tables_.modes);
-    const Eigen::MatrixXd scaled = bulk_Pa_ * slope * inverse_mass;
+    const Eigen::MatrixXd scaled = projected_Pa * slope * inverse_mass;
     for (int p = 0; p < dofs; ++p)
       for (int q = 0; q <= p; ++q) out.stiffness(p, q) += scaled.row(p).dot(slope.row(q));
   }

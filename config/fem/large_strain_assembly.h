@@ -46,6 +46,7 @@ class LargeStrainAssembly {
   ElementTables<kDim> tables_;
   StrainBody body_;
   double shear_Pa_, bulk_Pa_;
+  double point_bulk_Pa_;  // of the bulk modulus, what acts point by point, not projected
   std::vector<int> connectivity_;
   std::vector<int> equation_;  // per degree of freedom, -1 when fixed
   int free_count_ = 0;

@@ -31,6 +31,9 @@ struct StrainBody {
   Kinematics kinematics = Kinematics::kAxisymmetric;
   double thickness_m = 1;  // of plane bodies
   StrainLaw law = StrainLaw::kNeoHookean;
+  // Of the shear modulus: the bulk modulus that acts point by point, the rest acts through an element's pressure modes.
+  // T10 with its one mode alone is too soft where elements are as large as a wall.
+  double point_bulk = 0;
 };
 
 struct StrainOptions {

@@ -50,8 +50,10 @@ struct FemDesc {
 };
 // Modes of a body (contact.backend = "elastic").
 struct ElasticDesc {
-  std::int32_t soft = 4;
+  std::int32_t soft = 0;  // 0: chosen by the check presses
   std::int32_t linear = 20;
+  std::int32_t check_presses = -1;  // -1: the baker's
+  double check_error = 0.03;
 };
 struct MaterialDesc {
   double youngs_modulus_Pa = 3e6;

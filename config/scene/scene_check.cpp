@@ -249,6 +249,8 @@ void check_elastic(const SceneDesc& scene) {
   check_effect(scene, "hand", {"points_per_part"}, {}, kBecause);
   check_effect(scene, "body.fem", {"order", "zone_from_mm", "zone_to_mm", "zone_layers", "precision", "strain_gauges"},
                {}, kBecause);
+  if (scene.elastic.check_presses == 0 || (scene.elastic.check_presses < 0 && scene.elastic.soft > 0))
+    check_effect(scene, "body.elastic", {"check_error"}, {}, "without check presses (body.elastic.check_presses)");
   check_elements(scene);
 }
 

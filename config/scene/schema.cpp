@@ -110,11 +110,17 @@ const KeySpec kFem[] = {
     integer<&FemDesc::strain_gauges>("strain_gauges", 0, kMaxStrainGauges, "points whose strain is watched every tick"),
 };
 const KeySpec kElastic[] = {
-    integer<&ElasticDesc::soft>("soft_modes", 1, kMaxSoftModes,
+    integer<&ElasticDesc::soft>("soft_modes", 0, kMaxSoftModes,
                                 "softest modes of the surface, with their energy to the fourth order; raised where it "
-                                "would part a symmetric pair"),
+                                "would part a symmetric pair; 0: the fewest of 1, 2, 4, 8 that meet check_error"),
     integer<&ElasticDesc::linear>("linear_modes", 0, kMaxLinearModes,
                                   "further modes, linear, through which contact regions feel one another"),
+    integer<&ElasticDesc::check_presses>(
+        "check_presses", -1, 16,
+        "places where a ball as large as the tool's tip is pressed into large-strain elements to check the modes, up "
+        "to contact.max_depth_mm or three times device.force_max_N; 10 to 25 s each; -1: 5 where soft_modes = 0, "
+        "else none"),
+    number<&ElasticDesc::check_error>("check_error", 1e-4, 1, 1, "relative error of the force that they may show"),
 };
 const KeySpec kMaterial[] = {
     number<&MaterialDesc::youngs_modulus_Pa>("youngs_modulus_Pa", 1, 1e13, 1, "Young's modulus E"),

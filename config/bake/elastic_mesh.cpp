@@ -1,0 +1,200 @@
+#include "config/bake/elastic_mesh.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "config/bake/fem_body.h"
+#include "config/bake/image_rules.h"
+#include "config/body/body.h"
+#include "config/body/body_card.h"
+#include "config/fem/large_strain_elements.h"
+#include "config/fem/tet_io.h"
+#include "config/response/corner_normals.h"
+#include "rt_core/surface/closest_point.h"
+
+namespace palpate {
+
+namespace {
+
+// Of a refined surface's edges, per distance from the zone.
+constexpr double kGrowth = 0.5;
+
+std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
+Eigen::Vector3d eigen(Vec3 v) { return {v.x, v.y, v.z}; }
+
+// The body's surface of about as many triangles as edges of the scene's length make.
+SurfaceMesh coarse_surface(const SceneDesc& scene, const ImageContents& image, double edge_m,
+                           std::vector<std::string>& warnings) {
+  double area = 0;
+  for (const Triangle& t : image.triangle) {
+    const Vec3 a = image.vertex_m[at(t.vertex[0])];
+    area += 0.5 * norm(cross(image.vertex_m[at(t.vertex[1])] - a, image.vertex_m[at(t.vertex[2])] - a));
+  }
+  SceneDesc coarse = scene;
+  const double wanted = area / (0.25 * std::sqrt(3.0) * edge_m * edge_m);
+  coarse.body.triangles = std::clamp(static_cast<std::int32_t>(wanted), kFewestTriangles, scene.body.triangles);
+  return make_body(coarse, warnings);
+}
+
+using EdgeSet = std::set<std::pair<std::int32_t, std::int32_t>>;
+
+EdgeSet boundary_edges(const TetMesh& mesh) {
+  EdgeSet edges;
+  const TetSurface skin = surface_of(mesh);
+  for (const Corners& t : skin.mesh.triangle)
+    for (std::size_t k = 0; k < 3; ++k) edges.insert(std::minmax(skin.node[at(t[k])], skin.node[at(t[(k + 1) % 3])]));
+  return edges;
+}
+
+// Middles of boundary edges go to the nearest place of the scene's surface.
+EdgeProjection bend_to(const TetMesh& mesh, const Model& surface) {
+  return [edges = boundary_edges(mesh), surface](Vec3 middle, std::int32_t a, std::int32_t b) {
+    if (!edges.contains(std::minmax(a, b))) return middle;
+    const SurfacePoint nearest = closest_surface_point(surface, middle, kHuge, -1);
+    return nearest.found ? nearest.closest_w : middle;
+  };
+}
+
+// Elements that bending has folded, or nearly, get straight edges again.
+void straighten_folds(TetMesh& mesh) {
+  constexpr double kLeastShare = 0.2;  // of the straight element's volume, at its worst node
+  const auto tables = fem::element_tables<3>(fem::StrainElement::kT10);
+  const auto is_folded = [&](const Tet& tet) {
+    for (std::size_t n = 0; n < 10; ++n) {
+      Eigen::Matrix3d x = Eigen::Matrix3d::Zero();
+      for (std::size_t a = 0; a < 10; ++a) {
+        const auto& slope = tables.gradient_at_nodes[n * 10 + a];
+        x += eigen(mesh.node_m[at(tet.node[a])]) * Eigen::RowVector3d(slope[0], slope[1], slope[2]);
+      }
+      if (!(x.determinant() > kLeastShare * 6 * corner_volume_m3(mesh, tet))) return true;
+    }
+    return false;
+  };
+  for (bool again = true; again;) {  // each pass straightens an element for good
+    again = false;
+    for (const Tet& tet : mesh.tet) {
+      if (!is_folded(tet)) continue;
+      for (std::size_t e = 0; e < kTetEdge.size(); ++e) {
+        Vec3& middle = mesh.node_m[at(tet.node[4 + e])];
+        const Vec3 straight =
+            0.5 * (mesh.node_m[at(tet.node[at(kTetEdge[e][0])])] + mesh.node_m[at(tet.node[at(kTetEdge[e][1])])]);
+        again = again || !(middle == straight);
+        middle = straight;
+      }
+    }
+  }
+}
+
+// Places on the smooth surface that the image's facets stand for: each corner's tangent plane lifts the nearest point,
+// half of it, which is the sag of a circle over its chord.
+class SmoothSurface {
+ public:
+  SmoothSurface(const SceneDesc& scene, const ImageContents& image)
+      : model_(model_of(image)), normal_(corner_normals(scene.body, image.vertex_m, image.triangle)) {}
+  Vec3 nearest(Vec3 p) const {
+    const SurfacePoint found = closest_surface_point(model_, p, kHuge, -1);
+    if (!found.found) return p;
+    const Triangle& triangle = model_.triangle[at(found.triangle)];
+    Vec3 corner[3];
+    for (std::size_t k = 0; k < 3; ++k) corner[k] = model_.vertex_m[at(triangle.vertex[k])];
+    const Vec3 e1 = corner[1] - corner[0], e2 = corner[2] - corner[0], n = cross(e1, e2),
+               from = found.closest_w - corner[0];
+    const double b = dot(cross(from, e2), n) / squared_norm(n), c = dot(cross(e1, from), n) / squared_norm(n);
+    const double share[3] = {1 - b - c, b, c};
+    Vec3 lift;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 normal = normal_[at(found.triangle)].normal[k];
+      lift = lift + 0.5 * share[k] * dot(corner[k] - found.closest_w, normal) * normal;
+    }
+    return found.closest_w + lift;
+  }
+
+ private:
+  Model model_;
+  std::vector<CornerNormals> normal_;
+};
+
+// Splits edges, the longest first, until none is longer than `wanted_m` at its middle; new corners go where `place`
+// says.
+template <class Wanted, class Place>
+void split_edges(SurfaceMesh& mesh, const Wanted& wanted_m, const Place& place) {
+  using Edge = std::pair<std::int32_t, std::int32_t>;
+  for (bool again = true; again;) {
+    again = false;
+    std::map<Edge, std::vector<std::size_t>> sides;
+    std::vector<std::pair<double, Edge>> long_edge;
+    for (std::size_t t = 0; t < mesh.triangle.size(); ++t)
+      for (std::size_t k = 0; k < 3; ++k)
+        sides[std::minmax(mesh.triangle[t][k], mesh.triangle[t][(k + 1) % 3])].push_back(t);
+    for (const auto& [edge, triangles] : sides) {
+      const Vec3 a = mesh.vertex_m[at(edge.first)], b = mesh.vertex_m[at(edge.second)];
+      if (norm(b - a) > wanted_m(0.5 * (a + b))) long_edge.emplace_back(-norm(b - a), edge);
+    }
+    std::sort(long_edge.begin(), long_edge.end());
+    std::vector<char> is_cut(mesh.triangle.size());
+    for (const auto& [length, edge] : long_edge) {
+      const auto& triangles = sides[edge];
+      if (std::any_of(triangles.begin(), triangles.end(), [&](std::size_t t) { return is_cut[t] != 0; })) continue;
+      again = true;
+      const auto middle = static_cast<std::int32_t>(mesh.vertex_m.size());
+      mesh.vertex_m.push_back(place(0.5 * (mesh.vertex_m[at(edge.first)] + mesh.vertex_m[at(edge.second)])));
+      for (const std::size_t t : triangles) {
+        is_cut[t] = 1;
+        Corners half = mesh.triangle[t];
+        std::replace(half.begin(), half.end(), edge.first, middle);
+        std::replace(mesh.triangle[t].begin(), mesh.triangle[t].end(), edge.second, middle);
+        mesh.triangle.push_back(half);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+TetMesh refine_elastic_mesh(const SceneDesc& scene, const ImageContents& image, const TetMesh& base,
+                            std::span<const Refinement> zones) {
+  const std::string label = scene.source.where("body.shape");
+  TetMesh corners = base;
+  keep_middle_nodes(corners, std::vector<char>(corners.tet.size(), 0));
+  SurfaceMesh skin = surface_of(corners).mesh;
+  const SmoothSurface smooth(scene, image);
+  double longest = 0;
+  for (const Corners& t : skin.triangle)
+    for (std::size_t k = 0; k < 3; ++k)
+      longest = std::max(longest, norm(skin.vertex_m[at(t[k])] - skin.vertex_m[at(t[(k + 1) % 3])]));
+  const auto wanted = [&](Vec3 p) {
+    double least = kHuge;
+    for (const Refinement& zone : zones)
+      least = std::min(least, zone.edge_m + kGrowth * std::max(0.0, norm(p - zone.centre_m) - zone.radius_m));
+    return least;
+  };
+  split_edges(skin, wanted, [&](Vec3 p) { return smooth.nearest(p); });
+  TetMesh mesh = tetrahedralise(skin, longest, label);
+  const auto edges = boundary_edges(mesh);
+  add_middle_nodes(mesh, {}, [&](Vec3 middle, std::int32_t a, std::int32_t b) {
+    return edges.contains(std::minmax(a, b)) ? smooth.nearest(middle) : middle;
+  });
+  straighten_folds(mesh);
+  check_tet_mesh(mesh, label);
+  return mesh;
+}
+
+TetMesh make_elastic_mesh(const SceneDesc& scene, const ImageContents& image, std::vector<std::string>& warnings) {
+  if (card_of(scene.body.shape).tets != nullptr) {
+    TetMesh mesh = make_tet_mesh(scene, warnings);
+    return mesh;
+  }
+  const std::string label = scene.source.where("body.shape");
+  Model surface = model_of(image);
+  const double edge = is_auto(scene.fem.edge_m) ? surface.params.surface_size_m / 8 : scene.fem.edge_m;
+  TetMesh mesh = tetrahedralise(coarse_surface(scene, image, edge, warnings), edge, label);
+  add_middle_nodes(mesh, {}, bend_to(mesh, surface));
+  straighten_folds(mesh);
+  check_tet_mesh(mesh, label);
+  return mesh;
+}
+
+}  // namespace palpate
