@@ -1,5 +1,7 @@
 #include "hal/bus/device_address.h"
 
+#include <net/if.h>
+
 #include <charconv>
 #include <cstdlib>
 
@@ -77,7 +79,13 @@ std::optional<DeviceAddress> parse_device_address(const std::string& text, std::
 
 std::string lock_name(const DeviceAddress& address) {
   if (address.kind == TransportKind::kLoopback) return "";
-  if (address.kind == TransportKind::kCan) return "can-" + address.name + "-node" + std::to_string(address.node);
+  if (address.kind == TransportKind::kCan) {
+    // An interface may have other names (ip link property add ... altname), and each opens it.
+    char own[IF_NAMESIZE];
+    const unsigned index = if_nametoindex(address.name.c_str());
+    const bool known = index != 0 && if_indextoname(index, own) != nullptr;
+    return "can-" + (known ? std::string(own) : address.name) + "-node" + std::to_string(address.node);
+  }
   const std::unique_ptr<char, void (*)(void*)> full(realpath(address.name.c_str(), nullptr), std::free);
   return "usb" + std::string(full ? full.get() : address.name.c_str());
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 
 namespace palpate {
@@ -39,6 +40,11 @@ HandPose pose_of(const std::vector<double>& n) {
 
 bool read_hand_path(const std::string& path, std::vector<HandPose>& poses, std::string& error) {
   poses.clear();
+  std::error_code none;
+  if (std::filesystem::exists(path, none) && !std::filesystem::is_regular_file(path, none)) {
+    error = path + ": is no ordinary file";  // /dev/zero has no end
+    return false;
+  }
   std::ifstream file(path);
   if (!file) {
     error = path + ": cannot open: " + std::strerror(errno);

@@ -23,6 +23,7 @@
 #include "sim_host/record/recover.h"
 #include "sim_host/run/controller_link.h"
 #include "sim_host/run/device_process.h"
+#include "sim_host/run/hand_path_file.h"
 #include "sim_host/run/host_time.h"
 #include "sim_host/run/socket_pair.h"
 #include "sim_host/run/status_line.h"
@@ -219,7 +220,7 @@ class Watch {
   // Ends the controller in order; the heartbeat goes on meanwhile, or a slow stop would look like a dead host. Returns
   // its exit code.
   int finish() {
-    constexpr double kLongest_s = 3;
+    constexpr double kLongest_s = 4;  // the controller waits 3 s for a first sample, then ends by itself
     link_.mailbox().set(Command::kStop, true);
     const double from_s = time_.elapsed_s();
     while (next() && time_.elapsed_s() < from_s + kLongest_s) {
@@ -351,6 +352,10 @@ RunResult run_session(const RunOptions& options) {
   if (!options.record.empty()) {
     record.emplace(options.record, options.overwrite ? WhenItExists::kReplace : WhenItExists::kRefuse);
   }
+  // The simulated device would refuse it too, but as a process that is gone.
+  std::vector<HandPose> poses;
+  if (std::string error; !options.path.empty() && !read_hand_path(options.path, poses, error))
+    throw std::runtime_error(error);
   SceneImage scene = prepare_scene(options.scene, options.image, options.record);
   const ImageFile image(scene.image_path);
   check_profile(options, address, image.model().params, scene);

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <thread>
 
+#include "hal/bus/device_address.h"
 #include "hal/bus/loopback.h"
 #include "hal/system/device_lock.h"
 
@@ -66,6 +67,18 @@ TEST_F(DeviceLocks, AnotherUsersControllerCanLockItAndNoLinkIsFollowed) {
   std::filesystem::create_symlink("/etc/passwd", folder_ / "palpate-can-x-node1.lock");
   EXPECT_FALSE(DeviceLock::take("can-x-node1", error_, folder_));
   EXPECT_FALSE(DeviceLock::take("can-can0-node1", error_, "/nonexistent"));
+}
+
+// With the right to name interfaces, the real thing: two names of one interface are one device.
+TEST(DeviceLockName, OfAnInterfaceIsItsOwnWhateverItIsCalled) {
+  EXPECT_EQ(lock_name({TransportKind::kCan, "nocan0", WireProfile::kFd, 3}), "can-nocan0-node3");
+  EXPECT_EQ(lock_name({TransportKind::kCan, "lo", WireProfile::kFd, 1}), "can-lo-node1");
+  const std::string other = "pal" + std::to_string(getpid());
+  const std::string change = " dev lo altname " + other + " 2> /dev/null";
+  if (std::system(("ip link property add" + change).c_str()) != 0) return;  // no right to
+  const std::string name = lock_name({TransportKind::kCan, other, WireProfile::kFd, 1});
+  EXPECT_EQ(std::system(("ip link property del" + change).c_str()), 0);
+  EXPECT_EQ(name, "can-lo-node1");
 }
 
 TEST(LoopbackAccess, OnlyOnesOwnProgramsAndRootsAreTrusted) {

@@ -116,6 +116,20 @@ TEST_F(Refusal, NumbersThatAreNoneAreNoDurations) {
   }
 }
 
+// The simulated device refuses such a path, and was gone: the run then said that the controller was killed.
+TEST_F(Refusal, AMotionThatIsNoneIsSaidByTheHost) {
+  const std::string path = (folder_ / "hand.csv").string();
+  for (const char* rows : {"0,nan,0,0", "0,0,0", "0,0,0,0\n0,0,0,0", ""}) {
+    std::ofstream(path) << "time_s,x_mm,y_mm,z_mm\n" << rows << "\n";
+    EXPECT_EQ((*this)("palpate run " + options_.scene + " --virtual-time --no-record --quiet --path " + path),
+              kExitUsage);
+    EXPECT_THAT(text_, HasSubstr("hand.csv")) << rows;
+  }
+  EXPECT_EQ((*this)("palpate run " + options_.scene + " --virtual-time --no-record --quiet --path /dev/zero"),
+            kExitUsage);
+  EXPECT_THAT(text_, HasSubstr("is no ordinary file"));
+}
+
 // Root's `palpate bake -o /dev/null` replaced the device by a file, for it was written elsewhere and renamed.
 TEST_F(Refusal, WhatIsNoFileIsNotReplaced) {
   const std::string pipe = (folder_ / "pipe").string();
