@@ -37,7 +37,7 @@ start_device() { # ADDRESS [OPTION...]
 
 # latched NAME TICKS: this fault ended the run, after at least so many ticks (an earlier one would be another fault's).
 latched() {
-  [ "$status" -eq 1 ]
+  [ "$status" -eq 5 ]  # kExitFault
   grep -q "^FAULT *$1:" /results/log.txt
   awk -v least="$2" '/^controller:/ { if ($2 >= least) good = 1 } END { exit !good }' /results/log.txt
 }
