@@ -38,6 +38,7 @@ int main(int argc, char** argv) {
       "`palpate COMMAND --help` shows the options of one command.");
   int exit_code = palpate::kExitOk;
   palpate::add_bake_command(app, exit_code);
+  palpate::add_mesh_command(app, exit_code);
   palpate::add_explain_command(app, exit_code);
   palpate::add_press_command(app, exit_code);
   palpate::add_run_command(app, exit_code);

@@ -10,6 +10,7 @@
 #include "config/bake/image_rules.h"
 #include "config/body/body.h"
 #include "config/body/body_card.h"
+#include "config/body/remesh.h"
 #include "config/fem/large_strain_elements.h"
 #include "config/fem/tet_io.h"
 #include "config/response/corner_normals.h"
@@ -36,7 +37,9 @@ SurfaceMesh coarse_surface(const SceneDesc& scene, const ImageContents& image, d
   SceneDesc coarse = scene;
   const double wanted = area / (0.25 * std::sqrt(3.0) * edge_m * edge_m);
   coarse.body.triangles = std::clamp(static_cast<std::int32_t>(wanted), kFewestTriangles, scene.body.triangles);
-  return make_body(coarse, warnings);
+  const SurfaceMesh surface = make_body(coarse, warnings);
+  return scene.body.mesh.empty() ? surface
+                                 : coarser_surface(surface, edge_m, scene.source.where("body.mesh"), warnings);
 }
 
 using EdgeSet = std::set<std::pair<std::int32_t, std::int32_t>>;

@@ -33,8 +33,16 @@ SurfaceMesh make_body(const SceneDesc& scene, std::vector<std::string>& warnings
   const BodyCard& card = card_of(scene.body.shape);
   SurfaceMesh mesh = card.make(scene, label, warnings);
   if (!card.own_tets) place(scene.body, mesh.vertex_m);  // whose tetrahedra are placed already
-  check_mesh(mesh, label);
-  if (!scene.body.mesh.empty()) check_crossings(mesh, label, warnings);
+  if (scene.body.mesh.empty()) {
+    check_mesh(mesh, label);
+    return mesh;
+  }
+  try {
+    check_mesh(mesh, label);
+    check_crossings(mesh, label, warnings);
+  } catch (const ConfigError& error) {
+    throw ConfigError(std::string(error.what()) + "; `palpate mesh` repairs most such surfaces");
+  }
   return mesh;
 }
 

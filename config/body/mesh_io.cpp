@@ -1,6 +1,9 @@
 #include "config/body/mesh_io.h"
 
+#include <cerrno>
 #include <cmath>
+#include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <unordered_map>
 
@@ -157,6 +160,17 @@ MeshFile read_mesh(const std::string& path, double scale, const ImportLimits& li
   weld(file);
   drop_unused(file.mesh);
   return file;
+}
+
+void write_obj(const std::string& path, const SurfaceMesh& mesh) {
+  std::FILE* out = std::fopen(path.c_str(), "w");
+  if (out == nullptr) throw ConfigError(path + ": cannot be written: " + std::strerror(errno));
+  std::fprintf(out, "# palpate mesh, millimetres\n");
+  for (const Vec3& p : mesh.vertex_m) std::fprintf(out, "v %.9g %.9g %.9g\n", 1e3 * p.x, 1e3 * p.y, 1e3 * p.z);
+  for (const Corners& t : mesh.triangle) std::fprintf(out, "f %d %d %d\n", t[0] + 1, t[1] + 1, t[2] + 1);
+  const bool failed = std::ferror(out) != 0;
+  if (std::fclose(out) != 0 || failed)
+    throw ConfigError(path + ": cannot be written: " + std::strerror(errno) + "; is the disk full?");
 }
 
 }  // namespace palpate

@@ -1,4 +1,4 @@
-// Reads surface meshes (OBJ, STL, PLY) through assimp.
+// Reads surface meshes (OBJ, STL, PLY) through assimp, writes OBJ.
 #pragma once
 
 #include <string>
@@ -19,5 +19,9 @@ struct MeshFile {
 // Throws ConfigError naming the file and the reason: missing, unreadable, truncated, unknown extension, no triangles,
 // or nothing the library can make sense of within `limits`.
 MeshFile read_mesh(const std::string& path, double scale, const ImportLimits& limits = {});
+
+// Writes a surface as Wavefront OBJ, in millimetres. Nine digits: coordinates read back, as the mesh library's floats,
+// are the nearest. Throws ConfigError.
+void write_obj(const std::string& path, const SurfaceMesh& mesh);
 
 }  // namespace palpate

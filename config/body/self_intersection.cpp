@@ -30,11 +30,12 @@ double side_of(Vec3 a, Vec3 b, Vec3 c, Vec3 p) {
   return volume * volume <= 1e-18 * squared_norm(u) * squared_norm(v) * squared_norm(w) ? 0.0 : volume;
 }
 
-// Whether the open segment pq crosses the inside of triangle abc.
+// Whether the open segment pq goes through triangle abc, its border included: sheets of mirror-symmetric bodies meet
+// edge through edge, everywhere (a dent pushed through the opposite side of a sphere went unseen until 2026-11-22).
 bool crosses(Vec3 p, Vec3 q, Vec3 a, Vec3 b, Vec3 c) {
   if (!(side_of(a, b, c, p) * side_of(a, b, c, q) < 0)) return false;
   const double s = side_of(p, a, b, q), t = side_of(p, b, c, q), u = side_of(p, c, a, q);
-  return (s > 0 && t > 0 && u > 0) || (s < 0 && t < 0 && u < 0);
+  return (s >= 0 && t >= 0 && u >= 0) || (s <= 0 && t <= 0 && u <= 0);
 }
 
 // A tree of boxes over the triangles, halved at the median of its longest side: node k has children 2k+1 and 2k+2.

@@ -20,8 +20,8 @@ struct SelfIntersections {
 inline constexpr std::int64_t kPairBudget = 400'000'000;
 inline constexpr std::int64_t kMostCounted = 1000;
 
-// Crossing of triangles that share no edge; touching without crossing, and sheets that lie in one another, do not
-// count.
+// Crossing of triangles that share no edge; a corner or edge that rests on a facet, and sheets that lie in one another,
+// do not count.
 SelfIntersections find_self_intersections(const SurfaceMesh& mesh, std::int64_t pair_budget = kPairBudget);
 
 }  // namespace palpate

@@ -1,43 +1,16 @@
 // Runs the program gmsh on a discrete surface.
-#include <fcntl.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
+#include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
-#include <iterator>
 
 #include "config/fem/tet_io.h"
+#include "config/scene/child_program.h"
 #include "config/scene/config_error.h"
-
-extern char** environ;
 
 namespace palpate {
 
 namespace {
-
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "palpate-gmsh-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr)
-      throw ConfigError(name + ": cannot make a temporary folder: " + std::strerror(errno) + "; set TMPDIR");
-    path_ = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  std::string file(const char* name) const { return (path_ / name).string(); }
-
- private:
-  std::filesystem::path path_;
-};
 
 void write_surface(const SurfaceMesh& surface, const std::string& path) {
   std::FILE* out = std::fopen(path.c_str(), "w");
@@ -64,45 +37,19 @@ void write_script(double edge_m, const std::string& path) {
                       << sizes << "Merge \"surface.msh\";\nSurface Loop(1) = {1};\nVolume(1) = {1};\n";
 }
 
-// Runs gmsh with both outputs in `log`; its exit status, 127 when it is missing.
-int run_gmsh(const TemporaryFolder& folder, const std::string& log) {
-  std::string script = folder.file("body.geo"), result = folder.file("body.msh");
-  std::string arguments[] = {"gmsh", script, "-3", "-nt", "1", "-v", "2", "-format", "msh22", "-o", result};
-  std::vector<char*> argv;
-  for (std::string& a : arguments) argv.push_back(a.data());
-  argv.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-  posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
-  pid_t child = 0;
-  const int error = posix_spawnp(&child, "gmsh", &actions, nullptr, argv.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (error != 0) return 127;
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0)
-    if (errno != EINTR) return 1;
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 1;
-}
-
-std::string last_lines(const std::string& path) {
-  std::ifstream file(path);
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
-  return text.size() > 600 ? text.substr(text.size() - 600) : text;
-}
-
 }  // namespace
 
 TetMesh tetrahedralise(const SurfaceMesh& surface, double edge_m, const std::string& label) {
   check_mesh(surface, label);
   if (!(edge_m > 0)) throw ConfigError(label + ": the length of the tetrahedra's edges must be positive");
-  const TemporaryFolder folder;
+  const TemporaryFolder folder("palpate-gmsh");
   write_surface(surface, folder.file("surface.msh"));
   write_script(edge_m, folder.file("body.geo"));
   const std::string log = folder.file("gmsh.log");
-  const int status = run_gmsh(folder, log);
-  if (status == 127)
+  const int status = run_program(
+      {"gmsh", folder.file("body.geo"), "-3", "-nt", "1", "-v", "2", "-format", "msh22", "-o", folder.file("body.msh")},
+      log);
+  if (status == kProgramMissing)
     throw ConfigError(label +
                       ": the program gmsh, which makes the tetrahedra, was not found; install the package gmsh");
   if (status != 0 || !std::filesystem::exists(folder.file("body.msh")))

@@ -269,9 +269,13 @@ void bake_response(const SceneDesc& scene, ImageContents& image, ResponseReport&
   image.corner_normal = corner_normals(scene.body, image.vertex_m, image.triangle);
   report.slack_m = largest_sag_m(image.corner_normal, image.vertex_m, image.triangle);
   // Half the margin within which the tick measures every point.
-  if (!(report.slack_m <= 2.5e-4))
-    throw ConfigError(scene.source.where("body.triangles") + ": facets stand off the smooth surface by " +
-                      number_text(1e3 * report.slack_m) + " mm; allowed 0.25 mm: use more triangles");
+  if (!(report.slack_m <= 2.5e-4)) {
+    const bool file = !scene.body.mesh.empty();
+    throw ConfigError(scene.source.where(file ? "body.mesh" : "body.triangles") +
+                      ": facets stand off the smooth surface by " +
+                      number_text(std::round(1e5 * report.slack_m) / 100) + " mm; allowed 0.25 mm: " +
+                      (file ? "mesh it finer, as by palpate mesh FILE --edge-mm LENGTH" : "use more triangles"));
+  }
   image.params.smooth_slack_m = 1.5 * report.slack_m;
   if (!whole_tip) return;
   if (scene.contact.law == ContactLaw::kTable) {

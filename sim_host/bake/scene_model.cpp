@@ -7,6 +7,7 @@
 
 #include "config/bake/compile.h"
 #include "rt_core/image.h"
+#include "sim_host/bake/default_path.h"
 
 namespace palpate {
 
@@ -33,6 +34,7 @@ void SceneModel::compile() {
     throw std::runtime_error(fmt::format("{}: the compiled scene fails its own check: {}: {}", scene_->name,
                                          result.field, describe(result.error)));
   }
+  add_default_path(*scene_, model_);
 }
 
 }  // namespace palpate

@@ -10,6 +10,7 @@
 
 #include "config/body/body.h"
 #include "config/body/mesh_io.h"
+#include "config/body/procedural.h"
 #include "config/body/self_intersection.h"
 #include "config/scene/config_error.h"
 #include "config/scene/scene.h"
@@ -122,6 +123,14 @@ TEST(SelfIntersection, ABodyThatGoesThroughItselfIsRefusedWithThePlace) {
     for (const char* word : {"s.toml:", "body.mesh", "goes through itself at (", "mm, triangle ", "mesh editor"})
       EXPECT_NE(text.find(word), std::string::npos) << word << " in: " << text;
   }
+}
+
+// Every edge of the dent meets an edge of the other side: nothing goes through the inside of a triangle.
+TEST(SelfIntersection, SheetsThatMeetEdgeThroughEdgeAreSeen) {
+  SurfaceMesh mesh = make_ellipsoid({0.03, 0.03, 0.03}, 1500);
+  for (Vec3& p : mesh.vertex_m)
+    if (norm(p - Vec3{0, 0.06, 0}) < 0.006) p.y -= 0.07;
+  EXPECT_GT(find_self_intersections(mesh).pairs, 0);
 }
 
 TEST(SelfIntersection, ASpentBudgetIsSaid) {

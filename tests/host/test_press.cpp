@@ -98,6 +98,26 @@ TEST_P(PressScene, ActionEqualsReactionAndMomentsBalance) {
 INSTANTIATE_TEST_SUITE_P(AllScenes, PressScene,
                          ::testing::Values("ellipsoid_mallet", "ellipsoid_mallet_paper", "heart_compass"));
 
+// A scene without a motion gets one that presses its body's top, slides and lets go.
+TEST(DefaultPath, PressesTheHighestPointAndLetsGo) {
+  const SceneModel scene(parse_scene(
+      "name = \"s\"\n[body]\nshape = \"ellipsoid\"\nposition_mm = [100, 20, 0]\n[[tool.piece]]\nshape = \"sphere\"\n"
+      "radius_mm = 8\nposition_mm = [0, 15, 0]\n",
+      "s.toml"));
+  const auto poses = scripted_poses(scene.scene()->path, scene.model().params.period_s);
+  const auto state = make_state(scene.model());
+  double most_N = 0, first_x_m = 0, last_N = 1;
+  press(scene.model(), poses, {}, *state, nullptr, [&](const PressRow& row, const State&, const Scratch&) {
+    const double force_N = norm(row.record.output.contact_w.force_N);
+    if (most_N == 0 && force_N > 0) first_x_m = row.record.output.tool_w.position_m.x;
+    most_N = std::max(most_N, force_N);
+    last_N = force_N;
+  });
+  EXPECT_GT(most_N, 0.5);
+  EXPECT_NEAR(first_x_m, 0.1, 1e-3);  // above the moved body's top
+  EXPECT_EQ(last_N, 0);
+}
+
 // A sphere held against the side of a ball: force along the line of centres, of the size the law says.
 SceneDesc ball_scene() {
   return parse_scene(R"(
