@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "rt_core/contact/contact.h"
-#include "rt_core/contact/elastic/elastic_row.h"
+#include "sim_host/view/elastic_surface.h"
 #include "sim_host/view/imprint.h"
 #include "sim_host/view/surface_shape.h"
 
@@ -77,15 +77,15 @@ std::vector<Vec3> nodal_displacement_m(const Model& model, const State& state) {
                                       : response_m(model, state, model.compliance_f64);
 }
 
-// The soft modes of an elastic body; the dent under the tips, which the modes do not hold, is not drawn.
-std::vector<Vec3> soft_displacement_m(const Model& model, const State& state) {
-  std::array<double, elastic_layout::kMaxTerms> products;
-  soft_products(model.params.elastic_soft, state.elastic.soft_rootJ.data(), products.data());
-  std::int32_t looked = 0, shown = 0;
-  const CarriedSurface carried{model, products.data(), &looked, &shown};
-  std::vector<Vec3> displacement;
-  for (std::int32_t v = 0; v < model.sizes.n_vertex; ++v) displacement.push_back(carried.displacement(v));
-  return displacement;
+// Modes at the vertices, straight between them; the dents at every point.
+void add_dents(const Model& model, const State& state, DeformedSurface& surface) {
+  const std::vector<TipDent> dents = tip_dents(model, state);
+  if (dents.empty()) return;
+  const std::vector<Vec3> normal = mesh_normals(surface.rest_m, surface.triangle);
+  for (std::size_t i = 0; i < surface.rest_m.size(); ++i) {
+    const Vec3 carried = surface.rest_m[i] + surface.displacement_m[i];
+    for (const TipDent& dent : dents) surface.displacement_m[i] += dent.at(carried, normal[i]);
+  }
 }
 
 void displace(const Model& model, const State& state, DeformedSurface& surface) {
@@ -94,7 +94,8 @@ void displace(const Model& model, const State& state, DeformedSurface& surface) 
     return;
   }
   if (method_of(model) == Method::kElastic) {
-    surface.displacement_m = soft_displacement_m(model, state);
+    if (surface.displacement_m.empty()) surface.displacement_m = mode_displacement_m(model, state);
+    add_dents(model, state, surface);
     return;
   }
   ShapeField field;
@@ -150,8 +151,9 @@ struct HalvedEdge {
   Vec3 lift, low_normal, high_normal;
 };
 
-// Halves every edge; `corner` goes along.
+// Halves every edge; `corner` goes along, and displacements where they are known already.
 void refine(DeformedSurface& surface, std::vector<TriangleNormals>& corner) {
+  const bool given = !surface.displacement_m.empty();
   constexpr double kRounding = 0.5;  // exact for a circle to second order
   std::map<std::pair<std::int32_t, std::int32_t>, HalvedEdge> edges;
   const auto same = [](Vec3 a, Vec3 b) { return squared_norm(a - b) < 1e-6; };
@@ -166,7 +168,11 @@ void refine(DeformedSurface& surface, std::vector<TriangleNormals>& corner) {
       const auto [entry, is_new] =
           edges.try_emplace({a, b}, HalvedEdge{static_cast<std::int32_t>(surface.rest_m.size()), lift, na, nb});
       HalvedEdge& edge = entry->second;
-      if (is_new) surface.rest_m.push_back(p);
+      if (is_new) {
+        surface.rest_m.push_back(p);
+        if (given)
+          surface.displacement_m.push_back(0.5 * (surface.displacement_m[at(a)] + surface.displacement_m[at(b)]));
+      }
       // On a crease each side lifts by its own curvature: at a cylinder's rim the wall does and the lid does not.
       else if (!same(edge.low_normal, na) || !same(edge.high_normal, nb))
         edge.lift += lift;
@@ -227,8 +233,8 @@ DeformedSurface refined_surface(const Model& model, const State& state, std::siz
   DeformedSurface surface = rest_surface(model);
   std::vector<TriangleNormals> corner = smooth_normals(surface.rest_m, surface.triangle);
   const Method method = method_of(model);
-  const bool everywhere = method != Method::kNodes && method != Method::kElastic &&
-                          model.params.shape_law != ShapeLaw::kDisplacementAnglePaper;
+  if (method == Method::kElastic) surface.displacement_m = mode_displacement_m(model, state);
+  const bool everywhere = method != Method::kNodes && model.params.shape_law != ShapeLaw::kDisplacementAnglePaper;
   while (everywhere && 4 * surface.triangle.size() <= most_triangles) refine(surface, corner);
   displace(model, state, surface);
   finish(surface);

@@ -27,7 +27,7 @@ DeformedSurface deformed_surface(const Model& model, std::vector<Vec3> displacem
 DeformedSurface deformed_surface(const Model& model, const State& state);
 // The same on a mesh refined for drawing, up to `most_triangles`: edges are halved and the new points rounded by the
 // normals (Phong tessellation, Boubekeur & Alexa 2008), which keep creases sharp. Not refined where the shape law
-// is only known at the model's vertices (displacement angles, finite elements).
+// is only known at the model's vertices (displacement angles, finite elements); modes are straight between vertices.
 DeformedSurface refined_surface(const Model& model, const State& state, std::size_t most_triangles = 250'000);
 
 }  // namespace palpate

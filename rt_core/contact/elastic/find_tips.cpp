@@ -34,7 +34,7 @@ class Finder {
   void visit(std::int32_t index) PALPATE_RT {
     PointState& point = state_.point[index];
     const bool touched = point.triangle >= 0 && point.gap_m < 0;
-    RoundTip tip = tip_at(index, carrier_w(model_, state_, piece_of(index)));
+    RoundTip tip = round_tip(model_, index, carrier_w(model_, state_, piece_of(index)));
     if (!touched && is_far(index, tip)) return;
     ElasticRow& row = work_.row[piece_of(index)];
     if (touched) {
@@ -61,19 +61,6 @@ class Finder {
   std::int32_t piece_of(std::int32_t index) const PALPATE_RT {
     return model_.tool_point[static_cast<std::size_t>(index)].piece;
   }
-  // A capsule that touches all over has its point in its middle; at one end, there.
-  RoundTip tip_at(std::int32_t index, const Pose& carrier) const PALPATE_RT {
-    const ToolPoint& point = model_.tool_point[static_cast<std::size_t>(index)];
-    const ToolPiece& piece = model_.piece[static_cast<std::size_t>(point.piece)];
-    RoundTip tip;
-    tip.margin_m = point.margin_m;
-    tip.middle_w = transform(carrier, point.position_tool_m);
-    if (piece.shape == PieceShape::kCapsule && point.position_tool_m == piece.pose_tool.position_m)
-      tip.half_axis_w =
-          rotate(carrier.orientation, rotate(piece.pose_tool.orientation, Vec3{0, 0, piece.half_extent_m[2]}));
-    return tip;
-  }
-
   // On the body let go; or as it stands, where friction or another finger holds it towards the tip.
   Real free_depth(const ElasticRow& row) const PALPATE_RT {
     return row.travel_m + max_of(dot(row.pull, let_go_, model_.params.elastic_soft), 0.0);
@@ -83,7 +70,7 @@ class Finder {
   // of it.
   bool is_far(std::int32_t index, const RoundTip& tip) PALPATE_RT {
     PointState& point = state_.point[index];
-    const RoundTip before = tip_at(index, carrier_previous_w(model_, state_, piece_of(index)));
+    const RoundTip before = round_tip(model_, index, carrier_previous_w(model_, state_, piece_of(index)));
     const Real half = norm(tip.half_axis_w);
     const Real tool_m = norm(tip.middle_w - before.middle_w) + norm(tip.half_axis_w - before.half_axis_w);
     const Real box = distance_to(box_, tip.middle_w) - tip.margin_m - half - moved_m_;
@@ -152,6 +139,18 @@ class Finder {
 };
 
 }  // namespace
+
+RoundTip round_tip(const Model& model, std::int32_t index, const Pose& carrier) PALPATE_RT {
+  const ToolPoint& point = model.tool_point[static_cast<std::size_t>(index)];
+  const ToolPiece& piece = model.piece[static_cast<std::size_t>(point.piece)];
+  RoundTip tip;
+  tip.margin_m = point.margin_m;
+  tip.middle_w = transform(carrier, point.position_tool_m);
+  if (piece.shape == PieceShape::kCapsule && point.position_tool_m == piece.pose_tool.position_m)
+    tip.half_axis_w =
+        rotate(carrier.orientation, rotate(piece.pose_tool.orientation, Vec3{0, 0, piece.half_extent_m[2]}));
+  return tip;
+}
 
 void find_elastic_tips(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   scratch.contact_count = scratch.surface_work = 0;

@@ -14,6 +14,8 @@ CarriedSurface look(const Model& model, const State& state, Scratch& scratch, st
                     std::int32_t& shown) PALPATE_RT;
 // Step of the amplitudes when every force is let go, with H of no force.
 void let_go(const Model& model, const SoftEnergy& energy, Real* step) PALPATE_RT;
+// Of a tool point: a capsule that touches all over has its point in its middle; at one end, there.
+RoundTip round_tip(const Model& model, std::int32_t index, const Pose& carrier) PALPATE_RT;
 // The rows of this tick (ContactMethod::find_rows).
 void find_elastic_tips(const Model& model, State& state, Scratch& scratch) PALPATE_RT;
 

@@ -1,0 +1,146 @@
+#include "sim_host/view/elastic_surface.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "rt_core/contact/elastic/linearised.h"
+#include "rt_core/tool/articulate.h"
+
+namespace palpate {
+
+namespace {
+
+using elastic_layout::kMaxTerms;
+
+// A dent is drawn out to this many radii, fading over the second half: beyond, the modes hold what the body does.
+constexpr double kReach = 8;
+// Nor longer than this many times as wide: the contact of a rod on a flat.
+constexpr double kLongest = 12;
+
+struct TouchingTip {
+  ElasticRow row;
+  std::int32_t region = -1;
+};
+
+struct Amplitudes {
+  explicit Amplitudes(const Model& model, const State& state) {
+    soft_products(model.params.elastic_soft, state.elastic.soft_rootJ.data(), product);
+  }
+  std::int32_t looked = 0, shown = 0;
+  double product[kMaxTerms];
+};
+
+// Every tip that touches, on the surface as the soft modes carry it.
+std::vector<TouchingTip> touching_tips(const Model& model, const State& state, Amplitudes& amplitude) {
+  const CarriedSurface carried{model, amplitude.product, &amplitude.looked, &amplitude.shown};
+  std::vector<TouchingTip> tips;
+  for (std::size_t i = 0; i < model.tool_point.size(); ++i) {
+    const PointState& point = state.point[i];
+    if (point.region < 0 || point.triangle < 0 || !(point.gap_m < 0)) continue;
+    const std::int32_t piece = model.tool_point[i].piece;
+    RoundTip round = round_tip(model, static_cast<std::int32_t>(i), carrier_w(model, state, piece));
+    round.come_near(point.closest_w);
+    TouchingTip tip;
+    tip.region = point.region;
+    carried.place(round, point.triangle, point.closest_w, tip.row);
+    if (tip.row.foot.triangle >= 0) tips.push_back(tip);
+  }
+  return tips;
+}
+
+// Of the linear modes, J^1/2: a region's force is shared by its tips alike, as good as is known here.
+std::array<double, kMaxLinearModes> linear_amplitudes(const Model& model, const State& state,
+                                                      const std::vector<TouchingTip>& tips) {
+  std::array<double, kMaxLinearModes> amplitude{};
+  for (const TouchingTip& tip : tips) {
+    const auto sharing = std::ranges::count_if(tips, [&](const TouchingTip& t) { return t.region == tip.region; });
+    const double force_N =
+        state.region[static_cast<std::size_t>(tip.region)].normal_force_N / static_cast<double>(sharing);
+    double along[kMaxLinearModes];
+    show_linear_modes(model, tip.row, along);
+    for (std::int32_t m = 0; m < model.params.elastic_linear; ++m)
+      amplitude[static_cast<std::size_t>(m)] -= force_N * along[m];
+  }
+  return amplitude;
+}
+
+Vec3 linear_displacement(const Model& model, std::int32_t vertex,
+                         const std::array<double, kMaxLinearModes>& amplitude) {
+  const float* shape = elastic_layout::linear_shapes(model, vertex);
+  Vec3 sum;
+  for (std::int32_t m = 0; m < model.params.elastic_linear; ++m)
+    sum += amplitude[static_cast<std::size_t>(m)] * Vec3{static_cast<double>(shape[3 * m]),
+                                                         static_cast<double>(shape[3 * m + 1]),
+                                                         static_cast<double>(shape[3 * m + 2])};
+  return sum;
+}
+
+// Displacement over the depth at `rho` contact radii from the middle.
+double hertz_profile(double rho) {
+  if (rho <= 1) return 1 - 0.5 * rho * rho;
+  constexpr double kPi = 3.14159265358979323846;
+  return ((2 - rho * rho) * std::asin(1 / rho) + std::sqrt(rho * rho - 1)) / kPi;
+}
+
+TipDent dent_of(const TouchingTip& tip, double depth_m) {
+  const ElasticRow& row = tip.row;
+  TipDent dent;
+  dent.foot_w = row.foot.foot_w;
+  dent.inward = -row.foot.normal_w;
+  dent.depth_m = depth_m;
+  const double radius = row.tip.margin_m, body = std::max(1 + row.curvature_1_per_m * radius, 0.25);
+  dent.across_m = dent.along_m = std::sqrt(depth_m * radius / body);
+  const Vec3 axis = tangential_part(row.tip.half_axis_w, row.foot.normal_w);
+  dent.along = unit_or(axis, unit_or(cross(dent.inward, axis_off(dent.inward)), {1, 0, 0}));
+  if (row.tip.is_ball() || !(row.tip.sideness() > 0)) return dent;
+  const double longest = kLongest * dent.across_m;
+  const double bent = row.along_1_per_m > 0 ? std::sqrt(depth_m / row.along_1_per_m) : longest;
+  dent.along_m += row.tip.sideness() * (std::clamp(bent, dent.across_m, longest) - dent.across_m);
+  return dent;
+}
+
+}  // namespace
+
+std::vector<Vec3> mode_displacement_m(const Model& model, const State& state) {
+  Amplitudes soft(model, state);
+  const CarriedSurface carried{model, soft.product, &soft.looked, &soft.shown};
+  const std::array<double, kMaxLinearModes> linear = linear_amplitudes(model, state, touching_tips(model, state, soft));
+  std::vector<Vec3> displacement;
+  for (std::int32_t v = 0; v < model.sizes.n_vertex; ++v)
+    displacement.push_back(carried.displacement(v) + linear_displacement(model, v, linear));
+  return displacement;
+}
+
+std::vector<TipDent> tip_dents(const Model& model, const State& state) {
+  Amplitudes soft(model, state);
+  const std::vector<TouchingTip> tips = touching_tips(model, state, soft);
+  const std::array<double, kMaxLinearModes> linear = linear_amplitudes(model, state, tips);
+  std::vector<TipDent> dents;
+  for (const TouchingTip& tip : tips) {
+    double along[kMaxLinearModes], given_m = 0;
+    show_linear_modes(model, tip.row, along);
+    for (std::int32_t m = 0; m < model.params.elastic_linear; ++m)
+      given_m -= along[m] * linear[static_cast<std::size_t>(m)];
+    const double depth_m = tip.row.travel_m - given_m;
+    if (!(depth_m > 0)) continue;
+    TipDent dent = dent_of(tip, depth_m);
+    dent.foot_w += given_m * dent.inward;
+    dents.push_back(dent);
+  }
+  return dents;
+}
+
+Vec3 TipDent::at(Vec3 point_w, Vec3 normal) const {
+  const double facing = -dot(normal, inward);
+  if (!(facing > 0)) return {};
+  // The whole distance: what lies far below the tip, as a ring's other side, is far from it.
+  const Vec3 from = point_w - foot_w;
+  const double x = dot(from, along) / along_m, y = norm(from - dot(from, along) * along) / across_m;
+  const double rho = std::sqrt(x * x + y * y);
+  if (rho >= kReach) return {};
+  const double fade = rho < 0.5 * kReach ? 1 : 2 * (1 - rho / kReach);
+  return (depth_m * hertz_profile(rho) * fade * std::min(1.0, 2 * facing)) * inward;
+}
+
+}  // namespace palpate

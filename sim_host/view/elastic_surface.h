@@ -1,0 +1,28 @@
+// The solved surface of an elastic body: its modes, and under every tip the dent with its true radius.
+#pragma once
+
+#include <vector>
+
+#include "rt_core/model.h"
+#include "rt_core/state.h"
+
+namespace palpate {
+
+// By the soft modes (with their second order) and the linear ones, under the forces of the regions; of every vertex.
+std::vector<Vec3> mode_displacement_m(const Model& model, const State& state);
+
+// What a tip in contact adds: the profile of a frictionless contact on a half space (Hertz; Johnson 1985, eq. 3.42),
+// an ellipse where a capsule lies on its side, deep enough that the surface meets the tip.
+struct TipDent {
+  Vec3 foot_w;               // deepest place, on the surface as the modes carry it
+  Vec3 inward;               // unit
+  Vec3 along;                // unit, of the ellipse's longer axis
+  double depth_m;            // what the modes leave of the tip's overlap
+  double across_m, along_m;  // the contact's half axes
+
+  // At a point of the carried surface whose normal at rest is `normal`; nothing on sides that face away.
+  Vec3 at(Vec3 point_w, Vec3 normal) const;
+};
+std::vector<TipDent> tip_dents(const Model& model, const State& state);
+
+}  // namespace palpate
