@@ -49,6 +49,7 @@ struct LoopOptions {
   // Ticks in a row, in time and with a sample, after which a run that stood still goes on by itself; 0: it latches the
   // fault. Only for a simulated device, which stood still with the machine and hurts nobody.
   std::uint32_t ride_through_ticks = 0;
+  std::int64_t phase_ns = -1;      // of the slots on the clock's grid; negative: as the loop happens to start
   std::uint32_t stop_ticks = 200;  // longest ramp-down
   std::uint32_t zero_ticks = 5;    // zero-force commands that end every run
 };
@@ -124,7 +125,7 @@ class Loop {
         options_(options),
         stop_(stop),
         link_(options.link),
-        slots_(options.deadline, clock.now_ns() + options.deadline.period_ns) {}
+        slots_(options.deadline, first_slot_ns(clock.now_ns(), options.deadline.period_ns, options.phase_ns)) {}
 
   LoopSummary run() noexcept {
     summary_.end = wait_for_device();

@@ -19,6 +19,7 @@
 #include "hal/device/device_node.h"
 #include "hal/device/fault_player.h"
 #include "hal/loop/clock.h"
+#include "hal/loop/deadline.h"
 #include "hal/loop/lockstep.h"
 #include "hal/system/rt_linux.h"
 #include "sim_host/exit_codes.h"
@@ -183,9 +184,10 @@ BusRate bus_rate(const Arguments& arguments, const DeviceAddress& address) {
 }
 
 // The device's own clock, one step per period. A late step is made up for at once: mechanics does not skip time.
+// The first is a period after `deadline_ns`.
 template <Clock C>
 void run_node(DeviceNode& node, FaultPlayer& faults, BusModel* bus, const Arguments& arguments, C& clock,
-              const std::atomic<bool>& stop) {
+              std::int64_t deadline_ns, const std::atomic<bool>& stop) {
   const auto leader_is_there = [&clock] {
     if constexpr (requires { clock.connected(); }) {
       return clock.connected();
@@ -195,7 +197,6 @@ void run_node(DeviceNode& node, FaultPlayer& faults, BusModel* bus, const Argume
     }
   };
   const auto steps = static_cast<std::uint64_t>(arguments.duration_s / arguments.plant.period_s);
-  std::int64_t deadline_ns = clock.now_ns();
   for (std::uint64_t i = 0; (steps == 0 || i < steps) && !stop.load(std::memory_order_relaxed) && leader_is_there() &&
                             (node.connected() || faults.unplugged());
        ++i) {
@@ -239,9 +240,11 @@ int run(int argc, char** argv) {
   MonotonicClock real_time;
   FollowerClock virtual_time(arguments.turn_fd, stop);
   if (arguments.turn_fd >= 0) {
-    run_node(node, faults, timed ? &bus : nullptr, arguments, virtual_time, stop);
+    run_node(node, faults, timed ? &bus : nullptr, arguments, virtual_time, virtual_time.now_ns(), stop);
   } else {
-    run_node(node, faults, timed ? &bus : nullptr, arguments, real_time, stop);
+    const std::int64_t begin_ns =
+        first_slot_ns(real_time.now_ns(), faults.period_ns(), step_phase_ns(faults.period_ns())) - faults.period_ns();
+    run_node(node, faults, timed ? &bus : nullptr, arguments, real_time, begin_ns, stop);
   }
   return kOk;
 }

@@ -211,6 +211,21 @@ TEST(Overrun, TooManyInARowLatchTheFaultAndOneLongGapToo) {
   EXPECT_EQ(once.recorder.records[4].input.overrun_ticks, 25u);
 }
 
+TEST(DeadlineTracker, LoopAndSimulatedDeviceAreHalfAPeriodApart) {
+  constexpr std::int64_t kPeriod = 1'000'000;
+  for (const std::int64_t now : {0LL, 1LL, 499'999LL, 500'000LL, 999'999LL, 123'456'789'012LL}) {
+    const std::int64_t slot = first_slot_ns(now, kPeriod, slot_phase_ns(kPeriod));
+    const std::int64_t step = first_slot_ns(now, kPeriod, step_phase_ns(kPeriod));
+    for (const std::int64_t first : {slot, step}) {
+      EXPECT_GE(first - now, kPeriod / 2);
+      EXPECT_LE(first - now, 3 * kPeriod / 2);
+    }
+    EXPECT_EQ(slot % kPeriod, kPeriod / 4);
+    EXPECT_EQ(std::abs(slot - step), kPeriod / 2);
+  }
+  EXPECT_EQ(first_slot_ns(0, kPeriod, -1), kPeriod);  // virtual time
+}
+
 TEST(DeadlineTracker, SlotsStayOnOneGrid) {
   DeadlineTracker slots({}, 1000);
   EXPECT_FALSE(slots.skip(1000 + kPeriod_ns - 1));
