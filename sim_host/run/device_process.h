@@ -22,6 +22,7 @@ class DeviceProcess {
   DeviceProcess& operator=(const DeviceProcess&) = delete;
 
   bool running() { return process_.running(); }
+  bool ends_within(int timeout_ms) { return process_.wait(timeout_ms); }
   int controller_end() const { return sockets_.end(0); }
   // Once the controller holds it: then the device notices the controller's end.
   void close_controller_end() { sockets_.close_end(0); }

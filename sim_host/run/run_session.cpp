@@ -210,6 +210,9 @@ class Watch {
       look();
       report(time_.elapsed_s(), false);
     }
+    // A killed device's sockets close before it can be waited for, and the fault may end the watch between the two.
+    constexpr int kLongestDeath_ms = 100;
+    if (faulted_ && device_ != nullptr) device_died_ = device_died_ || device_->ends_within(kLongestDeath_ms);
     if (show_) fmt::print(stderr, "\r\x1b[K");
     report(time_.elapsed_s(), true);
     return time_.elapsed_s();

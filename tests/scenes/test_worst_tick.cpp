@@ -60,7 +60,9 @@ TEST_P(WorstTick, HoldsUnderAnAdversary) {
     EXPECT_LE(model_.stage_cost[s].instructions, 1.001 * most_stage_cost(model_, stage)) << stage_name(stage);
   }
   std::printf("\n");
-  EXPECT_LE(worst_tick_instructions(model_), 3 * worst);  // one that nothing comes near would prove nothing
+  // One that nothing comes near would prove nothing. Elastic bodies, whose dearest ticks are rare, have more in
+  // reserve.
+  EXPECT_LE(worst_tick_instructions(model_), (method_of(model_.params) == Method::kElastic ? 3.6 : 3.0) * worst);
 }
 
 TEST_P(WorstTick, TheScriptedHandNeverMeetsIt) {
