@@ -35,11 +35,11 @@ struct Amplitudes {
 std::vector<TouchingTip> touching_tips(const Model& model, const State& state, Amplitudes& amplitude) {
   const CarriedSurface carried{model, amplitude.product, &amplitude.looked, &amplitude.shown};
   std::vector<TouchingTip> tips;
-  for (std::size_t i = 0; i < model.tool_point.size(); ++i) {
+  for (std::int32_t i = 0; i < model.sizes.n_tool_point; ++i) {
     const PointState& point = state.point[i];
     if (point.region < 0 || point.triangle < 0 || !(point.gap_m < 0)) continue;
-    const std::int32_t piece = model.tool_point[i].piece;
-    RoundTip round = round_tip(model, static_cast<std::int32_t>(i), carrier_w(model, state, piece));
+    const std::int32_t piece = model.tool_point[static_cast<std::size_t>(i)].piece;
+    RoundTip round = round_tip(model, i, carrier_w(model, state, piece));
     round.come_near(point.closest_w);
     TouchingTip tip;
     tip.region = point.region;
@@ -55,8 +55,7 @@ std::array<double, kMaxLinearModes> linear_amplitudes(const Model& model, const 
   std::array<double, kMaxLinearModes> amplitude{};
   for (const TouchingTip& tip : tips) {
     const auto sharing = std::ranges::count_if(tips, [&](const TouchingTip& t) { return t.region == tip.region; });
-    const double force_N =
-        state.region[static_cast<std::size_t>(tip.region)].normal_force_N / static_cast<double>(sharing);
+    const double force_N = state.region[tip.region].normal_force_N / static_cast<double>(sharing);
     double along[kMaxLinearModes];
     show_linear_modes(model, tip.row, along);
     for (std::int32_t m = 0; m < model.params.elastic_linear; ++m)
