@@ -19,7 +19,9 @@ void publish(State& state, const Scratch& scratch, Output& output) PALPATE_RT {
   for (const Region& region : state.region) {  // bound: kMaxRegions
     if (region.id == 0 || region.lost_ticks > 0) continue;
     output.regions += 1;
-    output.penetration_m = max_of(output.penetration_m, region.depth_max_m);
+    // A state spoilt in memory may hold amplitudes that carry a surface anywhere: told as far, and still a number
+    // (2e16 m in one of five million ticks from random states, without a force; 2026-11-22).
+    output.penetration_m = clamp_to(region.depth_max_m, output.penetration_m, kHuge);
   }
   state.tick += 1;
 }
