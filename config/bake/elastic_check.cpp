@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <new>
 
 #include "config/bake/elastic_mesh.h"
 #include "config/bake/image_rules.h"
+#include "config/bake/tick_memory.h"
 #include "config/bake/tool_points.h"
 #include "config/body/supports.h"
 #include "config/elastic/solid_mesh.h"
@@ -170,23 +170,9 @@ ImageContents with_ball(const SceneDesc& scene, const ImageContents& image, doub
   return out;
 }
 
-namespace {
-
-struct Block {
-  explicit Block(std::size_t bytes) : at(::operator new (bytes, std::align_val_t{Arena::kAlignment})) {}
-  Block(const Block&) = delete;
-  Block& operator=(const Block&) = delete;
-  ~Block() { ::operator delete (at, std::align_val_t{Arena::kAlignment}); }
-  void* at;
-};
-
-}  // namespace
-
 CheckedPress press_baked(const ImageContents& with_ball, const CheckPress& press) {
   const Model model = model_of(with_ball);
-  const Block state_block(state_bytes(model)), scratch_block(scratch_bytes(model));
-  State& state = create_state(model, state_block.at);
-  Scratch& scratch = create_scratch(model, scratch_block.at);
+  TickMemory memory(model);
   Output output;
   Input input;
   input.drive = Drive::kTool;
@@ -195,7 +181,7 @@ CheckedPress press_baked(const ImageContents& with_ball, const CheckPress& press
   for (std::size_t i = 0; i < press.depth_m.size(); ++i) {
     const auto go = [&](double to) {
       input.pose_w = {press.place_m + (press.radius_m - to) * press.normal, {}};
-      tick(model, state, scratch, input, output);
+      tick(model, memory.state, memory.scratch, input, output);
     };
     const int steps = static_cast<int>((press.depth_m[i] - depth) / kStep_m) + 1;
     for (int k = 1; k <= steps; ++k) go(depth + (press.depth_m[i] - depth) * k / steps);
@@ -207,7 +193,7 @@ CheckedPress press_baked(const ImageContents& with_ball, const CheckPress& press
     out.worst_error = std::max(out.worst_error, std::abs(error));
     out.bias += error / static_cast<double>(press.depth_m.size());
     double square = 0;
-    for (const double p : state.elastic.soft_rootJ) square += p * p;
+    for (const double p : memory.state.elastic.soft_rootJ) square += p * p;
     out.reach_rootJ = std::max(out.reach_rootJ, std::sqrt(square));
   }
   return out;

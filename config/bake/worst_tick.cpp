@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <memory>
-#include <new>
 #include <vector>
 
 #include "config/bake/adversary.h"
 #include "config/bake/image_rules.h"
+#include "config/bake/tick_memory.h"
 #include "config/scene/schema.h"
 #include "rt_core/contact/contact.h"
 #include "rt_core/stage_cost.h"
@@ -39,22 +38,10 @@ double reserve_of(const Model& model, Stage stage) {
 int effort(const Model& model) { return method_of(model) == Method::kElastic ? 4 : 1; }
 constexpr std::int32_t kLeastShare = 1024;  // two queries into the middle of a body
 
-struct Block {
-  explicit Block(std::size_t bytes) : at(::operator new (bytes, std::align_val_t{Arena::kAlignment})) {}
-  Block(const Block&) = delete;
-  Block& operator=(const Block&) = delete;
-  ~Block() { ::operator delete (at, std::align_val_t{Arena::kAlignment}); }
-  void* at;
-};
-
 class Search {
  public:
   explicit Search(const Model& model)
-      : model_(model),
-        state_block_(state_bytes(model)),
-        scratch_block_(scratch_bytes(model)),
-        state_(create_state(model, state_block_.at)),
-        scratch_(create_scratch(model, scratch_block_.at)) {}
+      : model_(model), memory_(model), state_(memory_.state), scratch_(memory_.scratch) {}
 
   // Of the surface, in one tick of a hand that creeps over it.
   std::int32_t surface_work() {
@@ -139,7 +126,7 @@ class Search {
   }
 
   const Model& model_;
-  Block state_block_, scratch_block_;
+  TickMemory memory_;
   State& state_;
   Scratch& scratch_;
 };

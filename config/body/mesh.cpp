@@ -102,11 +102,13 @@ double Bounds::largest_m() const {
   return std::max({s.x, s.y, s.z});
 }
 
-Bounds bounds_of(const SurfaceMesh& mesh) {
+Bounds bounds_of(const SurfaceMesh& mesh) { return bounds_of(mesh.vertex_m); }
+
+Bounds bounds_of(std::span<const Vec3> point_m) {
   Bounds box;
-  if (mesh.vertex_m.empty()) return box;
-  box.lower_m = box.upper_m = mesh.vertex_m[0];
-  for (const Vec3& p : mesh.vertex_m) {
+  if (point_m.empty()) return box;
+  box.lower_m = box.upper_m = point_m[0];
+  for (const Vec3& p : point_m) {
     box.lower_m = {std::min(box.lower_m.x, p.x), std::min(box.lower_m.y, p.y), std::min(box.lower_m.z, p.z)};
     box.upper_m = {std::max(box.upper_m.x, p.x), std::max(box.upper_m.y, p.y), std::max(box.upper_m.z, p.z)};
   }

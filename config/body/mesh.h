@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -38,8 +39,10 @@ Vec3 volume_centre_m(const SurfaceMesh& mesh);
 struct Bounds {
   Vec3 lower_m, upper_m;
   Vec3 size_m() const { return upper_m - lower_m; }
+  Vec3 middle_m() const { return 0.5 * (lower_m + upper_m); }
   double largest_m() const;
 };
+Bounds bounds_of(std::span<const Vec3> point_m);  // all zero without a point
 Bounds bounds_of(const SurfaceMesh& mesh);
 
 // Number of edge-connected components.

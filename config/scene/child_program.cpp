@@ -54,11 +54,14 @@ std::string last_lines(const std::string& path) {
   return text.size() > 600 ? text.substr(text.size() - 600) : text;
 }
 
+std::string sibling_program(const std::string& name) {
+  return (std::filesystem::read_symlink("/proc/self/exe").parent_path() / name).string();
+}
+
 std::string own_program(const std::string& name) {
   std::error_code error;
-  const std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
-  for (const std::filesystem::path& path : {folder / name, folder / "../bin" / name})
-    if (std::filesystem::exists(path, error)) return path.string();
+  for (const std::string& path : {sibling_program(name), sibling_program("../bin/" + name)})
+    if (std::filesystem::exists(path, error)) return path;
   return name;
 }
 

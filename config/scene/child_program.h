@@ -28,6 +28,8 @@ int run_program(const std::vector<std::string>& arguments, const std::string& lo
 // The end of a log, for a message.
 std::string last_lines(const std::string& path);
 
+// Path of a program installed beside the one that runs now.
+std::string sibling_program(const std::string& name);
 // One of our own programs: beside the one that runs, in ../bin of it, or else a name to be found along PATH.
 std::string own_program(const std::string& name);
 

@@ -5,8 +5,8 @@
 #include <cerrno>
 #include <cstring>
 
+#include "config/scene/child_program.h"
 #include "sim_host/cli.h"
-#include "sim_host/run/process.h"
 
 namespace palpate {
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "config/body/mesh.h"
+
 namespace palpate {
 
 namespace {
@@ -21,15 +23,11 @@ double lowest_of_tool_m(const Model& model) {
 
 bool add_default_path(SceneDesc& scene, const Model& model) {
   if (!scene.path.point.empty() || scene.articulation != Articulation::kRigid || model.vertex_m.empty()) return false;
-  Vec3 lower = model.vertex_m[0], upper = lower, top = lower;
-  for (const Vec3& p : model.vertex_m) {
-    lower = {std::min(lower.x, p.x), std::min(lower.y, p.y), std::min(lower.z, p.z)};
-    upper = {std::max(upper.x, p.x), std::max(upper.y, p.y), std::max(upper.z, p.z)};
-    if (p.y > top.y) top = p;
-  }
+  const Bounds body = bounds_of(model.vertex_m);
+  const Vec3 top = *std::ranges::max_element(model.vertex_m, {}, [](Vec3 p) { return p.y; });
   const Vec3 touching = top - Vec3{0, lowest_of_tool_m(model), 0}, above = touching + Vec3{0, kGap_m, 0};
-  const double depth_m = std::min(kDeepest * (upper.y - lower.y), 0.5 * scene.contact.max_depth_m);
-  const Vec3 pressed = touching - Vec3{0, depth_m, 0}, slid = pressed + Vec3{kSlide * (upper.x - lower.x), 0, 0};
+  const double depth_m = std::min(kDeepest * body.size_m().y, 0.5 * scene.contact.max_depth_m);
+  const Vec3 pressed = touching - Vec3{0, depth_m, 0}, slid = pressed + Vec3{kSlide * body.size_m().x, 0, 0};
   const auto add = [&](double time_s, Vec3 position_m) {
     PathPoint point;
     point.time_s = time_s;

@@ -64,7 +64,7 @@ int run(MeshOptions options) {
   RepairOptions repair;
   repair.largest_hole_m = 1e-3 * options.hole_mm;
   repair.edge_m = 1e-3 * options.edge_mm;
-  repair.sharp_rad = options.sharp_deg * 3.14159265358979323846 / 180;
+  repair.sharp_deg = options.sharp_deg;
   repair.keep_largest = options.keep_largest;
   repair.remesh = !options.no_remesh;
   const bool person = isatty(STDERR_FILENO) != 0;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "sim_host/view/mesh_raster.h"
 #include "sim_host/view/png_file.h"
@@ -37,7 +36,7 @@ RenderMesh facets(const SurfaceMesh& mesh) {
 
 // Seen slightly from above, whole.
 Camera camera_for(const Bounds& bounds) {
-  const Vec3 middle = 0.5 * (bounds.lower_m + bounds.upper_m);
+  const Vec3 middle = bounds.middle_m();
   const Vec3 away = unit_or({0.55, 0.5, 1}, {0, 0, 1});
   Camera camera;
   camera.target_m = middle;
@@ -62,10 +61,7 @@ class Panel {
     for (int y = 0; y < kPanel; ++y)
       for (int x = 0; x < kPanel; ++x)
         if (const Surfel& s = layer_.at(x, y); s.material == 0) canvas_.set_pixel(left_ + x, kHead + y, shade(s, x, y));
-    std::map<std::pair<std::int32_t, std::int32_t>, int> edge;
-    for (const Corners& t : mesh_.triangle)
-      for (std::size_t k = 0; k < 3; ++k) ++edge[std::minmax(t[k], t[(k + 1) % 3])];
-    for (const auto& [ends, users] : edge) {
+    for (const auto& [ends, users] : edge_users(mesh_)) {
       const Vec3 a = projection_(mesh_.vertex_m[at(ends.first)]), b = projection_(mesh_.vertex_m[at(ends.second)]);
       if (users == 1)
         line(a, b, 3, kOpen, 0.9);

@@ -42,16 +42,6 @@ constexpr unsigned kRemeshRounds = 4;  // edge lengths have settled (2 leave a t
 
 Vec3 vector_of(const Point& p) { return {p.x(), p.y(), p.z()}; }
 
-struct Box {
-  Vec3 lower{kHuge, kHuge, kHuge}, upper{-kHuge, -kHuge, -kHuge};
-  void add(Vec3 p) {
-    lower = {std::min(lower.x, p.x), std::min(lower.y, p.y), std::min(lower.z, p.z)};
-    upper = {std::max(upper.x, p.x), std::max(upper.y, p.y), std::max(upper.z, p.z)};
-  }
-  Vec3 middle() const { return 0.5 * (lower + upper); }
-  double extent_m() const { return Bounds{lower, upper}.largest_m(); }
-};
-
 std::string mm_text(double x_m) { return number_text(std::round(1e4 * x_m) / 10) + " mm"; }
 
 class Repairer {
@@ -126,11 +116,8 @@ class Repairer {
     return true;
   }
   static Vec3 first_shared_edge(const SurfaceMesh& surface) {
-    std::map<std::pair<std::int32_t, std::int32_t>, int> seen;
-    for (const Corners& t : surface.triangle)
-      for (std::size_t k = 0; k < 3; ++k)
-        if (const auto edge = std::minmax(t[k], t[(k + 1) % 3]); ++seen[edge] > 2)
-          return surface.vertex_m[static_cast<std::size_t>(edge.first)];
+    for (const auto& [edge, users] : edge_users(surface))
+      if (users > 2) return surface.vertex_m[static_cast<std::size_t>(edge.first)];
     return {};
   }
 
@@ -138,7 +125,8 @@ class Repairer {
     std::size_t id = 0;
     double area_m2 = 0;
     std::size_t triangles = 0;
-    Box box;
+    std::vector<Vec3> corner_m;
+    Bounds box;
   };
   // Largest first.
   std::vector<Part> parts() {
@@ -149,16 +137,18 @@ class Repairer {
       Part& p = part[part_of_[f]];
       p.area_m2 += CGAL::to_double(pmp::face_area(f, mesh_));
       ++p.triangles;
-      for (const auto v : mesh_.vertices_around_face(mesh_.halfedge(f))) p.box.add(vector_of(mesh_.point(v)));
+      for (const auto v : mesh_.vertices_around_face(mesh_.halfedge(f)))
+        p.corner_m.push_back(vector_of(mesh_.point(v)));
     }
+    for (Part& p : part) p.box = bounds_of(p.corner_m);
     std::ranges::stable_sort(part, [](const Part& a, const Part& b) { return a.area_m2 > b.area_m2; });
     return part;
   }
   void drop(const std::vector<Part>& dropped) {
     std::vector<std::size_t> id;
     for (const Part& p : dropped) {
-      note("a part of " + std::to_string(p.triangles) + " triangles, " + mm_text(p.box.extent_m()) + " long, left out",
-           p.box.middle());
+      note("a part of " + std::to_string(p.triangles) + " triangles, " + mm_text(p.box.largest_m()) + " long, left out",
+           p.box.middle_m());
       id.push_back(p.id);
     }
     if (!id.empty()) pmp::remove_connected_components(mesh_, id, part_of_);
@@ -169,15 +159,16 @@ class Repairer {
     std::vector<Part> part = parts(), dropped;
     if (part.empty()) throw ConfigError(label_ + ": no triangle with an area; is the unit right (--scale)?");
     for (std::size_t i = 1; i < part.size(); ++i)
-      if (options_.keep_largest || part[i].box.extent_m() < kCrumb * part[0].box.extent_m()) dropped.push_back(part[i]);
+      if (options_.keep_largest || part[i].box.largest_m() < kCrumb * part[0].box.largest_m())
+        dropped.push_back(part[i]);
     drop(dropped);
   }
   void keep_one_part() {
     const std::vector<Part> part = parts();
     if (part.size() == 1) return;
     fail(std::to_string(part.size()) + " bodies, the second of " + std::to_string(part[1].triangles) +
-             " triangles and " + mm_text(part[1].box.extent_m()),
-         part[1].box.middle(),
+             " triangles and " + mm_text(part[1].box.largest_m()),
+         part[1].box.middle_m(),
          "--keep-largest leaves out all but the first; parts that belong together must be united in a mesh editor, an "
          "inner wall (a cavity) is not supported");
   }
@@ -202,25 +193,26 @@ class Repairer {
     std::vector<Halfedge> cycle;
     pmp::extract_boundary_cycles(mesh_, std::back_inserter(cycle));
     for (const Halfedge border : cycle) {
-      Box box;
+      std::vector<Vec3> corner_m;
       double around_m = 0;
       std::size_t edges = 0;
       for (const Halfedge h : CGAL::halfedges_around_face(border, mesh_)) {
-        box.add(vector_of(mesh_.point(mesh_.target(h))));
+        corner_m.push_back(vector_of(mesh_.point(mesh_.target(h))));
         around_m += CGAL::to_double(pmp::edge_length(h, mesh_));
         ++edges;
       }
+      const Bounds box = bounds_of(corner_m);
       const std::string hole = "hole of " + std::to_string(edges) + " edges, " + mm_text(around_m) + " around";
-      if (box.extent_m() > largest_m)
-        fail(hole + ", " + mm_text(box.extent_m()) + " across (largest that is closed: " + mm_text(largest_m) + ")",
-             box.middle(),
-             "close it in a mesh editor, or allow it by --hole-mm " + number_text(std::ceil(1e3 * box.extent_m())) +
+      if (box.largest_m() > largest_m)
+        fail(hole + ", " + mm_text(box.largest_m()) + " across (largest that is closed: " + mm_text(largest_m) + ")",
+             box.middle_m(),
+             "close it in a mesh editor, or allow it by --hole-mm " + number_text(std::ceil(1e3 * box.largest_m())) +
                  " if a smooth lid is right");
       std::vector<Face> lid;
       std::vector<Mesh::Vertex_index> inner;
       pmp::triangulate_refine_and_fair_hole(mesh_, border, std::back_inserter(lid), std::back_inserter(inner));
-      if (lid.empty()) fail(hole + ": no lid was found", box.middle(), "close it in a mesh editor");
-      note(hole + ", closed by " + std::to_string(lid.size()) + " triangles", box.middle());
+      if (lid.empty()) fail(hole + ": no lid was found", box.middle_m(), "close it in a mesh editor");
+      note(hole + ", closed by " + std::to_string(lid.size()) + " triangles", box.middle_m());
     }
   }
 
@@ -234,7 +226,7 @@ class Repairer {
     const Mesh before = mesh_;
     const double edge_m = options_.edge_m > 0 ? options_.edge_m : kDefaultEdge * extent_m_;
     auto sharp = mesh_.add_property_map<Mesh::Edge_index, bool>("e:sharp", false).first;
-    pmp::detect_sharp_edges(mesh_, options_.sharp_rad * 180 / 3.14159265358979323846, sharp);
+    pmp::detect_sharp_edges(mesh_, options_.sharp_deg, sharp);
     pmp::isotropic_remeshing(mesh_.faces(), edge_m, mesh_,
                              CGAL::parameters::number_of_iterations(kRemeshRounds)
                                  .number_of_relaxation_steps(3)
@@ -281,14 +273,18 @@ class Repairer {
 
 }  // namespace
 
+EdgeUsers edge_users(const SurfaceMesh& mesh) {
+  EdgeUsers users;
+  for (const Corners& t : mesh.triangle)
+    for (std::size_t k = 0; k < 3; ++k) ++users[std::minmax(t[k], t[(k + 1) % 3])];
+  return users;
+}
+
 SurfaceState survey(const SurfaceMesh& mesh) {
   SurfaceState state;
   state.vertices = static_cast<std::int64_t>(mesh.vertex_m.size());
   state.triangles = static_cast<std::int64_t>(mesh.triangle.size());
-  std::map<std::pair<std::int32_t, std::int32_t>, int> users;
-  for (const Corners& t : mesh.triangle)
-    for (std::size_t k = 0; k < 3; ++k) ++users[std::minmax(t[k], t[(k + 1) % 3])];
-  for (const auto& [edge, count] : users) {
+  for (const auto& [edge, count] : edge_users(mesh)) {
     state.open_edges += count == 1 ? 1 : 0;
     state.shared_edges += count > 2 ? 1 : 0;
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -20,9 +21,13 @@ struct RepairOptions {
   // Length of the new triangles' edges; 0: a fortieth of the largest extent.
   double edge_m = 0;
   // Edges at which the facets turn by more than this stay where they are.
-  double sharp_rad = 1.0471975511965976;
+  double sharp_deg = 60;
 };
 inline constexpr double kCrumb = 0.05;
+
+// How many triangles have each edge, by its two vertices, the lower one first.
+using EdgeUsers = std::map<std::pair<std::int32_t, std::int32_t>, int>;
+EdgeUsers edge_users(const SurfaceMesh& mesh);
 
 // What the surface is like, before and after.
 struct SurfaceState {

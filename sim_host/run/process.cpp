@@ -8,7 +8,6 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
-#include <filesystem>
 #include <stdexcept>
 #include <thread>
 
@@ -90,10 +89,6 @@ bool Process::wait(int timeout_ms) {
 
 void Process::signal(int number) const {
   if (!ended_) kill(pid_, number);
-}
-
-std::string sibling_program(const std::string& name) {
-  return (std::filesystem::read_symlink("/proc/self/exe").parent_path() / name).string();
 }
 
 }  // namespace palpate

@@ -35,7 +35,4 @@ class Process {
   int exit_code_ = 0;
 };
 
-// Path of a program installed beside the one that runs now.
-std::string sibling_program(const std::string& name);
-
 }  // namespace palpate

@@ -11,6 +11,7 @@
 #include <optional>
 #include <thread>
 
+#include "config/scene/child_program.h"
 #include "hal/bus/bus_budget.h"
 #include "hal/bus/device_address.h"
 #include "hal/device/device_profile.h"

@@ -16,6 +16,7 @@
 #include <string>
 #include <thread>
 
+#include "config/scene/child_program.h"
 #include "rt_core/io.h"
 #include "sim_host/latency/cyclictest_read.h"
 #include "sim_host/latency/latency.h"
