@@ -31,6 +31,7 @@ void add_recover_command(CLI::App& app, int& exit_code);
 void add_latency_command(CLI::App& app, int& exit_code);
 void add_picture_command(CLI::App& app, int& exit_code);
 void add_grasp_command(CLI::App& app, int& exit_code);
+void add_feel_command(CLI::App& app, int& exit_code);
 void add_doctor_command(CLI::App& app, int& exit_code);
 void add_device_test_command(CLI::App& app, int& exit_code);
 

@@ -47,6 +47,7 @@ int main(int argc, char** argv) {
   palpate::add_latency_command(app, exit_code);
   palpate::add_picture_command(app, exit_code);
   palpate::add_grasp_command(app, exit_code);
+  palpate::add_feel_command(app, exit_code);
   palpate::add_doctor_command(app, exit_code);
   palpate::add_device_test_command(app, exit_code);
   if (const std::string unknown = argc > 1 ? unknown_command(app, argv[1]) : ""; !unknown.empty()) {

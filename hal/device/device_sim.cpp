@@ -23,25 +23,41 @@ Vec3 limited(Vec3 v, double limit, bool& cut) noexcept {
   return (limit / length) * v;
 }
 
-// Mean velocity of an implicit midpoint step of  M dv/dt = drive + K (error - x) - B v - friction:
-//   (2 M/dt + B + K dt/2) v_mid = 2 M/dt v + K error + drive - friction direction,
+// One of the handle's two motions, straight or turning: `motor` and a hand that pulls by `stiffness * error` and
+// `damping * (hand_velocity - v)` move a mass with damping and Coulomb friction.
+struct Motion {
+  double mass, device_damping, friction;
+  double hand_stiffness, hand_damping;
+  Vec3 motor, error, hand_velocity;
+};
+
+// Implicit midpoint step of M dv/dt = motor + K (error - x) + B_hand (v_hand - v) - b v - friction:
+//   (2 M/dt + b + B + K dt/2) v_mid = 2 M/dt v + K error + B v_hand + motor - friction direction,
 // where Coulomb friction is the projection of the right-hand side onto the ball of its radius: sticking is exact.
-// Returns the velocity at the end; `mean` moves the position.
-Vec3 midpoint_velocity(Vec3 velocity, Vec3 push_N, double mass, double damping, double stiffness, double friction,
-                       double dt_s, Vec3& mean) noexcept {
-  const double inertia = 2 * mass / dt_s;
-  const Vec3 effort = inertia * velocity + push_N;
+// Moves `velocity` on; returns its mean, which moves the position; adds the work done in dt.
+Vec3 midpoint_step(const Motion& m, double dt_s, Vec3& velocity, PlantEnergy& energy) noexcept {
+  const double inertia = 2 * m.mass / dt_s;
+  const Vec3 push = m.motor + m.hand_stiffness * m.error + m.hand_damping * m.hand_velocity;
+  const Vec3 effort = inertia * velocity + push;
   const double size = norm(effort);
-  if (!(size > friction)) {
-    mean = {};
+  if (!(size > m.friction)) {
+    energy.lost_J += 0.5 * m.mass * squared_norm(velocity);  // the rest of it
+    velocity = {};
     return {};
   }
-  mean = ((1 - friction / size) / (inertia + damping + 0.5 * stiffness * dt_s)) * effort;
-  return 2.0 * mean - velocity;
+  const double damping = m.device_damping + m.hand_damping;
+  const double resisted = inertia + damping + 0.5 * m.hand_stiffness * dt_s;
+  const Vec3 mean = ((1 - m.friction / size) / resisted) * effort;
+  velocity = 2.0 * mean - velocity;
+  const Vec3 hand = m.hand_stiffness * (m.error - 0.5 * dt_s * mean) + m.hand_damping * (m.hand_velocity - mean);
+  energy.motor_J += dt_s * dot(m.motor, mean);
+  energy.hand_J += dt_s * dot(hand, mean);
+  energy.lost_J += dt_s * (m.device_damping * squared_norm(mean) + m.friction * norm(mean));
+  return mean;
 }
 
 PlantOptions checked(PlantOptions o) {
-  o.delay_ticks = std::clamp(o.delay_ticks, 0, 15);
+  o.delay_ticks = std::clamp(o.delay_ticks, 0, kMaxDelayTicks);
   o.substeps = std::clamp(o.substeps, 1, 1000);
   return o;
 }
@@ -65,23 +81,47 @@ void DevicePlant::drive(const DeviceCommand& command) noexcept {
   motor_.torque_Nm = limited(due.torque_Nm, options_.torque_max_Nm, saturated_);
 }
 
+// The hand's aim with its tremor: a circle in two axes and a slower line in the third, so no direction is spared.
+HandTarget DevicePlant::hand_at(double time_s) const noexcept {
+  HandTarget hand = path_.at(time_s);
+  if (!(options_.tremor_m > 0) && !(options_.tremor_rad > 0)) return hand;
+  const double w = 2 * kPi * options_.tremor_Hz;
+  const double s = std::sin(w * time_s), c = std::cos(w * time_s), u = 0.87 * w;
+  const Vec3 shake{c, s, std::sin(u * time_s)}, rate{-w * s, w * c, u * std::cos(u * time_s)};
+  hand.pose.position_m += options_.tremor_m * shake;
+  hand.velocity_m_per_s += options_.tremor_m * rate;
+  hand.pose.orientation = rotation_by(options_.tremor_rad * shake) * hand.pose.orientation;
+  hand.spin_rad_per_s += options_.tremor_rad * rate;
+  return hand;
+}
+
 void DevicePlant::integrate(double time_s, double dt_s) noexcept {
   const PlantOptions& o = options_;
-  const HandTarget hand = path_.at(time_s + 0.5 * dt_s);
-  const Vec3 offset = hand.pose.position_m - pose_.position_m;
-  const Vec3 push =
-      motor_.force_N + o.hand_stiffness_N_per_m * offset + o.hand_damping_N_s_per_m * hand.velocity_m_per_s;
-  Vec3 mean;
-  velocity_ =
-      midpoint_velocity(velocity_, push, o.mass_kg + o.hand_mass_kg, o.damping_N_s_per_m + o.hand_damping_N_s_per_m,
-                        o.hand_stiffness_N_per_m, o.friction_N, dt_s, mean);
-  pose_.position_m += dt_s * mean;
-  const Vec3 turn = rotation_vector(hand.pose.orientation * conjugate(pose_.orientation));
-  const Vec3 twist =
-      motor_.torque_Nm + o.hand_stiffness_Nm_per_rad * turn + o.hand_damping_Nm_s_per_rad * hand.spin_rad_per_s;
-  spin_ = midpoint_velocity(spin_, twist, o.inertia_kg_m2, o.damping_Nm_s_per_rad + o.hand_damping_Nm_s_per_rad,
-                            o.hand_stiffness_Nm_per_rad, o.friction_Nm, dt_s, mean);
-  pose_.orientation = normalised(rotation_by(dt_s * mean) * pose_.orientation);
+  const HandTarget hand = hand_at(time_s + 0.5 * dt_s);
+  const Motion straight{o.mass_kg + o.hand_mass_kg,
+                        o.damping_N_s_per_m,
+                        o.friction_N,
+                        o.hand_stiffness_N_per_m,
+                        o.hand_damping_N_s_per_m,
+                        motor_.force_N,
+                        hand.pose.position_m - pose_.position_m,
+                        hand.velocity_m_per_s};
+  pose_.position_m += dt_s * midpoint_step(straight, dt_s, velocity_, energy_);
+  const Motion turning{o.inertia_kg_m2,
+                       o.damping_Nm_s_per_rad,
+                       o.friction_Nm,
+                       o.hand_stiffness_Nm_per_rad,
+                       o.hand_damping_Nm_s_per_rad,
+                       motor_.torque_Nm,
+                       rotation_vector(hand.pose.orientation * conjugate(pose_.orientation)),
+                       hand.spin_rad_per_s};
+  const Vec3 spin = midpoint_step(turning, dt_s, spin_, energy_);
+  pose_.orientation = normalised(rotation_by(dt_s * spin) * pose_.orientation);
+}
+
+double DevicePlant::kinetic_J() const noexcept {
+  return 0.5 * ((options_.mass_kg + options_.hand_mass_kg) * squared_norm(velocity_) +
+                options_.inertia_kg_m2 * squared_norm(spin_));
 }
 
 void DevicePlant::step(const DeviceCommand& command) noexcept {

@@ -25,14 +25,28 @@ struct PlantOptions {
   std::uint64_t noise_seed = 1;
   double force_max_N = 8.5;  // motors: magnitude is cut, direction kept
   double torque_max_Nm = 0.2;
-  int delay_ticks = 1;        // extra periods from command to motor, 0..15
+  int delay_ticks = 1;        // extra periods from command to motor, 0..kMaxDelayTicks
   double hand_mass_kg = 0.1;  // part of the hand that moves with the handle
   double hand_stiffness_N_per_m = 300;
   double hand_damping_N_s_per_m = 5;
   double hand_stiffness_Nm_per_rad = 1;
   double hand_damping_Nm_s_per_rad = 2e-2;
+  double tremor_m = 0;     // amplitude of the hand's tremor: it aims aside by so much, a circle in two axes
+  double tremor_rad = 0;   // and turns by so much
+  double tremor_Hz = 9;    // physiological: 8 to 12 Hz
   double period_s = 1e-3;  // device tick: commands are taken over and samples made
   int substeps = 20;       // of the integration per period, 1..1000
+};
+
+inline constexpr int kMaxDelayTicks = 63;  // 6.3 ms in a bench that steps the plant ten times a tick
+
+// Work since the start. The midpoint rule balances exactly: motor + hand - lost is the kinetic energy, to rounding.
+struct PlantEnergy {
+  double motor_J = 0;  // of the motors on the handle
+  double hand_J = 0;   // of the hand on the handle
+  double lost_J = 0;   // in the device's damping and friction
+  // What motors gave and the device did not swallow: above 0 it went into the hand.
+  double to_hand_J() const noexcept { return motor_J - lost_J; }
 };
 
 // Mechanics only: implicit midpoint with an exact Coulomb step, unconditionally stable and of second order.
@@ -54,10 +68,13 @@ class DevicePlant {
   double time_s() const noexcept { return static_cast<double>(ticks_) * options_.period_s; }
   std::uint64_t ticks() const noexcept { return ticks_; }
   const PlantOptions& options() const noexcept { return options_; }
+  const PlantEnergy& energy() const noexcept { return energy_; }
+  double kinetic_J() const noexcept;
 
  private:
-  static constexpr std::uint64_t kDelaySlots = 16;
+  static constexpr std::uint64_t kDelaySlots = kMaxDelayTicks + 1;
   void drive(const DeviceCommand& command) noexcept;
+  HandTarget hand_at(double time_s) const noexcept;
   void integrate(double time_s, double dt_s) noexcept;
   double noise() noexcept;
 
@@ -66,6 +83,7 @@ class DevicePlant {
   Pose pose_;
   Vec3 velocity_, spin_;
   Wrench motor_;
+  PlantEnergy energy_;
   bool saturated_ = false;
   DeviceCommand delay_[kDelaySlots];
   std::uint64_t ticks_ = 0;

@@ -77,7 +77,7 @@ void set_property(const std::string& text, PlantOptions& plant) {
   const auto whole = [&](double lowest, double highest) {
     return static_cast<int>(number(name, value, lowest, highest));
   };
-  if (name == "delay_ticks") return static_cast<void>(plant.delay_ticks = whole(0, 15));
+  if (name == "delay_ticks") return static_cast<void>(plant.delay_ticks = whole(0, kMaxDelayTicks));
   if (name == "substeps") return static_cast<void>(plant.substeps = whole(1, 1000));
   throw Failure{kUsage, "--set: no property '" + name + "'; see palpate-device --help"};
 }

@@ -74,7 +74,8 @@ PlantOptions plant_of(const SceneDesc& scene) {
   plant.hand_stiffness_Nm_per_rad = hand.hand_stiffness_Nm_per_rad;
   plant.hand_damping_Nm_s_per_rad = hand.hand_damping_Nms_per_rad;
   plant.period_s = device.period_s;
-  plant.delay_ticks = static_cast<int>(std::clamp(std::round(device.delay_s / device.period_s), 0.0, 15.0));
+  plant.delay_ticks =
+      static_cast<int>(std::clamp(std::round(device.delay_s / device.period_s), 0.0, 1.0 * kMaxDelayTicks));
   return plant;
 }
 

@@ -20,4 +20,7 @@
   X(hand_damping_N_s_per_m)      \
   X(hand_stiffness_Nm_per_rad)   \
   X(hand_damping_Nm_s_per_rad)   \
+  X(tremor_m)                    \
+  X(tremor_rad)                  \
+  X(tremor_Hz)                   \
   X(period_s)

@@ -1,0 +1,121 @@
+// `palpate feel`: what a hand feels of a scene, in virtual time.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <stdexcept>
+
+#include "sim_host/bake/default_path.h"
+#include "sim_host/bake/scene_model.h"
+#include "sim_host/cli.h"
+#include "sim_host/cli_checks.h"
+#include "sim_host/feel/feel.h"
+#include "sim_host/feel/z_width.h"
+
+namespace palpate {
+
+namespace {
+
+struct FeelCommand {
+  std::vector<std::string> scenes, manoeuvres;
+  SceneOverlays overlays;
+  FeelOptions options;
+  std::string csv, json, markdown, map;
+};
+
+void write_file(const std::string& path, const std::string& text) {
+  std::ofstream file(path);
+  file << text;
+  if (!file.flush()) throw std::runtime_error(path + ": cannot write");
+  fmt::print("wrote   {}\n", path);
+}
+
+std::vector<Manoeuvre> wanted(const FeelCommand& command) {
+  std::vector<Manoeuvre> list;
+  for (const std::string& title : command.manoeuvres) list.push_back(manoeuvre_of(title));
+  if (list.empty())
+    for (const ManoeuvreText& text : manoeuvre_texts()) list.push_back(text.manoeuvre);
+  return list;
+}
+
+void feel_scene(const FeelCommand& command, const std::string& path, std::vector<FeelRun>& runs) {
+  const SceneModel compiled(path, command.overlays);
+  if (!compiled.scene())
+    throw std::runtime_error(path + ": an image names no device and no path; name the scene's .toml");
+  SceneDesc scene = *compiled.scene();
+  add_default_path(scene, compiled.model());
+  const TouchPlace place = touch_place_of(compiled.model(), scene);
+  for (const Manoeuvre manoeuvre : wanted(command)) {
+    std::string rows;
+    FeelListener listen;
+    if (!command.csv.empty()) listen = [&](const FeelTick& tick) { rows += feel_csv_row(tick); };
+    runs.push_back(run_feel(compiled.model(), scene, place, manoeuvre, command.options, listen));
+    if (command.csv.empty()) continue;
+    std::filesystem::create_directories(command.csv);
+    write_file(fmt::format("{}/{}.{}.csv", command.csv, runs.back().scene, runs.back().manoeuvre),
+               feel_csv_header() + rows);
+  }
+}
+
+int run(const FeelCommand& command) {
+  if (!command.map.empty()) {
+    z_width_plot().save(command.map);
+    fmt::print("wrote   {}\n", command.map);
+  }
+  std::vector<FeelRun> runs;
+  for (const std::string& path : command.scenes) feel_scene(command, path, runs);
+  if (runs.empty()) return kExitOk;
+  fmt::print("{}", feel_table(runs));
+  if (!command.json.empty()) write_file(command.json, feel_json(runs));
+  if (!command.markdown.empty()) write_file(command.markdown, feel_markdown(runs));
+  int failed = 0;
+  for (const FeelRun& run : runs) failed += feel_failure(run).empty() ? 0 : 1;
+  fmt::print("{} of {} runs as they should be (docs/stability.md)\n", runs.size() - static_cast<std::size_t>(failed),
+             runs.size());
+  return failed == 0 ? kExitOk : kExitFailed;
+}
+
+std::string footer() {
+  std::string text = "Manoeuvres:\n";
+  for (const ManoeuvreText& m : manoeuvre_texts()) text += fmt::format("  {:<10}{}\n", m.title, m.what);
+  return text +
+         "Columns: docs/stability.md. The scene's [device] is what the controller takes the device for; --device is "
+         "what "
+         "it is.\n"
+         "Examples:\n"
+         "  palpate feel config/scenes/half_shell.toml\n"
+         "  palpate feel config/scenes/*.toml --manoeuvre overload --manoeuvre push --json feel.json\n"
+         "  palpate feel config/scenes/ring.toml --hand light --device damping_N_s_per_m=0.1 --device delay_s=0.001\n"
+         "  palpate feel config/scenes/ring.toml --set device.force_max_N=25 --manoeuvre push --csv ticks\n"
+         "  palpate feel --map z_width.png";
+}
+
+}  // namespace
+
+void add_feel_command(CLI::App& app, int& exit_code) {
+  auto settings = std::make_shared<FeelCommand>();
+  CLI::App* command = app.add_subcommand(
+      "feel", "Feel scenes with simulated hands in virtual time: energy, swings, steps, lag, stiffness, noise");
+  command->add_option("SCENES", settings->scenes, "scenes (.toml)");
+  command->add_option("--with", settings->overlays.file,
+                      "lay a file with some of the scene's tables over it; repeatable");
+  command->add_option("--set", settings->overlays.setting, "KEY=VALUE: set one key of the scene; repeatable");
+  command->add_option("--manoeuvre", settings->manoeuvres, "only this one, below; repeatable");
+  command->add_option("--hand", settings->options.hand, "light, medium, firm or strong; default: the scene's");
+  command->add_option("--device", settings->options.device,
+                      "NAME=VALUE: a property of the real device or hand (SI units), repeatable");
+  command->add_option("--csv", settings->csv, "folder for a table of every tick of every run");
+  command->add_option("--json", settings->json, "write the figures (.json)")->check(ends_in({".json"}));
+  command->add_option("--markdown", settings->markdown, "write them as a table (.md)")->check(ends_in({".md"}));
+  command->add_option("--map", settings->map, "draw which stiffness a device keeps passive (.svg or .png)")
+      ->check(ends_in({".svg", ".png"}));
+  command->footer(footer());
+  command->callback([settings, &exit_code] {
+    if (settings->scenes.empty() && settings->map.empty()) throw CLI::RequiredError("SCENES or --map");
+    exit_code = run(*settings);
+  });
+}
+
+}  // namespace palpate

@@ -1,0 +1,139 @@
+#include "sim_host/feel/feel_meters.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+
+namespace {
+
+// Swings count from twice what one step of the encoder makes through the coupling, and from 2 % of the largest force.
+double least_swing_N(const ModelParams& params, double encoder_m) {
+  return std::max(2 * params.coupling_N_per_m * encoder_m, 0.02 * params.force_max_N);
+}
+
+}  // namespace
+
+void SwingMeter::add(double value) {
+  const double step = value - last_;
+  const bool turned = step * step_ < 0 && std::min(std::abs(step), std::abs(step_)) > least_;
+  run_ = turned ? run_ + 1 : 0;
+  turns_ += turned ? 1 : 0;
+  longest_ = std::max(longest_, run_);
+  step_ = step;
+  last_ = value;
+}
+
+double band_rms(const std::vector<double>& sample, double period_s, double lowest_Hz, double highest_Hz) {
+  const std::size_t n = sample.size();
+  if (n < 16) return 0;
+  double mean = 0, weight = 0;
+  for (const double x : sample) mean += x / static_cast<double>(n);
+  std::vector<double> windowed(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double hann = 0.5 - 0.5 * std::cos(2 * kPi * (static_cast<double>(i) + 0.5) / static_cast<double>(n));
+    windowed[i] = hann * (sample[i] - mean);
+    weight += hann * hann;
+  }
+  const double bin_Hz = 1 / (static_cast<double>(n) * period_s);
+  double power = 0;
+  for (std::size_t k = 1; 2 * k <= n; ++k) {
+    const double f = static_cast<double>(k) * bin_Hz;
+    if (f < lowest_Hz || f > highest_Hz) continue;
+    double re = 0, im = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      const double angle = 2 * kPi * static_cast<double>(k * i % n) / static_cast<double>(n);
+      re += windowed[i] * std::cos(angle);
+      im += windowed[i] * std::sin(angle);
+    }
+    power += (2 * k == n ? 1 : 2) * (re * re + im * im);
+  }
+  return std::sqrt(power / (static_cast<double>(n) * weight));
+}
+
+FeelMeters::FeelMeters(const ModelParams& params, double encoder_m)
+    : params_(params),
+      swing_{SwingMeter(least_swing_N(params, encoder_m)), SwingMeter(least_swing_N(params, encoder_m)),
+             SwingMeter(least_swing_N(params, encoder_m))} {
+  figures_.leash_m = params.force_max_N / params.coupling_N_per_m + encoder_m;
+}
+
+void FeelMeters::add(const FeelTick& tick) {
+  const Output& out = tick.output;
+  figures_.duration_s = tick.time_s + params_.period_s;
+  figures_.force_max_N = std::max(figures_.force_max_N, norm(out.device_w.force_N));
+  figures_.model_max_N = std::max(figures_.model_max_N, norm(out.contact_w.force_N));
+  figures_.depth_max_m = std::max(figures_.depth_max_m, out.penetration_m);
+  figures_.status |= out.status;
+  figures_.fault |= out.fault;
+  figures_.worst_mode = std::max(figures_.worst_mode, static_cast<int>(out.mode));
+  if (out.contacts > 0)
+    figures_.lag_m = std::max(figures_.lag_m, norm(tick.input.pose_w.position_m - out.tool_w.position_m));
+  add_steps(tick);
+  add_energy(tick);
+  force_.push_back(out.device_w.force_N);
+  handle_.push_back(tick.handle_w.position_m);
+}
+
+void FeelMeters::add_steps(const FeelTick& tick) {
+  const Vec3 f = tick.output.device_w.force_N;
+  const double values[] = {f.x, f.y, f.z};
+  int turns = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    swing_[i].add(values[i]);
+    turns = std::max(turns, swing_[i].turns());
+    figures_.alternation_run = std::max(figures_.alternation_run, swing_[i].longest());
+  }
+  figures_.alternations = turns;
+  const double step = force_.empty() ? 0 : norm(f - force_.back()) / params_.force_max_N;
+  if (step > figures_.step_share) figures_.step_share = step, figures_.step_at_s = tick.time_s;
+}
+
+void FeelMeters::add_energy(const FeelTick& tick) {
+  const bool touching = norm(tick.output.device_w.force_N) > 0;
+  if (touching && !touching_) {
+    figures_.contacts += 1;
+    port_begin_J_ = tick.energy.motor_J;
+    hand_begin_J_ = tick.energy.to_hand_J();
+  }
+  // The command of the tick before acts until now, so the tick after the last one with force still belongs to it.
+  if (touching || touching_) {
+    figures_.port_J = std::max(figures_.port_J, tick.energy.motor_J - port_begin_J_);
+    figures_.hand_J = std::max(figures_.hand_J, tick.energy.to_hand_J() - hand_begin_J_);
+  }
+  touching_ = touching;
+}
+
+double FeelMeters::felt_stiffness() const {
+  std::size_t most = 0;
+  for (std::size_t i = 0; i < force_.size(); ++i)
+    if (norm(force_[i]) > norm(force_[most])) most = i;
+  if (force_.empty() || !(norm(force_[most]) > 0)) return 0;
+  std::size_t half = 0;
+  for (std::size_t i = 0; i < most; ++i)
+    if (norm(force_[i]) < 0.5 * norm(force_[most])) half = i;
+  const Vec3 rise = force_[most] - force_[half];
+  const double way = -dot(handle_[most] - handle_[half], unit_or(rise, {}));
+  return way > 1e-6 ? norm(rise) / way : 0;
+}
+
+double FeelMeters::noise() const {
+  const auto count = std::min(force_.size(), static_cast<std::size_t>(std::lround(1 / params_.period_s)));
+  double power = 0;
+  for (const auto component : {&Vec3::x, &Vec3::y, &Vec3::z}) {
+    std::vector<double> last;
+    for (std::size_t i = force_.size() - count; i < force_.size(); ++i) last.push_back(force_[i].*component);
+    const double rms = band_rms(last, params_.period_s, 50, 500);
+    power += rms * rms;
+  }
+  return std::sqrt(power);
+}
+
+FeelFigures FeelMeters::figures() const {
+  FeelFigures figures = figures_;
+  figures.felt_N_per_m = felt_stiffness();
+  figures.noise_N = noise();
+  return figures;
+}
+
+}  // namespace palpate

@@ -1,0 +1,71 @@
+// What a hand would notice, measured from the ticks of a bench run: energy that comes back, forces that swing or step,
+// a tool that lags, how stiff the object seems and how rough it is at rest.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "rt_core/model.h"
+#include "sim_host/feel/feel_loop.h"
+
+namespace palpate {
+
+struct FeelFigures {
+  double duration_s = 0;
+  double force_max_N = 0;  // commanded
+  double model_max_N = 0;  // of the object on the virtual tool
+  double depth_max_m = 0;  // penetration told by the tick
+  double step_share = 0;   // largest change of the commanded force in a tick, of the device's largest force
+  double step_at_s = 0;
+  int alternations = 0;      // ticks in which the force swung back; see SwingMeter
+  int alternation_run = 0;   // most of them in a row
+  double lag_m = 0;          // largest distance from handle to tool
+  double leash_m = 0;        // F_max / K, and the encoder's step: what it may be
+  double felt_N_per_m = 0;   // rise of the force over the way of the handle, between half and all of the largest force
+  double noise_N = 0;        // RMS at 50 to 500 Hz in the last second
+  int contacts = 0;          // times the force rose from zero
+  double port_J = 0;         // most that one contact returned at the motors, more than it was given
+  double hand_J = 0;         // most that reached the hand, after the device's own losses
+  std::uint32_t status = 0;  // bits seen, together
+  std::uint32_t fault = 0;
+  int worst_mode = 0;  // of Mode
+};
+
+// Swings: ticks in which a component of the force changes by more than `least` against its change of the tick before,
+// which was as large.
+class SwingMeter {
+ public:
+  explicit SwingMeter(double least) : least_(least) {}
+  void add(double value);
+  int turns() const { return turns_; }
+  int longest() const { return longest_; }
+
+ private:
+  double least_, last_ = 0, step_ = 0;
+  int turns_ = 0, run_ = 0, longest_ = 0;
+};
+
+// RMS of `sample` between two frequencies: Hann window, direct transform, mean removed.
+double band_rms(const std::vector<double>& sample, double period_s, double lowest_Hz, double highest_Hz);
+
+class FeelMeters {
+ public:
+  FeelMeters(const ModelParams& params, double encoder_m);
+  void add(const FeelTick& tick);
+  FeelFigures figures() const;
+
+ private:
+  void add_steps(const FeelTick& tick);
+  void add_energy(const FeelTick& tick);
+  double felt_stiffness() const;
+  double noise() const;
+
+  const ModelParams& params_;
+  FeelFigures figures_;
+  SwingMeter swing_[3];
+  std::vector<Vec3> force_, handle_;
+  bool touching_ = false;
+  double port_begin_J_ = 0, hand_begin_J_ = 0;
+};
+
+}  // namespace palpate

@@ -1,0 +1,131 @@
+// The bench against closed forms: where a sampled spring begins to oscillate, what energy it moves, what its meters
+// see.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "sim_host/feel/feel_meters.h"
+#include "sim_host/feel/z_width.h"
+
+namespace palpate {
+namespace {
+
+// A heavy mass oscillates slowly at the limit (1 kg: under 50 rad/s, 0.05 rad in a tick), so the held force is late by
+// half a tick and the delay, and motion neither grows nor decays at K = 2b / (T + 2 tau); what is left is of second
+// order in the angle per tick. Measured 2026-11-22: within 0.3 %.
+TEST(FeelLoop, AHeavyMassSettlesUpToTheRule) {
+  for (const double delay_s : {0.0, 5e-4, 1e-3}) {
+    const BareDevice device{1, 1, delay_s};
+    const double rule = rule_limit_N_per_m(device);
+    EXPECT_NEAR(measured_limit_N_per_m(device) / rule, 1, 0.02) << delay_s;
+  }
+  EXPECT_DOUBLE_EQ(rule_limit_N_per_m({1, 1, 0}), 2000);
+  EXPECT_DOUBLE_EQ(rule_limit_N_per_m({1, 1, 1e-3}), 2000.0 / 3);
+}
+
+// Friction holds what the encoder's step would drive: below 2 f_c / Delta a spring far beyond the damping's rule comes
+// to rest, and above it the same one does not (Abbott & Okamura 2005). It may not begin fast: what sampling drives
+// grows with the speed, friction does not, and from 10 mm the same spring diverges (Diolaiti et al. 2006).
+TEST(FeelLoop, FrictionAgainstTheEncodersStep) {
+  BareDevice device{0.2, 0, 0};
+  device.encoder_m = 1e-4;
+  device.start_m = 2e-3;
+  device.friction_N = 0.2;  // 2 f_c / Delta = 4000 N/m
+  EXPECT_TRUE(rests(device, 1000));
+  device.start_m = 1e-2;
+  EXPECT_FALSE(rests(device, 1000));
+  device.start_m = 2e-3;
+  device.friction_N = 0.002;  // 40 N/m
+  EXPECT_FALSE(rests(device, 1000));
+}
+
+struct Ledger {
+  double worst_J = 0, motor_J = 0;
+  double way_m = 0;
+};
+
+Ledger press_spring(double stiffness, double hand_N_per_m, double depth_m, double delay_s) {
+  FeelSetup setup;
+  setup.plant.hand_stiffness_N_per_m = hand_N_per_m;
+  setup.plant.tremor_m = 2e-5;
+  setup.delay_s = delay_s;
+  setup.path = HandPath({{0, {}}, {2, {{-depth_m, 0, 0}, {}}}, {2.5, {{-depth_m, 0, 0}, {}}}});
+  Ledger ledger;
+  run_feel_loop(
+      setup,
+      [&](const Input& input, Output& output) { output.device_w.force_N = -stiffness * input.pose_w.position_m; },
+      [&](const FeelTick& now) {
+        const PlantEnergy& e = now.energy;
+        ledger.worst_J = std::max(ledger.worst_J, std::abs(e.motor_J + e.hand_J - e.lost_J - now.kinetic_J));
+        ledger.motor_J = e.motor_J;
+        ledger.way_m = -now.handle_w.position_m.x;
+      });
+  return ledger;
+}
+
+// Work of motors and hand less losses is the kinetic energy, to rounding, in every tick.
+TEST(FeelLoop, TheLedgerCloses) {
+  for (const double delay_s : {0.0, 3e-3}) EXPECT_LT(press_spring(400, 300, 0.02, delay_s).worst_J, 1e-12);
+}
+
+// A spring pressed slowly takes K x^2 / 2; the force held for a tick on a moving handle returns K T v^2 / 2 of it a
+// second: 2 % is ten times that here (v about 10 mm/s; measured 2026-11-22: 0.4 %).
+TEST(FeelLoop, AnAnalyticSpringStoresItsEnergy) {
+  const Ledger pressed = press_spring(400, 300, 0.02, 0);
+  EXPECT_NEAR(-pressed.motor_J / (0.5 * 400 * pressed.way_m * pressed.way_m), 1, 0.02);
+}
+
+TEST(FeelLoop, LosesAndShiftsSamplesAsTold) {
+  FeelSetup setup;
+  setup.plant.encoder_m = 0;
+  setup.path = HandPath({{0, {}}, {0.1, {}}});
+  setup.event = {{0.02, 3, {}}, {0.05, 0, {1e-3, 0, 0}}};
+  int stale = 0, most = 0;
+  double last_m = 0;
+  run_feel_loop(
+      setup, [](const Input&, Output&) {},
+      [&](const FeelTick& now) {
+        stale += now.input.stale_ticks > 0 ? 1 : 0;
+        most = std::max(most, static_cast<int>(now.input.stale_ticks));
+        last_m = now.input.pose_w.position_m.x;
+      });
+  EXPECT_EQ(stale, 3);
+  EXPECT_EQ(most, 3);
+  EXPECT_EQ(last_m, 1e-3);
+  setup.event.clear();
+  setup.sample_period_s = 2.5e-3;  // 400 a second in 100 ticks of 1 ms: 40 fresh
+  stale = 0;
+  run_feel_loop(
+      setup, [](const Input&, Output&) {}, [&](const FeelTick& now) { stale += now.input.stale_ticks > 0 ? 1 : 0; });
+  EXPECT_EQ(stale, 60);
+}
+
+TEST(FeelLoop, IsTheSameEveryTime) {
+  EXPECT_EQ(press_spring(400, 300, 0.02, 1e-3).motor_J, press_spring(400, 300, 0.02, 1e-3).motor_J);
+}
+
+TEST(FeelMeters, SeeWhatBuzzes) {
+  SwingMeter still(0.02), slow(0.02), buzzing(0.02);
+  for (int i = 0; i < 100; ++i) {
+    still.add(1 + (i % 2) * 0.01);
+    slow.add(std::sin(0.1 * i));
+    buzzing.add(i % 2 == 0 ? 1.65 : -1.65);
+  }
+  EXPECT_EQ(still.turns(), 0);
+  EXPECT_LE(slow.longest(), 1);
+  EXPECT_GT(buzzing.longest(), 90);
+}
+
+// A sine within the band counts with its RMS; one below it does not; the window's leakage is below a percent.
+TEST(FeelMeters, NoiseIsThatOfTheBand) {
+  std::vector<double> inside, below;
+  for (int i = 0; i < 1000; ++i) {
+    inside.push_back(5 + 0.1 * std::sin(2 * kPi * 0.2003 * i));
+    below.push_back(5 + 0.1 * std::sin(2 * kPi * 0.0093 * i));
+  }
+  EXPECT_NEAR(band_rms(inside, 1e-3, 50, 500), 0.1 / std::sqrt(2.0), 1e-3);
+  EXPECT_LT(band_rms(below, 1e-3, 50, 500), 1e-5);
+}
+
+}  // namespace
+}  // namespace palpate
