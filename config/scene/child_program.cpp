@@ -48,6 +48,17 @@ int run_program(const std::vector<std::string>& arguments, const std::string& lo
   return WIFEXITED(status) ? WEXITSTATUS(status) : 1;
 }
 
+void become_program(const std::string& name, const std::vector<std::string>& arguments, const std::string& remedy) {
+  const std::string program = sibling_program(name);
+  std::vector<std::string> all{program};
+  all.insert(all.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv;
+  for (std::string& a : all) argv.push_back(a.data());
+  argv.push_back(nullptr);
+  execv(program.c_str(), argv.data());
+  throw ConfigError(program + ": " + std::strerror(errno) + "; " + remedy);
+}
+
 std::string last_lines(const std::string& path) {
   std::ifstream file(path);
   const std::string text{std::istreambuf_iterator<char>(file), {}};

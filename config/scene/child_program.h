@@ -28,6 +28,10 @@ int run_program(const std::vector<std::string>& arguments, const std::string& lo
 // The end of a log, for a message.
 std::string last_lines(const std::string& path);
 
+// Becomes the program of that name beside the one that runs now. Throws ConfigError ending in `remedy` when it cannot.
+[[noreturn]] void become_program(const std::string& name, const std::vector<std::string>& arguments,
+                                 const std::string& remedy);
+
 // Path of a program installed beside the one that runs now.
 std::string sibling_program(const std::string& name);
 // One of our own programs: beside the one that runs, in ../bin of it, or else a name to be found along PATH.

@@ -81,9 +81,47 @@ void DevicePlant::drive(const DeviceCommand& command) noexcept {
   motor_.torque_Nm = limited(due.torque_Nm, options_.torque_max_Nm, saturated_);
 }
 
+HandTarget DevicePlant::aim_at(double time_s) const noexcept {
+  if (!pulled_) return path_.at(time_s);
+  const double since_s = time_s - hand_s_;
+  HandTarget hand = hand_;
+  hand.pose.position_m += since_s * hand.velocity_m_per_s;
+  hand.pose.orientation = normalised(rotation_by(since_s * hand.spin_rad_per_s) * hand.pose.orientation);
+  return hand;
+}
+
+void DevicePlant::pull(const Pose& target, bool trigger) noexcept {
+  if (!pulled_) {
+    hand_ = path_.at(time_s());
+    hand_s_ = time_s();
+    pulled_ = true;
+  }
+  wish_ = {target.position_m, normalised(target.orientation)};
+  hand_.trigger = trigger;
+}
+
+// One period of a critically damped spring from the hand to where it is told to go: a mouse moves in steps of its own
+// 60 to 125 Hz, which a hand does not feel. Faster than 1 m/s and 6 rad/s nobody explores with care (assumption).
+void DevicePlant::follow() noexcept {
+  if (!pulled_) return;
+  constexpr double kRate_per_s = 50, kFastest_m_per_s = 1, kFastest_rad_per_s = 6;
+  const double dt_s = time_s() - hand_s_;
+  if (!(dt_s > 0)) return;
+  const HandTarget here = aim_at(time_s());
+  bool ignored = false;
+  // Implicit in the velocity, hence stable at any period: v' = (v + w^2 dt x) / (1 + 2 w dt + w^2 dt^2).
+  const double w = kRate_per_s, soft = 1 / (1 + 2 * w * dt_s + w * w * dt_s * dt_s);
+  const Vec3 way = wish_.position_m - here.pose.position_m;
+  const Vec3 turn = rotation_vector(wish_.orientation * conjugate(here.pose.orientation));
+  hand_.pose = here.pose;
+  hand_.velocity_m_per_s = limited(soft * (here.velocity_m_per_s + w * w * dt_s * way), kFastest_m_per_s, ignored);
+  hand_.spin_rad_per_s = limited(soft * (here.spin_rad_per_s + w * w * dt_s * turn), kFastest_rad_per_s, ignored);
+  hand_s_ = time_s();
+}
+
 // The hand's aim with its tremor: a circle in two axes and a slower line in the third, so no direction is spared.
 HandTarget DevicePlant::hand_at(double time_s) const noexcept {
-  HandTarget hand = path_.at(time_s);
+  HandTarget hand = aim_at(time_s);
   if (!(options_.tremor_m > 0) && !(options_.tremor_rad > 0)) return hand;
   const double w = 2 * kPi * options_.tremor_Hz;
   const double s = std::sin(w * time_s), c = std::cos(w * time_s), u = 0.87 * w;
@@ -126,6 +164,7 @@ double DevicePlant::kinetic_J() const noexcept {
 
 void DevicePlant::step(const DeviceCommand& command) noexcept {
   drive(command);
+  follow();
   const double dt_s = options_.period_s / options_.substeps;
   const double start_s = time_s();
   for (int i = 0; i < options_.substeps; ++i) integrate(start_s + i * dt_s, dt_s);

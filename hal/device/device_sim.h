@@ -56,6 +56,9 @@ class DevicePlant {
 
   // One period under `command`, which enters the delay line first; zero force if not enabled.
   void step(const DeviceCommand& command) noexcept;
+  // From now on the hand leaves its path and goes where it is told, as smoothly and no faster than a hand does; told
+  // again before each step or not at all, then it stays there.
+  void pull(const Pose& target, bool trigger) noexcept;
   Pose pose() const noexcept { return pose_; }  // exact, device frame
   Vec3 velocity_m_per_s() const noexcept { return velocity_; }
   Vec3 spin_rad_per_s() const noexcept { return spin_; }
@@ -63,7 +66,7 @@ class DevicePlant {
   void freeze_encoder(bool frozen) noexcept { frozen_ = frozen; }  // repeats the last measurement
   void shift_encoder(Vec3 offset_m) noexcept { encoder_shift_m_ += offset_m; }  // lost counts
   Wrench motor() const noexcept { return motor_; }                              // rendered in the last period
-  bool trigger() const noexcept { return path_.at(time_s()).trigger; }          // the hand holds the closing button
+  bool trigger() const noexcept { return aim_at(time_s()).trigger; }            // the hand holds the closing button
   bool saturated() const noexcept { return saturated_; }
   double time_s() const noexcept { return static_cast<double>(ticks_) * options_.period_s; }
   std::uint64_t ticks() const noexcept { return ticks_; }
@@ -77,6 +80,8 @@ class DevicePlant {
   HandTarget hand_at(double time_s) const noexcept;
   void integrate(double time_s, double dt_s) noexcept;
   double noise() noexcept;
+  HandTarget aim_at(double time_s) const noexcept;
+  void follow() noexcept;
 
   PlantOptions options_;
   HandPath path_;
@@ -88,6 +93,11 @@ class DevicePlant {
   DeviceCommand delay_[kDelaySlots];
   std::uint64_t ticks_ = 0;
   std::uint64_t random_;
+  // Of a hand that is pulled: where it is told to go, and where it is at `hand_s_`.
+  bool pulled_ = false;
+  Pose wish_;
+  HandTarget hand_;
+  double hand_s_ = 0;
   bool frozen_ = false;
   Vec3 encoder_shift_m_, last_measured_m_;
 };

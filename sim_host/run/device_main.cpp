@@ -22,7 +22,9 @@
 #include "hal/loop/deadline.h"
 #include "hal/loop/lockstep.h"
 #include "hal/system/rt_linux.h"
+#include "hal/system/shared_memory.h"
 #include "sim_host/exit_codes.h"
+#include "sim_host/rings/hand_target.h"
 #include "sim_host/run/hand_path_file.h"
 #include "sim_host/run/plant_options.h"
 
@@ -41,6 +43,8 @@ constexpr char kHelp[] =
     "origin\n"
     "  --duration S       stop after S seconds; default: when the controller is gone (loopback) or on a signal\n"
     "  --bus-model B      classic or fd: frames take the time they need at 1 Mbit/s (fd: data at 5 Mbit/s)\n"
+    "  --hand-fd N        inherited memory that says where the hand is pulled (palpate view); it leaves its motion "
+    "then\n"
     "  --faults FILE      misbehave by script, one line per fault: AT_S KIND [VALUE]; see below\n"
     "  --priority P       SCHED_FIFO priority 1..98; default 0: ordinary scheduling\n"
     "  --cpu N            pin to this CPU\n"
@@ -53,7 +57,7 @@ struct Failure {
 
 struct Arguments {
   std::string device = "loopback", path, faults, bus_model;
-  int device_fd = -1, turn_fd = -1, priority = 0, cpu = -1;
+  int device_fd = -1, turn_fd = -1, hand_fd = -1, priority = 0, cpu = -1;
   double duration_s = 0;
   PlantOptions plant;
 };
@@ -106,11 +110,13 @@ Arguments parse(int argc, char** argv) {
   const option options[] = {{"device", 1, nullptr, 'd'},   {"device-fd", 1, nullptr, 'f'}, {"path", 1, nullptr, 'p'},
                             {"duration", 1, nullptr, 's'}, {"priority", 1, nullptr, 'r'},  {"cpu", 1, nullptr, 'u'},
                             {"faults", 1, nullptr, 'a'},   {"bus-model", 1, nullptr, 'b'}, {"set", 1, nullptr, 'x'},
-                            {"help", 0, nullptr, 'h'},     {"turn-fd", 1, nullptr, 't'},   {nullptr, 0, nullptr, 0}};
+                            {"help", 0, nullptr, 'h'},     {"turn-fd", 1, nullptr, 't'},   {"hand-fd", 1, nullptr, 'w'},
+                            {nullptr, 0, nullptr, 0}};
   for (int c; (c = getopt_long(argc, argv, "", options, nullptr)) != -1;) {
     if (c == 'd') arguments.device = optarg;
     if (c == 'f') arguments.device_fd = static_cast<int>(number("--device-fd", optarg, 0, 1 << 20));
     if (c == 't') arguments.turn_fd = static_cast<int>(number("--turn-fd", optarg, 0, 1 << 20));
+    if (c == 'w') arguments.hand_fd = static_cast<int>(number("--hand-fd", optarg, 0, 1 << 20));
     if (c == 'p') arguments.path = optarg;
     if (c == 's') arguments.duration_s = number("--duration", optarg, 0.001, 1e6);
     if (c == 'r') arguments.priority = static_cast<int>(number("--priority", optarg, 0, 98));
@@ -183,11 +189,27 @@ BusRate bus_rate(const Arguments& arguments, const DeviceAddress& address) {
   return {};
 }
 
+// Where somebody pulls the hand; empty without.
+SharedMemory hand_memory(int fd) {
+  if (fd < 0) return {};
+  std::string error;
+  SharedMemory memory = SharedMemory::open_peer(fd, sizeof(HandTargetRegion), error);
+  if (!memory) throw Failure{kUnavailable, "--hand-fd: " + error};
+  return memory;
+}
+
+void pull_hand(const SharedMemory& memory, DevicePlant& plant) {
+  HandWish wish;
+  if (!memory || !read_hand_target(*static_cast<const HandTargetRegion*>(memory.data()), wish)) return;
+  if (wish.pulling != 0) plant.pull(wish.pose, wish.closing != 0);
+}
+
 // The device's own clock, one step per period. A late step is made up for at once: mechanics does not skip time.
 // The first is a period after `deadline_ns`.
 template <Clock C>
 void run_node(DeviceNode& node, FaultPlayer& faults, BusModel* bus, const Arguments& arguments, C& clock,
               std::int64_t deadline_ns, const std::atomic<bool>& stop) {
+  const SharedMemory hand = hand_memory(arguments.hand_fd);
   const auto leader_is_there = [&clock] {
     if constexpr (requires { clock.connected(); }) {
       return clock.connected();
@@ -208,6 +230,7 @@ void run_node(DeviceNode& node, FaultPlayer& faults, BusModel* bus, const Argume
     clock.wait_until(deadline_ns);
     if (bus != nullptr) bus->advance(clock.now_ns());
     faults.advance();
+    pull_hand(hand, node.plant());
     node.step(clock.now_ns());
   }
 }

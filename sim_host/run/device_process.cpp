@@ -21,6 +21,7 @@ namespace {
 constexpr int kDeviceEnd = 3;  // descriptors in the child
 constexpr int kPathFile = 4;
 constexpr int kTurns = 5;
+constexpr int kHand = 6;
 constexpr double kDegreesPerRadian = 180.0 / 3.14159265358979323846;
 
 // Closes a descriptor at the end of its scope.
@@ -93,7 +94,7 @@ std::vector<std::string> plant_arguments(const SceneDesc& scene) {
 }
 
 DeviceProcess::DeviceProcess(const std::string& program, const SceneImage& scene, const std::string& path,
-                             const std::string& device, int priority, int turn_fd) {
+                             const std::string& device, int priority, int turn_fd, int hand_fd) {
   if (path.empty() && (!scene.scene || scene.scene->path.point.empty())) {
     throw std::runtime_error("the simulated hand needs a motion: give --path CSV, or a .toml scene with a [path]");
   }
@@ -110,6 +111,10 @@ DeviceProcess::DeviceProcess(const std::string& program, const SceneImage& scene
   if (turn_fd >= 0) {
     descriptors.emplace_back(turn_fd, kTurns);
     arguments.insert(arguments.end(), {"--turn-fd", std::to_string(kTurns)});
+  }
+  if (hand_fd >= 0) {
+    descriptors.emplace_back(hand_fd, kHand);
+    arguments.insert(arguments.end(), {"--hand-fd", std::to_string(kHand)});
   }
   process_ = Process::start(program, arguments, descriptors);
   sockets_.close_end(1);

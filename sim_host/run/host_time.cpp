@@ -5,7 +5,7 @@
 namespace palpate {
 
 bool RealHostTime::next() {
-  if (!first_) std::this_thread::sleep_for(kHeartbeatPeriod);
+  if (!first_) std::this_thread::sleep_for(period_);
   first_ = false;
   return true;
 }
@@ -17,7 +17,7 @@ double RealHostTime::elapsed_s() const {
 bool VirtualHostTime::next() {
   if (paced_) std::this_thread::sleep_until(start_ + std::chrono::nanoseconds(look_ns_));
   turns_.wait_until(look_ns_);
-  look_ns_ += std::chrono::nanoseconds(kHeartbeatPeriod).count();
+  look_ns_ += std::chrono::nanoseconds(period_).count();
   return turns_.connected();
 }
 

@@ -1,4 +1,5 @@
-// When the host looks at a run: twenty times a second of the run's own time, real or virtual.
+// When the host looks at a run: twenty times a second of the run's own time, real or virtual, or more often where a
+// person takes part.
 #pragma once
 
 #include <atomic>
@@ -22,10 +23,12 @@ class HostTime {
 
 class RealHostTime : public HostTime {
  public:
+  explicit RealHostTime(std::chrono::milliseconds period = kHeartbeatPeriod) : period_(period) {}
   bool next() override;
   double elapsed_s() const override;
 
  private:
+  std::chrono::milliseconds period_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   bool first_ = true;
 };
@@ -34,7 +37,8 @@ class RealHostTime : public HostTime {
 class VirtualHostTime : public HostTime {
  public:
   // `fd` stays the caller's. `paced`: each look waits until as much real time has passed.
-  VirtualHostTime(int fd, bool paced) : turns_(fd, never_), paced_(paced) {}
+  VirtualHostTime(int fd, bool paced, std::chrono::milliseconds period = kHeartbeatPeriod)
+      : turns_(fd, never_), paced_(paced), period_(period) {}
   bool next() override;
   double elapsed_s() const override { return 1e-9 * static_cast<double>(turns_.now_ns()); }
 
@@ -42,6 +46,7 @@ class VirtualHostTime : public HostTime {
   std::atomic<bool> never_{false};  // the controller's end is what ends a wait
   FollowerClock turns_;
   bool paced_;
+  std::chrono::milliseconds period_;
   std::int64_t look_ns_ = 0;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };

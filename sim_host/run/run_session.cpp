@@ -207,7 +207,8 @@ class Watch {
   // Returns how long it watched, in seconds of the run.
   double run() {
     while (next() && time_.elapsed_s() < options_.duration_s && stop_signal == 0 && !faulted_ && !waits_in_vain()) {
-      if (!joints_.empty()) link_.mailbox().set_joints(joints_.at(time_.elapsed_s()));
+      if (options_.companion.goes_on && !options_.companion.goes_on()) break;
+      tell_joints();
       look();
       report(time_.elapsed_s(), false);
     }
@@ -233,6 +234,13 @@ class Watch {
   }
 
  private:
+  void tell_joints() {
+    std::optional<JointCommand> told;
+    if (options_.companion.joints) told = options_.companion.joints();
+    if (!told && !joints_.empty()) told = joints_.at(time_.elapsed_s());
+    if (told) link_.mailbox().set_joints(*told);
+  }
+
   // The next look: false when there is nobody left to look at.
   bool next() {
     if (!time_.next() || !link_.process().running()) return false;
@@ -310,7 +318,9 @@ RunResult follow(ControllerLink& link, HostTime& time, DeviceProcess* device, co
   Recorder recorder(link.telemetry(), file.get(), [&](const TickRecord& record) {
     summary->take(record);
     if (box) box->add(record);
+    if (options.companion.tick) options.companion.tick(record);
   });
+  if (options.companion.begins) options.companion.begins(recording_header(header));
   if (!virtual_time) recorder.start();
   Watch watch(link, time, device, virtual_time ? &recorder : nullptr, options, joints, *summary);
   RunResult result;
@@ -389,19 +399,19 @@ RunResult run_session(const RunOptions& options) {
   if (wants_simulated_device(address, options.device)) {
     device.emplace(program("palpate-device"), scene, options.path, options.device,
                    virtual_time ? 0 : std::max(0, options.priority - kDevicePriorityBelow),
-                   virtual_time ? device_turns->end(1) : -1);
+                   virtual_time ? device_turns->end(1) : -1, options.companion.hand_fd);
   }
   ControllerLink link(program("palpate-rt"),
                       controller_arguments(options, scene.image_path, options.device, device.has_value(), virtual_time),
                       device ? device->controller_end() : -1, turns);
   if (device) device->close_controller_end();
   if (!virtual_time) {
-    RealHostTime time;
+    RealHostTime time(options.companion.look);
     return follow(link, time, device ? &*device : nullptr, options, joints, address, image, std::move(record));
   }
   device_turns.reset();
   host_turns->close_end(0);
-  VirtualHostTime time(host_turns->end(1), options.pace);
+  VirtualHostTime time(host_turns->end(1), options.pace, options.companion.look);
   return follow(link, time, device ? &*device : nullptr, options, joints, address, image, std::move(record));
 }
 

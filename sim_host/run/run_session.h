@@ -2,12 +2,15 @@
 // stop in order.
 #pragma once
 
+#include <chrono>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "sim_host/latency/live_table.h"
 #include "sim_host/record/black_box.h"
+#include "sim_host/record/recording.h"
 #include "sim_host/run/joint_script.h"
 #include "sim_host/run/run_summary.h"
 
@@ -15,6 +18,16 @@ namespace palpate {
 
 // Whose time a run takes. Automatic: virtual with the simulated device nobody asked for, real with any that is named.
 enum class RunTime { kAutomatic, kReal, kVirtual };
+
+// Somebody who watches a run and takes part in it while it goes on: a viewer. Every member may be empty.
+struct RunCompanion {
+  std::chrono::milliseconds look{50};                   // so often the host looks at the run: 1 to 50 ms
+  std::function<void(const RecordingHeader&)> begins;   // the controller is there
+  std::function<void(const TickRecord&)> tick;          // of every record, on the recorder's thread or the run's
+  std::function<bool()> goes_on;                        // asked at every look; false ends the run in order
+  std::function<std::optional<JointCommand>()> joints;  // asked at every look; something replaces the script
+  int hand_fd = -1;                                     // memory that pulls the simulated hand; -1: none
+};
 
 struct RunOptions {
   std::string scene;            // .toml or .pal
@@ -37,7 +50,8 @@ struct RunOptions {
   std::string black_box;           // prefix of the files written with every fault; empty: none
   std::function<void()> before_start;              // scene and options are accepted, nothing has started; may be empty
   std::function<void(const LiveState&)> progress;  // called about every second while the run goes on; may be empty
-  std::string program_folder;                      // of palpate-rt and palpate-device; empty: beside this program
+  RunCompanion companion;
+  std::string program_folder;  // of palpate-rt and palpate-device; empty: beside this program
 };
 
 struct RunResult {

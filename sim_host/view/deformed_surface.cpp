@@ -77,25 +77,29 @@ std::vector<Vec3> nodal_displacement_m(const Model& model, const State& state) {
                                       : response_m(model, state, model.compliance_f64);
 }
 
-// Modes at the vertices, straight between them; the dents at every point.
-void add_dents(const Model& model, const State& state, DeformedSurface& surface) {
+// Modes at the vertices, straight between them; the dents at every point. `rest_normal` may be empty: then they are
+// made.
+void add_dents(const Model& model, const State& state, DeformedSurface& surface, std::span<const Vec3> rest_normal) {
   const std::vector<TipDent> dents = tip_dents(model, state);
   if (dents.empty()) return;
-  const std::vector<Vec3> normal = mesh_normals(surface.rest_m, surface.triangle);
+  std::vector<Vec3> made;
+  if (rest_normal.empty()) made = mesh_normals(surface.rest_m, surface.triangle);
+  const std::span<const Vec3> normal = made.empty() ? rest_normal : made;
   for (std::size_t i = 0; i < surface.rest_m.size(); ++i) {
     const Vec3 carried = surface.rest_m[i] + surface.displacement_m[i];
     for (const TipDent& dent : dents) surface.displacement_m[i] += dent.at(carried, normal[i]);
   }
 }
 
-void displace(const Model& model, const State& state, DeformedSurface& surface) {
+void displace(const Model& model, const State& state, DeformedSurface& surface,
+              std::span<const Vec3> rest_normal = {}) {
   if (method_of(model) == Method::kNodes) {
     surface.displacement_m = nodal_displacement_m(model, state);
     return;
   }
   if (method_of(model) == Method::kElastic) {
     if (surface.displacement_m.empty()) surface.displacement_m = mode_displacement_m(model, state);
-    add_dents(model, state, surface);
+    add_dents(model, state, surface, rest_normal);
     return;
   }
   ShapeField field;
@@ -151,9 +155,10 @@ struct HalvedEdge {
   Vec3 lift, low_normal, high_normal;
 };
 
-// Halves every edge; `corner` goes along, and displacements where they are known already.
-void refine(DeformedSurface& surface, std::vector<TriangleNormals>& corner) {
-  const bool given = !surface.displacement_m.empty();
+using Ends = std::pair<std::int32_t, std::int32_t>;
+
+// Halves every edge; `corner` goes along. `parents`: the ends between which each new point stands.
+void refine(DeformedSurface& surface, std::vector<TriangleNormals>& corner, std::vector<Ends>& parents) {
   constexpr double kRounding = 0.5;  // exact for a circle to second order
   std::map<std::pair<std::int32_t, std::int32_t>, HalvedEdge> edges;
   const auto same = [](Vec3 a, Vec3 b) { return squared_norm(a - b) < 1e-6; };
@@ -170,8 +175,7 @@ void refine(DeformedSurface& surface, std::vector<TriangleNormals>& corner) {
       HalvedEdge& edge = entry->second;
       if (is_new) {
         surface.rest_m.push_back(p);
-        if (given)
-          surface.displacement_m.push_back(0.5 * (surface.displacement_m[at(a)] + surface.displacement_m[at(b)]));
+        parents.emplace_back(a, b);
       }
       // On a crease each side lifts by its own curvature: at a cylinder's rim the wall does and the lid does not.
       else if (!same(edge.low_normal, na) || !same(edge.high_normal, nb))
@@ -196,23 +200,6 @@ void refine(DeformedSurface& surface, std::vector<TriangleNormals>& corner) {
   corner = std::move(finer_normal);
 }
 
-// Turns the normals at rest with the surface. Rounded points are not quite smooth across the old edges, so only the
-// turn is taken from the points, and the normal at rest from the interpolation.
-void turn_normals(DeformedSurface& surface) {
-  const std::vector<Vec3> at_rest = mesh_normals(surface.rest_m, surface.triangle);
-  const std::vector<Vec3> face_at_rest = face_normals(surface.rest_m, surface.triangle);
-  const std::vector<Vec3> face = face_normals(surface.position_m, surface.triangle);
-  for (std::size_t t = 0; t < surface.corner_normal.size(); ++t) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      Vec3& n = surface.corner_normal[t][k];
-      const std::size_t vertex = at(surface.triangle[t][k]);
-      const bool smooth = dot(n, at_rest[vertex]) > 0.97;
-      n = smooth ? unit_or(n + surface.normal[vertex] - at_rest[vertex], surface.normal[vertex])
-                 : rotate(rotation_between(face_at_rest[t], face[t]), n);
-    }
-  }
-}
-
 }  // namespace
 
 DeformedSurface deformed_surface(const Model& model, std::vector<Vec3> displacement_m) {
@@ -229,18 +216,51 @@ DeformedSurface deformed_surface(const Model& model, const State& state) {
   return surface;
 }
 
-DeformedSurface refined_surface(const Model& model, const State& state, std::size_t most_triangles) {
+RefinedBody::RefinedBody(const Model& model, std::size_t most_triangles) : model_(model) {
   DeformedSurface surface = rest_surface(model);
-  std::vector<TriangleNormals> corner = smooth_normals(surface.rest_m, surface.triangle);
-  const Method method = method_of(model);
-  if (method == Method::kElastic) surface.displacement_m = mode_displacement_m(model, state);
-  const bool everywhere = method != Method::kNodes && model.params.shape_law != ShapeLaw::kDisplacementAnglePaper;
-  while (everywhere && 4 * surface.triangle.size() <= most_triangles) refine(surface, corner);
-  displace(model, state, surface);
+  corner_normal_ = smooth_normals(surface.rest_m, surface.triangle);
+  const bool everywhere =
+      method_of(model) != Method::kNodes && model.params.shape_law != ShapeLaw::kDisplacementAnglePaper;
+  while (everywhere && 4 * surface.triangle.size() <= most_triangles) refine(surface, corner_normal_, parents_);
+  rest_m_ = std::move(surface.rest_m);
+  triangle_ = std::move(surface.triangle);
+  normal_ = mesh_normals(rest_m_, triangle_);
+  face_normal_ = face_normals(rest_m_, triangle_);
+}
+
+// Rounded points are not quite smooth across the old edges, so only the turn is taken from the points, and the normal
+// at rest from the interpolation.
+void RefinedBody::turn_normals(DeformedSurface& surface) const {
+  const std::vector<Vec3> face = face_normals(surface.position_m, surface.triangle);
+  for (std::size_t t = 0; t < surface.corner_normal.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      Vec3& n = surface.corner_normal[t][k];
+      const std::size_t vertex = at(surface.triangle[t][k]);
+      const bool smooth = dot(n, normal_[vertex]) > 0.97;
+      n = smooth ? unit_or(n + surface.normal[vertex] - normal_[vertex], surface.normal[vertex])
+                 : rotate(rotation_between(face_normal_[t], face[t]), n);
+    }
+  }
+}
+
+DeformedSurface RefinedBody::shape(const State& state) const {
+  DeformedSurface surface;
+  surface.rest_m = rest_m_;
+  surface.triangle = triangle_;
+  if (method_of(model_) == Method::kElastic) {
+    std::vector<Vec3>& u = surface.displacement_m;
+    u = mode_displacement_m(model_, state);
+    for (const auto& [a, b] : parents_) u.push_back(0.5 * (u[at(a)] + u[at(b)]));
+  }
+  displace(model_, state, surface, normal_);
   finish(surface);
-  surface.corner_normal = std::move(corner);
+  surface.corner_normal = corner_normal_;
   turn_normals(surface);
   return surface;
+}
+
+DeformedSurface refined_surface(const Model& model, const State& state, std::size_t most_triangles) {
+  return RefinedBody(model, most_triangles).shape(state);
 }
 
 }  // namespace palpate

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "rt_core/model.h"
@@ -28,6 +29,22 @@ DeformedSurface deformed_surface(const Model& model, const State& state);
 // The same on a mesh refined for drawing, up to `most_triangles`: edges are halved and the new points rounded by the
 // normals (Phong tessellation, Boubekeur & Alexa 2008), which keep creases sharp. Not refined where the shape law
 // is only known at the model's vertices (displacement angles, finite elements); modes are straight between vertices.
+// Refined once, then evaluated for one state after another.
+class RefinedBody {
+ public:
+  // `model` must outlive this.
+  explicit RefinedBody(const Model& model, std::size_t most_triangles = 250'000);
+  DeformedSurface shape(const State& state) const;
+
+ private:
+  void turn_normals(DeformedSurface& surface) const;
+
+  const Model& model_;
+  std::vector<Vec3> rest_m_, normal_, face_normal_;  // at rest
+  std::vector<std::array<std::int32_t, 3>> triangle_;
+  std::vector<std::array<Vec3, 3>> corner_normal_;
+  std::vector<std::pair<std::int32_t, std::int32_t>> parents_;  // of the points beyond the model's vertices, in order
+};
 DeformedSurface refined_surface(const Model& model, const State& state, std::size_t most_triangles = 250'000);
 
 }  // namespace palpate

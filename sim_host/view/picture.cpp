@@ -12,6 +12,7 @@
 #include "sim_host/view/plot.h"
 #include "sim_host/view/png_file.h"
 #include "sim_host/view/stroke_font.h"
+#include "sim_host/view/view_scales.h"
 
 namespace palpate {
 
@@ -128,12 +129,9 @@ void Renderer::choose_scale() {
   if (!(largest > 0)) {
     for (const Vec3 d : surface_.displacement_m) largest = std::max(largest, norm(d));
   }
-  const double top_mm = largest > 1e-7 ? largest * 1e3 : 1.0;
-  legend_mm_ = axis_ticks(0, top_mm, 4);
-  if (legend_mm_.size() > 1 && legend_mm_.back() < top_mm * (1 - 1e-9) && !(options_.displacement_max_m > 0)) {
-    legend_mm_.push_back(2 * legend_mm_.back() - legend_mm_[legend_mm_.size() - 2]);
-  }
-  scale_top_m_ = std::max(top_mm, legend_mm_.back()) * 1e-3;
+  const DisplacementScale scale = displacement_scale(largest, options_.displacement_max_m > 0);
+  legend_mm_ = scale.tick_mm;
+  scale_top_m_ = scale.top_m;
 }
 
 void Renderer::draw_body() {

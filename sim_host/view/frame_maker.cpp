@@ -1,0 +1,125 @@
+#include "sim_host/view/frame_maker.h"
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+
+namespace palpate {
+
+DrawnBody drawn_body(const DeformedSurface& surface) {
+  DrawnBody body;
+  // Vertices already made of each surface vertex: a smooth one has one, a point on a crease one for each side.
+  std::vector<std::vector<std::uint32_t>> made(surface.rest_m.size());
+  for (std::size_t t = 0; t < surface.triangle.size(); ++t) {
+    std::array<std::uint32_t, 3> corners{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto vertex = surface.triangle[t][k];
+      const Vec3 normal = surface.corner_normal[t][k];
+      auto& candidates = made[static_cast<std::size_t>(vertex)];
+      const auto same = std::ranges::find_if(candidates, [&](std::uint32_t i) {
+        const DrawnBody::Source& s = body.source[i];
+        const auto& other = surface.corner_normal[static_cast<std::size_t>(s.triangle)];
+        return squared_norm(other[static_cast<std::size_t>(s.corner)] - normal) < 1e-6;
+      });
+      if (same != candidates.end()) {
+        corners[k] = *same;
+        continue;
+      }
+      corners[k] = static_cast<std::uint32_t>(body.source.size());
+      body.source.push_back({vertex, static_cast<std::int32_t>(t), static_cast<std::int32_t>(k)});
+      candidates.push_back(corners[k]);
+    }
+    body.triangle.push_back(corners);
+  }
+  return body;
+}
+
+std::vector<DrawnVertex> drawn_vertices(const DrawnBody& body, const DeformedSurface& surface) {
+  std::vector<DrawnVertex> vertices;
+  vertices.reserve(body.source.size());
+  for (const DrawnBody::Source& s : body.source) {
+    const auto v = static_cast<std::size_t>(s.vertex);
+    const Vec3 p = surface.position_m[v];
+    const Vec3 n = surface.corner_normal[static_cast<std::size_t>(s.triangle)][static_cast<std::size_t>(s.corner)];
+    vertices.push_back({{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)},
+                        {static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z)},
+                        static_cast<float>(norm(surface.displacement_m[v]))});
+  }
+  return vertices;
+}
+
+FrameMaker::FrameMaker(const Model& model, const RunTrack& track, StatePtr initial, std::size_t most_triangles)
+    : refined_(model, most_triangles), states_(model, track, copy_of(*initial)), track_(track) {
+  const DeformedSurface surface = refined_.shape(*initial);
+  drawn_ = drawn_body(surface);
+  at_rest_ = drawn_vertices(drawn_, surface);
+  thread_ = std::thread([this] { run(); });
+}
+
+FrameMaker::~FrameMaker() {
+  {
+    const std::lock_guard lock(mutex_);
+    ending_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+void FrameMaker::want(std::size_t index) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (wanted_ == index && asked_) return;
+    wanted_ = index;
+    asked_ = true;
+  }
+  changed_.notify_all();
+}
+
+std::shared_ptr<const ViewFrame> FrameMaker::newest() const {
+  const std::lock_guard lock(mutex_);
+  return newest_;
+}
+
+std::shared_ptr<const ViewFrame> FrameMaker::wait_for(std::size_t index) {
+  want(index);
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [&] { return newest_ && newest_->index == index; });
+  return newest_;
+}
+
+std::shared_ptr<const ViewFrame> FrameMaker::make(std::size_t index) {
+  // So long a way is taken in pieces, so that a new wish or the end is noticed; each piece is a frame on the way.
+  constexpr std::size_t kTicksAtOnce = 500;
+  const auto start = std::chrono::steady_clock::now();
+  const State& state = states_.go_to(index, kTicksAtOnce);
+  const DeformedSurface surface = refined_.shape(state);
+  auto frame = std::make_shared<ViewFrame>();
+  frame->index = states_.reached();
+  frame->state = copy_of(state);
+  frame->vertex = drawn_vertices(drawn_, surface);
+  for (const Vec3 d : surface.displacement_m) frame->largest_m = std::max(frame->largest_m, norm(d));
+  frame->made_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  return frame;
+}
+
+void FrameMaker::run() {
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    changed_.wait(lock, [this] { return ending_ || (asked_ && (!newest_ || newest_->index != wanted_)); });
+    if (ending_) return;
+    const std::size_t wanted = wanted_;
+    if (track_.size() == 0) {
+      asked_ = false;
+      continue;
+    }
+    lock.unlock();
+    std::shared_ptr<const ViewFrame> frame = make(wanted);
+    lock.lock();
+    // Beyond the track's end there is nothing to wait for.
+    if (frame->index != wanted && frame->index + 1 == track_.size() && wanted_ == wanted) asked_ = false;
+    newest_ = std::move(frame);
+    changed_.notify_all();
+  }
+}
+
+}  // namespace palpate

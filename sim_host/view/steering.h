@@ -1,0 +1,32 @@
+// The mouse as a device: what a viewer tells the simulated hand of a run, and a hand's fingers.
+#pragma once
+
+#include <atomic>
+#include <string>
+
+#include "hal/system/shared_memory.h"
+#include "sim_host/rings/hand_target.h"
+
+namespace palpate {
+
+// Pull and closing are told by one thread; the run asks from another.
+class Steering {
+ public:
+  // Throws std::runtime_error when there is no memory to share.
+  Steering();
+  // The handle is pulled to `pose`, and held there until it is told otherwise.
+  void pull(const Pose& pose);
+  // 0 open to 1 closed, of all fingers or jaws; from the first call on.
+  void close_to(double closing) { closing_.store(static_cast<float>(closing)); }
+  // Below 0: nobody asked yet.
+  float closing() const { return closing_.load(); }
+  // For the simulated device (palpate-device --hand-fd).
+  int fd() const { return memory_.fd(); }
+
+ private:
+  SharedMemory memory_;
+  HandTargetWriter writer_;
+  std::atomic<float> closing_{-1};
+};
+
+}  // namespace palpate

@@ -1,0 +1,43 @@
+// The viewer's window: draws a run, recorded or going on, until it is closed.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "sim_host/view/orbit_camera.h"
+#include "sim_host/view/run_track.h"
+#include "sim_host/view/steering.h"
+
+namespace palpate {
+
+struct ViewerOptions {
+  int width = 1600, height = 1000;
+  std::string title;
+  std::string screenshot;      // write this PNG of one tick and leave; no window is shown
+  std::optional<double> at_s;  // start there; default: at the largest force, of a live run at its end
+  StandardView view = StandardView::kOblique;
+  bool default_view = true;             // the still pictures' view, from the side of the contacts
+  bool panel = true;                    // plots and words at the right
+  bool stats = false;                   // print frame times and memory at the end
+  double stats_s = 5;                   // after so long, when stats are asked for
+  std::size_t most_triangles = 60'000;  // bodies are refined for drawing up to this
+};
+
+// What goes on in another thread; null members for a recording.
+struct ViewerRun {
+  const Model* model = nullptr;
+  const RunTrack* track = nullptr;
+  const State* initial = nullptr;  // before the track's first tick
+  bool can_steer() const { return steering != nullptr; }
+  bool live = false;
+  std::function<bool()> goes_on;        // whether the live run still does; may be empty
+  std::function<std::string()> notice;  // what to tell the person, or ""; may be empty
+  Steering* steering = nullptr;         // of a run whose device is the mouse
+};
+
+// Returns when the window is closed, the screenshot is written, or SIGINT came. Throws std::runtime_error when there is
+// no display or no OpenGL 3.3, saying what to do.
+void show_run(const ViewerRun& run, const ViewerOptions& options);
+
+}  // namespace palpate
