@@ -59,6 +59,10 @@ class DevicePlant {
   // From now on the hand leaves its path and goes where it is told, as smoothly and no faster than a hand does; told
   // again before each step or not at all, then it stays there.
   void pull(const Pose& target, bool trigger) noexcept;
+  // The same, to where the hand is now; nothing when it is pulled already.
+  void hold() noexcept {
+    if (!pulled_) pull(path_.at(time_s()).pose, path_.at(time_s()).trigger);
+  }
   Pose pose() const noexcept { return pose_; }  // exact, device frame
   Vec3 velocity_m_per_s() const noexcept { return velocity_; }
   Vec3 spin_rad_per_s() const noexcept { return spin_; }

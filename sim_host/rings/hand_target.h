@@ -14,8 +14,10 @@
 namespace palpate {
 
 struct HandWish {
-  Pose pose;                  // of the handle, device frame
-  std::uint32_t pulling = 0;  // 0: the hand keeps to its own motion; 1: it goes to `pose` and stays there
+  // The hand keeps to its own motion; goes to `pose` and stays there; stays where it is.
+  enum Kind : std::uint32_t { kFree = 0, kPull = 1, kHold = 2 };
+  Pose pose;  // of the handle, device frame
+  std::uint32_t kind = kFree;
   std::uint32_t closing = 0;  // 1: the device's closing button is held
 };
 static_assert(std::is_trivially_copyable_v<HandWish> && sizeof(HandWish) % 8 == 0);
@@ -23,7 +25,8 @@ inline constexpr std::size_t kWishWords = sizeof(HandWish) / 8;
 
 inline bool is_valid(const HandWish& wish) noexcept {
   constexpr double kFarthest_m = 10;
-  return is_finite(wish.pose) && norm(wish.pose.position_m) < kFarthest_m && wish.pulling <= 1 && wish.closing <= 1;
+  return is_finite(wish.pose) && norm(wish.pose.position_m) < kFarthest_m && wish.kind <= HandWish::kHold &&
+         wish.closing <= 1;
 }
 
 struct HandTargetRegion {

@@ -201,7 +201,8 @@ SharedMemory hand_memory(int fd) {
 void pull_hand(const SharedMemory& memory, DevicePlant& plant) {
   HandWish wish;
   if (!memory || !read_hand_target(*static_cast<const HandTargetRegion*>(memory.data()), wish)) return;
-  if (wish.pulling != 0) plant.pull(wish.pose, wish.closing != 0);
+  if (wish.kind == HandWish::kPull) plant.pull(wish.pose, wish.closing != 0);
+  if (wish.kind == HandWish::kHold) plant.hold();
 }
 
 // The device's own clock, one step per period. A late step is made up for at once: mechanics does not skip time.

@@ -70,6 +70,7 @@ void RunTrack::find_events(const TrackTick& tick) {
 
 void RunTrack::append(const TickRecord& record) {
   const std::lock_guard lock(mutex_);
+  if (ticks_.size() >= kMostTicks) return;
   const TrackTick tick = track_tick(record);
   const std::uint64_t missing =
       ticks_.empty() || record.sequence < next_sequence_ ? 0 : record.sequence - next_sequence_;

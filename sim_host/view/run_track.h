@@ -58,8 +58,11 @@ std::uint32_t telling_status(std::uint32_t status);
 class RunTrack {
  public:
   explicit RunTrack(double period_s) : period_s_(period_s) {}
+  // An hour at 1 kHz, 1.4 GB: what comes after that is dropped, and full() says so.
+  static constexpr std::size_t kMostTicks = 3'600'000;
   // Ticks come in order; a gap in the sequence is marked.
   void append(const TickRecord& record);
+  bool full() const { return size() >= kMostTicks; }
 
   double period_s() const { return period_s_; }
   std::size_t size() const;

@@ -17,6 +17,11 @@ SharedMemory hand_memory() {
 
 Steering::Steering() : memory_(hand_memory()), writer_(*static_cast<HandTargetRegion*>(memory_.data())) {}
 
-void Steering::pull(const Pose& pose) { writer_.write({pose, 1, 0}); }
+void Steering::pull(const Pose& pose) {
+  writer_.write({pose, HandWish::kPull, 0});
+  pulls_.fetch_add(1);
+}
+
+void Steering::hold() { writer_.write({{}, HandWish::kHold, 0}); }
 
 }  // namespace palpate

@@ -16,6 +16,10 @@ class Steering {
   Steering();
   // The handle is pulled to `pose`, and held there until it is told otherwise.
   void pull(const Pose& pose);
+  // The hand stays where its own motion has it now, until it is pulled.
+  void hold();
+  // How often it was pulled so far.
+  std::uint64_t pulls() const { return pulls_.load(); }
   // 0 open to 1 closed, of all fingers or jaws; from the first call on.
   void close_to(double closing) { closing_.store(static_cast<float>(closing)); }
   // Below 0: nobody asked yet.
@@ -27,6 +31,7 @@ class Steering {
   SharedMemory memory_;
   HandTargetWriter writer_;
   std::atomic<float> closing_{-1};
+  std::atomic<std::uint64_t> pulls_{0};
 };
 
 }  // namespace palpate

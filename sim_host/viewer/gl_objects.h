@@ -73,8 +73,9 @@ class GlFramebuffer {
   // RGB rows from the top.
   std::vector<std::uint8_t> pixels() const;
 
- private:
   void release();
+
+ private:
   GLuint frame_ = 0, texture_ = 0, colour_ = 0, depth_ = 0;
   int width_ = 0, height_ = 0, samples_ = 0;
 };

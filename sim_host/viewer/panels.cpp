@@ -241,11 +241,11 @@ void side_panel(ImVec2 low, ImVec2 size, const PanelScene& scene, ViewLayers& la
   ImGui::Separator();
   switches(layers, camera, reset_camera);
   ImGui::Separator();
-  wrapped(theme::kGrey, scene.can_steer
-                            ? "Drag the tool to feel: it is the device. Wheel while dragging: nearer, farther. "
-                              "C, O: close, open a hand. Drag elsewhere: turn; right button: shift."
-                            : "Drag: turn. Right button: shift. Wheel: zoom. Space: play. Arrows: one tick, "
-                              "with Ctrl 100. Tab: this panel.");
+  wrapped(theme::kGrey,
+          scene.can_steer ? "Drag the tool to feel: it is the device. Wheel while dragging: nearer, farther. "
+                            "C, O: close, open fingers. P: picture. Drag elsewhere: turn; right button: shift."
+                          : "Drag: turn. Right button: shift. Wheel: zoom. P: picture. Space: play. Arrows: one tick, "
+                            "with Ctrl 100. Tab: this panel.");
   ImGui::End();
 }
 

@@ -72,7 +72,8 @@ ViewWindow::~ViewWindow() {
   ImGui_ImplOpenGL3_Shutdown();
   ImGui_ImplGlfw_Shutdown();
   ImGui::DestroyContext();
-  // Framebuffers and meshes that outlive the context go with it.
+  scene_.release();
+  picture_.release();
   glfwDestroyWindow(window_);
   glfwTerminate();
 }

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 
 #include "rt_core/tool/articulate.h"
 #include "sim_host/latency/histogram.h"
@@ -34,7 +35,7 @@ class Viewer {
         window_(options.width, options.height, options.title, options.screenshot.empty()),
         maker_(*run.model, *run.track, copy_of(*run.initial), options.most_triangles),
         renderer_(*run.model, maker_.body(), maker_.at_rest()) {
-    player_.live = run.live && !options.at_s;
+    player_.live = run.live() && !options.at_s;
   }
 
   void show() {
@@ -42,7 +43,7 @@ class Viewer {
     if (!options_.screenshot.empty()) return screenshot();
     auto before = Clock::now();
     const auto start = before;
-    while (!window_.wants_to_close()) {
+    while (!window_.wants_to_close() && !(run_.closes && run_.closes())) {
       const auto now = Clock::now();
       const double elapsed_s = std::chrono::duration<double>(now - before).count();
       before = now;
@@ -65,9 +66,10 @@ class Viewer {
   // As the still pictures see the strongest tick, or a standard view.
   void start_camera() {
     if (options_.at_s) player_.seek(*options_.at_s, first_s(), last_s());
-    if (!options_.at_s && !run_.live) player_.seek(track().time_s(track().strongest()), first_s(), last_s());
+    if (!options_.at_s && !run_.live()) player_.seek(track().time_s(track().strongest()), first_s(), last_s());
     std::shared_ptr<const ViewFrame> frame;
     if (track().size() > 0) frame = maker_.wait_for(track().index_at(player_.time_s()));
+    frame_known_ = frame != nullptr;
     reset_camera(frame ? *frame->state : *run_.initial);
     if (!options_.default_view) camera_.look_from(options_.view);
   }
@@ -100,6 +102,11 @@ class Viewer {
     player_.advance(elapsed_s, first_s(), last_s());
     if (track().size() > 0) maker_.want(track().index_at(player_.time_s()));
     const std::shared_ptr<const ViewFrame> frame = maker_.newest();
+    // A run that goes on shows where its tool is with its first tick.
+    if (frame && !shown_ && !frame_known_) {
+      reset_camera(*frame->state);
+      if (!options_.default_view) camera_.look_from(options_.view);
+    }
     if (frame && frame != shown_) {
       renderer_.show(*frame);
       shown_ = frame;
@@ -108,6 +115,8 @@ class Viewer {
     }
     draw();
     window_.present();
+    if (wants_picture_) save_picture_beside();
+    wants_picture_ = false;
   }
 
   void draw() {
@@ -119,7 +128,7 @@ class Viewer {
     scene.resize(width, height, 1, GL_RGBA8);
     if (shown_) {
       DisplacementScale colours =
-          displacement_scale(std::max(largest_m_ = std::max(largest_m_, shown_->largest_m), 1e-6), false);
+          displacement_scale(std::max(largest_m_ = std::max(largest_m_, shown_->largest_m), 1e-4), false);
       const ForceScale forces = force_scale(track().largest_region_N(), renderer_.size_m());
       draw_scene(colours, forces, resized);
       ImDrawList* list = ImGui::GetBackgroundDrawList();
@@ -155,7 +164,7 @@ class Viewer {
     add(scene_times_, static_cast<std::int64_t>(1e6 * took_ms), ++scenes_);
   }
 
-  bool live() const { return run_.live && (!run_.goes_on || run_.goes_on()); }
+  bool live() const { return run_.live(); }
 
   OverlayScene overlay(const DisplacementScale& colours, const ForceScale& forces) const {
     const TrackTick tick = track().at(shown_->index);
@@ -237,6 +246,7 @@ class Viewer {
     const ImGuiIO& io = ImGui::GetIO();
     if (ImGui::IsKeyPressed(GLFW_KEY_TAB, false)) panel_ = !panel_;
     if (ImGui::IsKeyPressed(GLFW_KEY_SPACE, false) && !player_.live) player_.toggle(first_s(), last_s());
+    if (ImGui::IsKeyPressed(GLFW_KEY_P, false)) wants_picture_ = true;
     if (ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false) || ImGui::IsKeyPressed(GLFW_KEY_Q, false)) window_.close();
     const double ticks = io.KeyCtrl ? 100 : 1;
     for (const auto& [key, way] : {std::pair{GLFW_KEY_LEFT, -1.0}, {GLFW_KEY_RIGHT, 1.0}}) {
@@ -259,6 +269,15 @@ class Viewer {
     if (way == 0) return;
     const double now = run_.steering->closing() < 0 ? 0 : static_cast<double>(run_.steering->closing());
     run_.steering->close_to(std::clamp(now + way * kRate_per_s * elapsed_s, 0.0, 1.0));
+  }
+
+  // Into the current folder, over nothing that is there.
+  void save_picture_beside() const {
+    std::string name;
+    for (int i = 1; name.empty() || std::filesystem::exists(name); ++i)
+      name = fmt::format("{}-{}.png", run_.model->name, i);
+    write_png(name, window_.width(), window_.height(), window_.picture().pixels());
+    fmt::print("wrote   {}\n", name);
   }
 
   // --- Without a person ------------------------------------------------------------------------------------------
@@ -313,7 +332,8 @@ class Viewer {
   Histogram scene_times_;
   std::uint64_t scenes_ = 0;
   double largest_m_ = 0;
-  bool panel_ = true;
+  bool panel_ = true, wants_picture_ = false;
+  bool frame_known_ = false;  // when the camera was placed
   bool turning_ = false, shifting_ = false;
   std::optional<Vec3> grabbed_;  // of the tool, its frame
   Vec3 plane_w_;                 // the mouse moves it in the plane through here

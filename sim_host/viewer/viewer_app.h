@@ -24,16 +24,17 @@ struct ViewerOptions {
   std::size_t most_triangles = 60'000;  // bodies are refined for drawing up to this
 };
 
-// What goes on in another thread; null members for a recording.
+// A run to look at. What is empty is not so.
 struct ViewerRun {
   const Model* model = nullptr;
   const RunTrack* track = nullptr;
-  const State* initial = nullptr;  // before the track's first tick
-  bool can_steer() const { return steering != nullptr; }
-  bool live = false;
-  std::function<bool()> goes_on;        // whether the live run still does; may be empty
-  std::function<std::string()> notice;  // what to tell the person, or ""; may be empty
+  const State* initial = nullptr;       // before the track's first tick
+  std::function<bool()> goes_on;        // of a live run
+  std::function<bool()> closes;         // the window is to close: Ctrl-C ended the run
+  std::function<std::string()> notice;  // what to tell the person, or ""
   Steering* steering = nullptr;         // of a run whose device is the mouse
+  bool live() const { return goes_on && goes_on(); }
+  bool can_steer() const { return steering != nullptr; }
 };
 
 // Returns when the window is closed, the screenshot is written, or SIGINT came. Throws std::runtime_error when there is

@@ -2,12 +2,19 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cmath>
+#include <filesystem>
+#include <functional>
 #include <memory>
+#include <thread>
+
+#include "config/scene/child_program.h"
 
 #include "rt_core/state.h"
 #include "rt_core/tick.h"
 #include "sim_host/view/frame_maker.h"
+#include "sim_host/view/live_run.h"
 #include "sim_host/view/orbit_camera.h"
 #include "sim_host/view/player.h"
 #include "sim_host/view/steering.h"
@@ -297,12 +304,98 @@ TEST(Steering, TheDeviceReadsWhereTheMousePulls) {
   EXPECT_FALSE(read_hand_target(region, wish)) << "nothing was pulled yet";
   steering.pull({{0.01, 0.02, 0.03}, {}});
   ASSERT_TRUE(read_hand_target(region, wish));
-  EXPECT_EQ(wish.pulling, 1u);
+  EXPECT_EQ(wish.kind, HandWish::kPull);
   EXPECT_EQ(wish.pose.position_m, (Vec3{0.01, 0.02, 0.03}));
   steering.pull({{std::nan(""), 0, 0}, {}});
   wish.pose.position_m = {1, 2, 3};
   EXPECT_FALSE(read_hand_target(region, wish)) << "no place to go to";
   EXPECT_EQ(wish.pose.position_m, (Vec3{1, 2, 3}));
+}
+
+// --- A run that somebody takes part in ----------------------------------------------------------------------------
+
+RunOptions live_options(const std::filesystem::path& folder) {
+  RunOptions options;
+  options.scene = PALPATE_SOURCE_DIR "/config/scenes/ellipsoid_mallet.toml";
+  options.image = (folder / "scene.pal").string();
+  options.record.clear();
+  options.quiet = true;
+  options.duration_s = 60;
+  options.time = RunTime::kVirtual;
+  return options;
+}
+
+class LiveRunTest : public testing::Test {
+ protected:
+  LiveRunTest() : folder_("palpate-live-test") {
+    options_ = live_options(std::filesystem::path(folder_.file("x")).parent_path());
+    // The tests lie in build/X/tests, the programs in build/X/bin.
+    options_.program_folder = sibling_program("../bin");
+  }
+  // Until `wanted` holds of the newest tick; a minute of the run's own time is more than enough.
+  static bool reaches(const StartedRun& run, const std::function<bool(const TrackTick&)>& wanted) {
+    while (run.goes_on()) {
+      const std::size_t size = run.track().size();
+      if (size > 0 && wanted(run.track().at(size - 1))) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    return false;
+  }
+  TemporaryFolder folder_;
+  RunOptions options_;
+};
+
+TEST_F(LiveRunTest, TheHandRestsUntilTheMousePullsItAndTheBodyPushesBack) {
+  StartedRun run(options_, true);
+  ASSERT_TRUE(reaches(run, [](const TrackTick& t) { return t.mode == Mode::kForce; }));
+  const Pose start = run.track().at(0).input.pose_w;
+  const Pose later = run.track().at(run.track().size() - 1).input.pose_w;
+  EXPECT_LT(norm(start.position_m - later.position_m), 1e-4);
+  ASSERT_NE(run.steering(), nullptr);
+  Pose pressed = start;
+  pressed.position_m.y -= 0.03;
+  run.steering()->pull(pressed);
+  EXPECT_TRUE(reaches(run, [](const TrackTick& t) { return norm(t.device_N) > 1; }));
+  // The lag between the hand and the handle is the force: the hand's spring is what it presses with.
+  const TrackTick held = run.track().at(run.track().size() - 1);
+  EXPECT_GT(held.input.pose_w.position_m.y, pressed.position_m.y);
+  run.stop();
+  EXPECT_EQ(run.result().controller_exit, 0);
+  EXPECT_EQ(run.result().summary.fault, 0u);
+  const TrackTick last = run.track().at(run.track().size() - 1);
+  EXPECT_EQ(norm(last.device_N), 0) << "the device is left without force";
+}
+
+TEST_F(LiveRunTest, AWatcherSeesTheSameRunTickByTick) {
+  options_.record = folder_.file("run.plr");
+  options_.pace = true;
+  StartedRun run(options_, false);
+  std::unique_ptr<LiveRun> watcher;
+  for (int i = 0; i < 1000 && !watcher; ++i) {
+    try {
+      watcher = attach_to(options_.record);
+    } catch (const RecordingError&) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));  // its header is not written yet
+    }
+  }
+  ASSERT_TRUE(watcher);
+  ASSERT_TRUE(reaches(run, [](const TrackTick& t) { return t.tick > 300; }));
+  run.stop();
+  run.result();
+  while (watcher->goes_on()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  ASSERT_EQ(watcher->track().size(), run.track().size());
+  for (std::size_t i = 0; i < run.track().size(); ++i)
+    ASSERT_EQ(watcher->track().at(i).contact_N, run.track().at(i).contact_N);
+}
+
+TEST(Attach, SaysWhatToNameWhenThereIsNoController) {
+  try {
+    attach_to("999999999");
+    FAIL() << "no such process";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("pgrep palpate-rt"), std::string::npos) << error.what();
+  }
+  EXPECT_THROW(attach_to("/nowhere/run.plr"), std::exception);
 }
 
 }  // namespace
