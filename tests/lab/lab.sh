@@ -5,7 +5,7 @@ set -uo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
 cache=${PALPATE_LAB_CACHE:-$root/build/lab/cache}
-programs=$root/build/laboratory/bin
+programs=$root/build/release/laboratory
 results=$root/out/lab
 jobs=${PALPATE_JOBS:-$(nproc)}
 every='faults usb kvaser vcan vcan_classic:21 determinism cyclictest'
@@ -21,7 +21,7 @@ Usage: ./run lab [--all | --list] [SCENARIO[:SECONDS]...]
   --list           every scenario with its first words; scene_NAME is a scene, and "scenes" all of them
   --judge          judges again what lies in out/lab; boots nothing
   --docs           writes the table and the plots of what lies in out/lab into docs/laboratory.md; boots nothing
-  --programs DIR   where palpate, palpate-rt and palpate-device are; default build/laboratory/bin
+  --programs DIR   where palpate, palpate-rt and palpate-device are; default build/release/laboratory
 PALPATE_LAB_CACHE: folder of the downloaded kernel (build/lab/cache). PALPATE_JOBS: scenarios at a time ($jobs).
 TEXT
 }
