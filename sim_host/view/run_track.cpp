@@ -81,9 +81,9 @@ void RunTrack::append(const TickRecord& record) {
   for (std::size_t i = 0; i < kStageCount; ++i) palpate::add(timing_.stage[i], tick.stage_ns[i], tick.tick);
   if (missing > 0) note(TrackEvent::Kind::kGap, fmt::format("{} ticks are missing", missing));
   find_events(tick);
-  largest_region_N_ = std::max(largest_region_N_, tick.largest_region_N);
-  // A scene looked at without a device renders nothing: then any tick will do until one does.
+  // What happens after the force was let go, when the hand falls into the body, sets no scale.
   const bool rendering = tick.mode == Mode::kForce;
+  if (rendering) largest_region_N_ = std::max(largest_region_N_, tick.largest_region_N);
   if (const double force = rendering ? norm(tick.contact_N) : -0.5; force > strongest_N_) {
     strongest_N_ = force;
     strongest_ = ticks_.size() - 1;

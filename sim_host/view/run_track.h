@@ -79,8 +79,8 @@ class RunTrack {
   TrackTiming timing() const;
   std::vector<TrackEvent> events() const;
   std::size_t event_count() const;
-  // Over all ticks so far: the largest force of one region, and the tick with the largest force on the tool while force
-  // was rendered.
+  // Over all ticks so far: while force was rendered, the largest of one region, and the tick with the largest on the
+  // tool.
   double largest_region_N() const;
   std::size_t strongest() const;
   // Ticks that were lost: the states after the first of them are near the true ones, not the same.

@@ -52,7 +52,7 @@ class Overlay {
     text(fonts_.text, unit_, {x, y + 1.15f * fonts_.title->FontSize}, theme::kGrey, scene_.line);
     if (scene_.notice.empty()) return;
     const ImVec2 room = extent(unit_, scene_.notice);
-    const ImVec2 at{low_.x + 0.5f * (size_.x - room.x), low_.y + size_.y - 5.2f * unit_};
+    const ImVec2 at{low_.x + 0.5f * (size_.x - room.x), low_.y + size_.y - 6.6f * unit_};
     list_->AddRectFilled({at.x - 0.8f * unit_, at.y - 0.4f * unit_},
                          {at.x + room.x + 0.8f * unit_, at.y + 1.4f * unit_}, packed(theme::kPaper, 0.92f),
                          0.5f * unit_);
@@ -109,6 +109,9 @@ class Overlay {
       list_->AddLine({left + width, y}, {left + 1.3f * width, y}, packed(theme::kGrey));
       text(fonts_.text, 0.9f * unit_, {left + 1.6f * width, y - 0.5f * unit_}, theme::kInk, tick_label(mm));
     }
+    const char* const kind = is_solved(*scene_.model) ? "as solved" : "drawn shape";
+    text(fonts_.text, 0.82f * unit_,
+         {left + 0.8f * width - 0.5f * extent(0.82f * unit_, kind).x, top + height + 0.6f * unit_}, theme::kGrey, kind);
     const char* const head[] = {"displacement", "(mm)"};
     for (int i = 0; i < 2; ++i) {
       const ImVec2 room = extent(0.9f * unit_, head[i]);
@@ -116,6 +119,10 @@ class Overlay {
            {left + 0.8f * width - 0.5f * room.x, top - (2.6f - 1.15f * static_cast<float>(i)) * unit_}, theme::kInk,
            head[i]);
     }
+  }
+  // Whether the model computes the displacement everywhere, or a law of shape draws it around what it computes.
+  static bool is_solved(const Model& model) {
+    return method_of(model.params) == Method::kElastic || method_of(model.params) == Method::kNodes;
   }
   static ImU32 step(int i) { return packed(displacement_colour(1 - i / 64.0)); }
 

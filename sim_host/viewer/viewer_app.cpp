@@ -36,6 +36,7 @@ class Viewer {
         maker_(*run.model, *run.track, copy_of(*run.initial), options.most_triangles),
         renderer_(*run.model, maker_.body(), maker_.at_rest()) {
     player_.live = run.live() && !options.at_s;
+    panel_ = options.panel;
   }
 
   void show() {
@@ -207,6 +208,18 @@ class Viewer {
     return hit;
   }
 
+  // A thin tool is caught beside it, too.
+  std::optional<Vec3> tool_near(ImVec2 mouse, const Projection& view) const {
+    std::optional<Vec3> hit = tool_under(mouse, view);
+    for (int k = 0; k < 8 && !hit; ++k) {
+      const double angle = 0.25 * kPi * k, reach = 0.5 * static_cast<double>(window_.fonts().text->FontSize);
+      hit = tool_under({mouse.x + static_cast<float>(reach * std::cos(angle)),
+                        mouse.y + static_cast<float>(reach * std::sin(angle))},
+                       view);
+    }
+    return hit;
+  }
+
   void mouse(const Layout& place) {
     const ImGuiIO& io = ImGui::GetIO();
     const int height = static_cast<int>(place.scene_size.y);
@@ -214,7 +227,7 @@ class Viewer {
     const Projection view = projection(place);
     if (over && ImGui::IsMouseClicked(0) && shown_) {
       turning_ = true;
-      if (run_.can_steer() && live() && player_.live) grab(tool_under(io.MousePos, view));
+      if (run_.can_steer() && live() && player_.live) grab(tool_near(io.MousePos, view));
     }
     if (over && (ImGui::IsMouseClicked(1) || ImGui::IsMouseClicked(2))) shifting_ = true;
     if (!ImGui::IsMouseDown(0)) turning_ = false, grabbed_.reset();
