@@ -49,6 +49,12 @@ void value_axis(const Frame& frame, double top) {
   }
 }
 
+// A label of the axis below, not beyond its end.
+void below(const Frame& frame, float x, const std::string& label) {
+  const float width = width_of(frame, label);
+  small_text(frame, {std::min(x - 0.5f * width, frame.high.x - width), frame.high.y + 3}, theme::kGrey, label);
+}
+
 // At the right of the title, the last line rightmost.
 void legend(const Frame& frame, std::span<const PlotLine> lines) {
   float x = frame.high.x;
@@ -95,7 +101,7 @@ void history_plot(const char* title, const char* unit, std::span<const PlotLine>
   };
   for (const double time_s : axis_ticks(from_s, until_s, 5)) {
     const std::string label = tick_label(time_s) + (time_s == from_s ? "" : " s");
-    small_text(frame, {x_of(time_s) - 0.5f * width_of(frame, label), frame.high.y + 3}, theme::kGrey, label);
+    below(frame, x_of(time_s), label);
   }
   frame.list->PushClipRect(frame.low, frame.high, true);
   for (const PlotLine& line : lines)
@@ -130,7 +136,7 @@ void duration_plot(const char* title, const Histogram& histogram, double period_
   }
   for (double ns = kLow_ns; place(ns) <= 1; ns *= 10) {
     const std::string label = ns < 1e6 ? tick_label(1e-3 * ns) : tick_label(1e-6 * ns) + " ms";
-    small_text(frame, {x_of(ns) - 0.5f * width_of(frame, label), frame.high.y + 3}, theme::kGrey, label);
+    below(frame, x_of(ns), label);
   }
   const auto mark = [&](double ns, Colour c) {
     frame.list->AddLine({x_of(ns), frame.low.y}, {x_of(ns), frame.high.y}, packed(c), 1.6f);

@@ -41,6 +41,28 @@ GLuint colour_texture() {
   return texture;
 }
 
+// A dot of a few pixels: of a sphere's 5,000 triangles for pictures, twenty anchors would be most of a scene.
+GlMesh unit_ball() {
+  constexpr int kRings = 10, kSectors = 16;
+  RenderMesh ball;
+  for (int i = 0; i <= kRings; ++i) {
+    const double polar = kPi * i / kRings;
+    for (int j = 0; j < kSectors; ++j) {
+      const double turn = 2 * kPi * j / kSectors;
+      ball.position_m.push_back({std::sin(polar) * std::cos(turn), std::sin(polar) * std::sin(turn), std::cos(polar)});
+    }
+  }
+  const auto id = [](int i, int j) { return static_cast<std::int32_t>(i * kSectors + j % kSectors); };
+  for (int i = 0; i < kRings; ++i) {
+    for (int j = 0; j < kSectors; ++j) {
+      ball.triangle.push_back({id(i, j), id(i + 1, j), id(i + 1, j + 1)});
+      ball.triangle.push_back({id(i, j), id(i + 1, j + 1), id(i, j + 1)});
+    }
+  }
+  ball.normal = ball.position_m;
+  return gl_mesh(ball);
+}
+
 // Of unit length and radius, along z: stretched where they are drawn.
 GlMesh unit_shaft() {
   const Point2 profile[] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
@@ -64,7 +86,7 @@ SceneRenderer::SceneRenderer(const Model& model, const DrawnBody& body, std::spa
       blur_program_(shaders::kWhole, shaders::kBlur),
       outline_program_(shaders::kWhole, shaders::kOutline),
       lay_program_(shaders::kWhole, shaders::kLay),
-      ball_(gl_mesh(sphere_mesh({}, 1))),
+      ball_(unit_ball()),
       shaft_(unit_shaft()),
       head_(unit_head()),
       colours_(colour_texture()) {
@@ -86,7 +108,10 @@ SceneRenderer::SceneRenderer(const Model& model, const DrawnBody& body, std::spa
   grid_m_ = round_below(0.25 * size_m_);
 }
 
-void SceneRenderer::show(const ViewFrame& frame) { body_.set_vertices(frame.vertex); }
+void SceneRenderer::show(const ViewFrame& frame) {
+  body_.set_vertices(frame.vertex);
+  shadow_of_ = nullptr;
+}
 
 void SceneRenderer::set_view(const GlProgram& program) const {
   const Projection axes(camera_, width_, height_);
@@ -109,6 +134,8 @@ void SceneRenderer::draw_solid(const GlMesh& mesh, const Matrix4& place, const L
 
 // A view of body and tool from straight above, softened.
 void SceneRenderer::draw_shadow(const ViewFrame& frame) {
+  if (shadow_of_ == frame.vertex.data()) return;
+  shadow_of_ = frame.vertex.data();
   shadow_.resize(kShadowPixels, kShadowPixels, 1, GL_R8);
   shadow_.bind();
   glClearColor(0, 0, 0, 0);

@@ -59,6 +59,7 @@ class SceneRenderer {
   std::vector<GlMesh> pieces_;  // tool frame, joints at zero
   GLuint colours_ = 0;
   GlFramebuffer scene_, mask_samples_, mask_, outline_, shadow_, soft_shadow_;
+  const DrawnVertex* shadow_of_ = nullptr;
   bool outlined_ = false;  // outline_ is of outlined_camera_
   Camera outlined_camera_;
   int outlined_samples_ = 0;

@@ -124,14 +124,11 @@ class Viewer {
     const Layout place = layout();
     window_.begin_ui();
     GlFramebuffer& scene = window_.scene();
-    const int width = static_cast<int>(place.scene_size.x), height = static_cast<int>(place.scene_size.y);
-    const bool resized = scene.width() != width || scene.height() != height;
-    scene.resize(width, height, 1, GL_RGBA8);
     if (shown_) {
       DisplacementScale colours =
           displacement_scale(std::max(largest_m_ = std::max(largest_m_, shown_->largest_m), 1e-4), false);
       const ForceScale forces = force_scale(track().largest_region_N(), renderer_.size_m());
-      draw_scene(colours, forces, resized);
+      draw_scene(colours, forces, place.scene_size);
       ImDrawList* list = ImGui::GetBackgroundDrawList();
       list->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(scene.texture())), {0, 0},
                      place.scene_size, {0, 1}, {1, 0});
@@ -147,16 +144,21 @@ class Viewer {
     window_.end_ui();
   }
 
-  // Again only when something changed. Where drawing is slow, in software, a picture that moves is drawn coarsely and
-  // once more in full when it stands still.
-  void draw_scene(const DisplacementScale& colours, const ForceScale& forces, bool resized) {
-    constexpr double kSlow_ms = 40;
-    const Drawn now{camera_.camera().eye_m, camera_.target_m(), layers_, shown_.get(), colours.top_m};
-    const bool moved = resized || !(now == drawn_);
+  // Again only when something changed. Where drawing is slow, in software, a picture that moves is drawn at half the
+  // size without anti-aliasing, and once more in full when it stands still.
+  void draw_scene(const DisplacementScale& colours, const ForceScale& forces, ImVec2 size) {
+    constexpr double kSlow_ms = 30;
+    const Drawn now{camera_.camera().eye_m, camera_.target_m(), size.x, size.y, layers_, shown_.get(), colours.top_m};
+    const bool moved = !(now == drawn_);
     if (!moved && drawn_fully_) return;
     const bool full = !moved || !options_.screenshot.empty() || !slow_;
+    const int share = full ? 1 : 2;
     const auto start = Clock::now();
-    renderer_.draw(*shown_, camera_, layers_, colours, forces, window_.scene(), full ? 4 : 1);
+    window_.scene().resize(static_cast<int>(size.x) / share, static_cast<int>(size.y) / share, 1, GL_RGBA8);
+    ViewLayers layers = layers_;
+    // The outline is drawn anew for each view: not for one that is gone with the next picture.
+    if (!full && !(now.eye_m == drawn_.eye_m)) layers.rest_outline = false;
+    renderer_.draw(*shown_, camera_, layers, colours, forces, window_.scene(), full ? 4 : 1);
     glFinish();
     const double took_ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
     if (full && moved) slow_ = took_ms > kSlow_ms;
@@ -335,6 +337,7 @@ class Viewer {
   // What the scene's picture shows.
   struct Drawn {
     Vec3 eye_m, target_m;
+    float width = 0, height = 0;
     ViewLayers layers;
     const ViewFrame* frame = nullptr;
     double colour_top_m = 0;

@@ -18,6 +18,7 @@ look() { # FILE WIDTH HEIGHT [OPTION...]: a picture of that size that is not bla
 "$palpate" run "$scene" --virtual-time --duration 3 --image "$folder/scene.pal" --record "$folder/run.plr" --quiet --no-black-box >/dev/null
 look whole.png 800 500 "$folder/run.plr"
 look bare.png 640 480 "$folder/run.plr" --at 2.5 --view top --no-panel
+look scene.png 640 480 "$scene" --at 0.5
 if "$palpate" view "$folder/nothing.plr" --screenshot "$folder/none.png" 2>"$folder/error"; then
   echo "a recording that is not there was shown"
   exit 1
