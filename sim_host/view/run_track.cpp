@@ -57,6 +57,12 @@ void RunTrack::find_events(const TrackTick& tick) {
   const TrackTick before = ticks_.size() > 1 ? ticks_[here - 1] : TrackTick{};
   const bool steps_in = tick.mode == Mode::kForce && before.mode == Mode::kIdle;
   const bool steps_out = tick.mode == Mode::kIdle && before.mode != Mode::kIdle;
+  const auto renders = [](Mode mode) { return mode == Mode::kForce || mode == Mode::kHold; };
+  const auto fades = [](Mode mode) { return mode == Mode::kPassive || mode == Mode::kRamp; };
+  // At the end of a run a ramp is order: the mark is "at rest" then, with the operator's stop.
+  if (renders(before.mode) && fades(tick.mode) && (tick.input.commands & Command::kStop) == 0)
+    note(TrackEvent::Kind::kWarning, "force fades");
+  if (fades(before.mode) && renders(tick.mode)) note(TrackEvent::Kind::kMode, "force again");
   if (steps_in) note(TrackEvent::Kind::kMode, "armed");
   if (steps_out) note(TrackEvent::Kind::kMode, "at rest");
   if (const std::uint32_t fresh = tick.fault & ~before.fault; fresh != 0)

@@ -110,13 +110,13 @@ class Overlay {
       text(fonts_.text, 0.9f * unit_, {left + 1.6f * width, y - 0.5f * unit_}, theme::kInk, tick_label(mm));
     }
     const char* const kind = is_solved(*scene_.model) ? "as solved" : "drawn shape";
-    text(fonts_.text, 0.82f * unit_,
-         {left + 0.8f * width - 0.5f * extent(0.82f * unit_, kind).x, top + height + 0.6f * unit_}, theme::kGrey, kind);
+    const ImVec2 room = extent(unit_, kind);
+    number({left + 0.8f * width - 0.5f * room.x, top + height + 0.6f * unit_}, theme::kGrey, kind);
     const char* const head[] = {"displacement", "(mm)"};
     for (int i = 0; i < 2; ++i) {
-      const ImVec2 room = extent(0.9f * unit_, head[i]);
+      const ImVec2 wide = extent(0.9f * unit_, head[i]);
       text(fonts_.text, 0.9f * unit_,
-           {left + 0.8f * width - 0.5f * room.x, top - (2.6f - 1.15f * static_cast<float>(i)) * unit_}, theme::kInk,
+           {left + 0.8f * width - 0.5f * wide.x, top - (2.6f - 1.15f * static_cast<float>(i)) * unit_}, theme::kInk,
            head[i]);
     }
   }

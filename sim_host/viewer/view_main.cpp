@@ -8,6 +8,7 @@
 #include <map>
 
 #include "config/scene/child_program.h"
+#include "sim_host/cli.h"
 #include "sim_host/cli_checks.h"
 #include "sim_host/exit_codes.h"
 #include "sim_host/record/mapped_file.h"
@@ -138,7 +139,7 @@ int run(ViewCommand& command) {
   try {
     show_recording(command);
   } catch (const RecordingError& error) {
-    throw std::runtime_error(command.source + ": " + error.what());
+    throw std::runtime_error(about_file(command.source, error.what()));
   }
   return kExitOk;
 }

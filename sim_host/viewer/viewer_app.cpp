@@ -118,6 +118,7 @@ class Viewer {
     window_.present();
     if (wants_picture_) save_picture_beside();
     wants_picture_ = false;
+    if (ImGui::IsKeyPressed(GLFW_KEY_P, false)) wants_picture_ = true;  // the next one, drawn in full
   }
 
   void draw() {
@@ -151,7 +152,7 @@ class Viewer {
     const Drawn now{camera_.camera().eye_m, camera_.target_m(), size.x, size.y, layers_, shown_.get(), colours.top_m};
     const bool moved = !(now == drawn_);
     if (!moved && drawn_fully_) return;
-    const bool full = !moved || !options_.screenshot.empty() || !slow_;
+    const bool full = !moved || !options_.screenshot.empty() || !slow_ || wants_picture_;
     const int share = full ? 1 : 2;
     const auto start = Clock::now();
     window_.scene().resize(static_cast<int>(size.x) / share, static_cast<int>(size.y) / share, 1, GL_RGBA8);
@@ -261,7 +262,6 @@ class Viewer {
     const ImGuiIO& io = ImGui::GetIO();
     if (ImGui::IsKeyPressed(GLFW_KEY_TAB, false)) panel_ = !panel_;
     if (ImGui::IsKeyPressed(GLFW_KEY_SPACE, false) && !player_.live) player_.toggle(first_s(), last_s());
-    if (ImGui::IsKeyPressed(GLFW_KEY_P, false)) wants_picture_ = true;
     if (ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false) || ImGui::IsKeyPressed(GLFW_KEY_Q, false)) window_.close();
     const double ticks = io.KeyCtrl ? 100 : 1;
     for (const auto& [key, way] : {std::pair{GLFW_KEY_LEFT, -1.0}, {GLFW_KEY_RIGHT, 1.0}}) {

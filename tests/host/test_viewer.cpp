@@ -227,6 +227,24 @@ TEST(RunTrack, TellsWhatHappened) {
   EXPECT_EQ(run->track.lost(), 0u);
 }
 
+TEST(RunTrack, ForceThatFadesAndComesBackIsMarked) {
+  RunTrack track(1e-3);
+  TickRecord record{};
+  for (const Mode mode : {Mode::kIdle, Mode::kForce, Mode::kHold, Mode::kPassive, Mode::kRamp, Mode::kForce}) {
+    record.sequence += 1;
+    record.tick += 1;
+    record.output.mode = mode;
+    track.append(record);
+  }
+  record.sequence += 1;
+  record.output.mode = Mode::kRamp;
+  record.input.commands = Command::kStop;  // an operator's stop is no warning
+  track.append(record);
+  std::vector<std::string> texts;
+  for (const TrackEvent& event : track.events()) texts.push_back(event.text);
+  EXPECT_EQ(texts, (std::vector<std::string>{"armed", "force fades", "force again"}));
+}
+
 TEST(RunTrack, AGapIsMarked) {
   const auto run = tiny_run();
   RunTrack track(1e-3);
