@@ -77,6 +77,15 @@ inline constexpr double kRegionMemoryDistance_m = 2e-3;
 // (14 Hz) a swing needs 9.9 N before its slope meets 0.85 N a millisecond; a snap is faster where the coupling
 // is stiffer than the device holds: snap_in, thrown into its seat at 0.5 m/s, meets it for 10 ticks (2026-11-22).
 inline constexpr double kOutputStepShare = 0.10;
+// A hand that holds the tool by the coupling moves it in one tick by its own motion and this share of the coupling's
+// largest stretch F_max / K: then no slip, no jump of the handle and no change of contact changes the force by more
+// than this share of F_max, which leaves a fifth of the output's own step to the hand.
+inline constexpr double kToolStepShare = 0.08;
+// Ticks whose outputs may still be on their way to the motors: a delay of 4 ms at 1 kHz. A longer one counts as that.
+inline constexpr std::int32_t kForceHistory = 5;
+// Of the last quarter of a second this share of ticks may have no fresh sample: such a device holds the force of a press
+// for 2 ticks in 5 and hardly passes its delay through the coupling's bound. Fault::kSamplesSparse.
+inline constexpr double kStaleShareMost = 0.4;
 // A tool that would push the hand harder than this the moment force may begin is not armed: Status::kStartsInside.
 inline constexpr double kArmForceMax_N = 1.0;
 // What a force command can carry (hal/bus/wire_table.h: signed 16 bits of 1 mN and 0.1 mN m). A scene whose device asks

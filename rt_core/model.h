@@ -88,12 +88,16 @@ namespace palpate {
 #define PALPATE_DEVICE_PARAMS(X)                                                                              \
   X(double, coupling_N_per_m, "N/m", 1, 1e6, "translational stiffness of the virtual coupling")               \
   X(double, coupling_Nm_per_rad, "N*m/rad", 1e-6, 1e4, "rotational stiffness of the virtual coupling")        \
+  X(double, coupling_Ns_per_m, "N*s/m", 0, 1e4, "damping of the virtual coupling")                            \
+  X(double, delay_s, "s", 0, 0.1, "of the device, from sample to force, beyond the tick")                     \
   X(double, force_max_N, "N", 0, kWireForceMax_N, "magnitude limit of the rendered force")                    \
   X(double, torque_max_Nm, "N*m", 0, kWireTorqueMax_Nm, "magnitude limit of the rendered torque")             \
   X(double, force_rate_max_N_per_s, "N/s", 1, 1e7, "fault limiter of the force change")                       \
   X(double, ramp_in_s, "s", 0, 10, "force ramp after arming")                                                 \
   X(double, ramp_out_s, "s", 1e-3, 1, "force ramp to zero after a fault")                                     \
   X(double, speed_max_m_per_s, "m/s", 0.01, 100, "a device sample that implies a faster motion is rejected")  \
+  X(double, acceleration_max_m_per_s2, "m/s2", 0, 1e6,                                                        \
+    "a sample that implies a larger acceleration is rejected; 0: not asked")                                  \
   X(double, turn_max_rad_per_s, "rad/s", 0.1, 1000, "a device sample that implies a faster turn is rejected") \
   X(std::int32_t, silence_hold_ticks, "ticks", 1, 5, "ticks the last sample is held")                         \
   X(std::int32_t, silence_passive_ticks, "ticks", 1, 20, "ticks after which force ramps to zero")             \
@@ -240,6 +244,7 @@ struct NodalVertex {
 struct TipLaw {
   double coefficient;         // N/m^(half_power/2)
   double depth_max_m;         // of e; beyond it everything continues by its tangent
+  double limit_m;             // of e: a layer's plate, towards which it stiffens beyond depth_max_m; 0: none
   double force_max_N;         // at depth_max_m
   double c0_m_per_N;          // far field of the body
   double c1_m_per_N2;         // its geometric nonlinearity

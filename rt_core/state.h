@@ -180,6 +180,9 @@ struct ArticulationState : ArticulationFields {
   PALPATE_STATE_GROUP_OF(ArticulationFields, PALPATE_ARTICULATION_POOLS)
 };
 
+// Outputs of the last ticks, six numbers each: force, torque.
+using ForceHistory = double[6 * kForceHistory];
+
 #define PALPATE_SAFETY_STATE(X)                                                                          \
   X(Mode, mode, Mode::kIdle, "of the mode machine")                                                      \
   X(std::uint32_t, fault, 0, "latched Fault bits")                                                       \
@@ -188,7 +191,14 @@ struct ArticulationState : ArticulationFields {
   X(double, ramp, 0, "0..1 gain of the output")                                                          \
   X(Pose, tool_corrected_w, {}, "tool after the coupling's corrector: where the next prediction starts") \
   X(Wrench, last_good_w, {}, "last finite, clamped wrench before the gain")                              \
-  X(Wrench, last_device_w, {}, "last output")
+  X(Wrench, last_device_w, {}, "last output")                                                            \
+  X(ForceHistory, sent, {}, "outputs of the last ticks, newest first: what acts on the handle now")      \
+  X(Vec3, stretch_slow_m, {}, "the coupling's stretch, smoothed: its damping takes the rate from it")    \
+  X(double, stored_J, 0, "held by coupling and object at the last tick")                                 \
+  X(double, surplus_J, 0, "what this contact gave the handle and holds, beyond what the handle gave it") \
+  X(Vec3, last_coupling_N, {}, "the coupling's force at the last tick")                                  \
+  X(Vec3, last_step_N, {}, "and its change then")                                                        \
+  X(double, swings, 0, "ticks in which it changed back, lately")
 
 struct SafetyState {
   PALPATE_STATE_FIELDS_OF(PALPATE_SAFETY_STATE)
@@ -210,6 +220,8 @@ using Matrix6 = double[36];
   X(Matrix6, contact_stiffness, {}, "tangent (force, torque about the tool's origin), row-major")               \
   X(std::int32_t, started, 0, "0: the next sample is the first")                                                \
   X(std::int32_t, rejected_ticks, 0, "consecutive samples found implausible")                                   \
+  X(Vec3, hand_velocity_m_per_s, {}, "of the handle, smoothed: bridges lost samples")                           \
+  X(double, stale_share, 0, "part of the ticks, lately, that had no fresh sample")                              \
   X(std::uint32_t, next_region_id, 1, "of the next region to be born")                                          \
   X(std::int32_t, first_point, 0, "tool point with which the search begins: where the last tick's share ended") \
   X(SafetyState, safety, {}, "memory of the last gate")
@@ -287,6 +299,8 @@ struct Scratch {
   std::int32_t driven = 0;        // the tool's pose is given, nobody holds it by a spring
   double strain = 0;              // largest at the gauges (nodal)
   Pose tool_corrected_w;          // where the tool balances
+  Pose grip_w;                    // where the coupling is held: the handle, or as far towards it as the device can pull
+  std::int32_t held_by_hand = 0;  // Drive::kDevice: forces and steps are bounded
   Pool<std::byte> own;            // of the scene's method, as it lays it out (contact/contact.h)
   std::uint64_t bytes = 0;        // of the block that this begins
 };

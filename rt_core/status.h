@@ -18,8 +18,8 @@ namespace palpate {
     "simplify the tool piece (hull with fewer vertices)")                                                              \
   X(kDepthBeyondRange, 4, "penetration beyond the law's stated range; the law is extended by its tangent",             \
     "raise contact.max_depth_mm or press less deeply")                                                                 \
-  X(kForceClamped, 5, "the commanded force or torque was scaled to the device limit",                                  \
-    "soften the object or raise device.force_max_N within the device's data sheet")                                    \
+  X(kForceClamped, 5, "the hand pulls harder than the device's largest force; that much is rendered, no more",         \
+    "none: press less; or raise device.force_max_N within the device's data sheet")                                    \
   X(kRateLimited, 6, "the force change per tick exceeded the fault limiter",                                           \
     "look for a jump in the device position; raise device.force_rate_max_N_per_s")                                     \
   X(kInputHeld, 7, "no fresh device sample this tick; the last one is held", "see docs/realtime.md, missed samples")   \
@@ -49,7 +49,15 @@ namespace palpate {
     "a tick's share of surface work was spent; the other tool points keep their last place of contact",                \
     "fewer tool points (tool.piece.points), or a mesh without fans of thin triangles")                                 \
   X(kWorkBeyondStated, 21, "a stage counted more work than the image states for its worst tick",                       \
-    "bake the scene again; with the same result, report it with the recording")
+    "bake the scene again; with the same result, report it with the recording")                                        \
+  X(kTorqueClamped, 22, "the hand turns harder than the device's largest torque; that much is rendered, no more",      \
+    "none: turn less; or raise device.torque_max_Nm within the device's data sheet")                                   \
+  X(kToolHeldBack, 23, "the tool would have jumped under its handle; it moves by a bounded step a tick",               \
+    "none: this is how a slip or a jump of the handle is kept from kicking")                                           \
+  X(kEnergyDrained, 24, "sampling and delay returned energy to the hand; damping took it away",                        \
+    "none, or bake for the device as it is (--with its profile): device.delay_ms, device.damping_Ns_per_m")            \
+  X(kSampleBridged, 25, "no fresh device sample this tick; the handle is taken to move on as it did",                  \
+    "see docs/realtime.md, missed samples")
 
 // X(name, bit, cause, remedy)
 #define PALPATE_FAULT_BITS(X)                                                                                        \
@@ -70,7 +78,11 @@ namespace palpate {
     "palpate device-test; check the bus towards the device")                                                         \
   X(kNotCalibrated, 12, "the device says that its positions are not calibrated", "calibrate the device, then reset") \
   X(kSamplesRejected, 13, "samples came, but none a hand could have made, for the silence limit",                    \
-    "check encoder and calibration; device.speed_max_m_per_s, device.turn_max_rad_per_s")
+    "check encoder and calibration; device.speed_max_m_per_s, device.turn_max_rad_per_s")                            \
+  X(kUnstable, 14, "the force swung back and forth, or contact returned more energy than the motors can hold",       \
+    "bake for the device as it is: its delay and damping; see docs/stability.md")                                    \
+  X(kSamplesSparse, 15, "the device sent fewer than 6 samples in 10 ticks for a quarter of a second",                \
+    "let it send one sample a tick, or bake with its period (device.period_ms)")
 
 namespace Status {
 #define PALPATE_BIT(name, bit, what, remedy) inline constexpr std::uint32_t name = 1u << bit;

@@ -367,6 +367,9 @@ class Compiler {
     report_.coupling_N_per_m = p.coupling_N_per_m;
     report_.coupling_Nm_per_rad = p.coupling_Nm_per_rad;
     p.period_s = d.period_s;
+    p.delay_s = d.delay_s;
+    p.coupling_Ns_per_m =
+        is_auto(d.coupling_Ns_per_m) ? p.coupling_N_per_m * (0.5 * d.period_s + d.delay_s) : d.coupling_Ns_per_m;
     p.force_max_N = d.force_max_N;
     p.torque_max_Nm = d.torque_max_Nm;
     // All of it within 5 ms: above what a hand's tap on a wall asks for, and still able to act on a device of any size.
@@ -381,6 +384,7 @@ class Compiler {
     p.late_ticks_max = d.late_ticks_max;
     p.stall_max_s = d.stall_max_s;
     p.speed_max_m_per_s = d.speed_max_m_per_s;
+    p.acceleration_max_m_per_s2 = d.acceleration_max_m_per_s2;
     p.turn_max_rad_per_s = d.turn_max_rad_per_s;
   }
 

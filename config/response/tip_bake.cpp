@@ -107,6 +107,9 @@ TipLaw make_tip_law(const TipDesc& tip, std::vector<FactorKnot>& factor) {
     local.factor = &factor[static_cast<std::size_t>(law.first_factor)];
   }
   law.force_max_N = local_at(local, law.depth_max_m).force_N;
+  // A far field that takes travel back under force (a table's fit) would meet the plate's stiffness with a jump.
+  const bool gives = law.c0_m_per_N >= 0 && law.c0_m_per_N + 2 * law.c1_m_per_N2 * law.force_max_N >= 0;
+  law.limit_m = gives && tip.layer.thickness_m > tip.depth_max_m ? tip.layer.thickness_m : 0;
   check_stiffness(law, local);
   return law;
 }

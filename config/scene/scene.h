@@ -212,14 +212,16 @@ struct DeviceDesc {
   double force_rate_max_N_per_s = kAuto;
   double coupling_N_per_m = kAuto;
   double coupling_Nm_per_rad = kAuto;
+  double coupling_Ns_per_m = kAuto;
   double ramp_in_s = 0.1;
   double ramp_out_s = 0.05;
-  std::int32_t silence_hold_ticks = 1;
+  std::int32_t silence_hold_ticks = 3;
   std::int32_t silence_passive_ticks = 5;
   std::int32_t silence_fault_ticks = 50;
   std::int32_t late_ticks_max = 10;
   double stall_max_s = 20e-3;
   double speed_max_m_per_s = 5;
+  double acceleration_max_m_per_s2 = 200;
   double turn_max_rad_per_s = 30;
 };
 

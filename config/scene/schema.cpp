@@ -378,9 +378,13 @@ const KeySpec kDevice[] = {
         "virtual coupling; auto: 0.8 of what the device admits, min(2b / (T + 2 tau), 2 f_c / Delta)"),
     number_or_auto<&DeviceDesc::coupling_Nm_per_rad>("coupling_Nm_per_rad", 1e-6, 1e4, 1,
                                                      "rotational virtual coupling; auto: by the same rule"),
+    number_or_auto<&DeviceDesc::coupling_Ns_per_m>(
+        "coupling_Ns_per_m", 0, 1e4, 1,
+        "damping of the coupling; auto: what sampling and delay take from it, coupling_N_per_m (T / 2 + tau)"),
     number<&DeviceDesc::ramp_in_s>("ramp_in_s", 0, 10, 1, "force ramp after arming"),
     number<&DeviceDesc::ramp_out_s>("ramp_out_s", 1e-3, 1, 1, "force ramp to zero after a fault"),
-    integer<&DeviceDesc::silence_hold_ticks>("silence_hold_ticks", 1, 5, "missed samples during which force is held"),
+    integer<&DeviceDesc::silence_hold_ticks>("silence_hold_ticks", 1, 5,
+                                             "missed samples that are bridged: force held, handle moving on"),
     integer<&DeviceDesc::silence_passive_ticks>("silence_passive_ticks", 1, 20,
                                                 "missed samples after which force ramps to zero"),
     integer<&DeviceDesc::silence_fault_ticks>("silence_fault_ticks", 2, 1000, "missed samples that latch a fault"),
@@ -390,6 +394,8 @@ const KeySpec kDevice[] = {
                                      "deadlines missed at one go for so long: a fault; at least two periods count"),
     number<&DeviceDesc::speed_max_m_per_s>("speed_max_m_per_s", 0.01, 100, 1,
                                            "a sample that implies a faster motion is rejected"),
+    number<&DeviceDesc::acceleration_max_m_per_s2>("acceleration_max_m_per_s2", 0, 1e6, 1,
+                                                   "a sample that implies more is rejected; 0: not asked"),
     number<&DeviceDesc::turn_max_rad_per_s>("turn_max_rad_per_s", 0.1, 1000, 1,
                                             "a sample that implies a faster turn is rejected"),
 };

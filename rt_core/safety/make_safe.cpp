@@ -1,5 +1,6 @@
 // The last stage of every tick, in every mode, for every model:
-//   wrench of the virtual coupling -> finite? -> magnitude -> mode gain -> rate.
+//   wrench of the virtual coupling -> its damping, energy -> finite? -> magnitude -> mode gain -> rate.
+#include "rt_core/safety/hand_energy.h"
 #include "rt_core/safety/mode_machine.h"
 #include "rt_core/tick.h"
 #include "rt_core/tool/virtual_coupling.h"
@@ -27,7 +28,9 @@ void restart_contact(State& state) PALPATE_RT {
 Wrench limited(const Model& model, Wrench wrench, Scratch& scratch) PALPATE_RT {
   const bool force = clamp_length(wrench.force_N, model.params.force_max_N);
   const bool torque = clamp_length(wrench.torque_Nm, model.params.torque_max_Nm);
-  if (force || torque) scratch.status |= Status::kForceClamped;
+  if (force) scratch.status |= Status::kForceClamped;
+  // A device without torque is not beaten: it has none to give.
+  if (torque && model.params.torque_max_Nm > 0) scratch.status |= Status::kTorqueClamped;
   return wrench;
 }
 
@@ -66,6 +69,7 @@ Findings findings(const State& state, const Input& input, std::uint32_t faults) 
     found.late_ticks = rejected;
     found.late_fault = Fault::kSamplesRejected;
   }
+  if (state.stale_share > kStaleShareMost) found.faults |= Fault::kSamplesSparse;
   found.pressed = norm(state.safety.last_good_w.force_N) > kArmForceMax_N;
   return found;
 }
@@ -77,12 +81,17 @@ void make_safe(const Model& model, State& state, Scratch& scratch, const Input& 
   const bool driven = input.drive == Drive::kTool;
   Wrench wrench = scratch.contact_wrench_w;
   if (driven || is_finite_wrench(wrench)) safety.tool_corrected_w = scratch.tool_corrected_w;
-  if (!driven && is_finite_wrench(wrench)) wrench = coupling_wrench(model, state.device_w, safety.tool_corrected_w);
+  if (!driven && is_finite_wrench(wrench)) wrench = coupling_wrench(model, scratch.grip_w, safety.tool_corrected_w);
 
   std::uint32_t faults = 0;
+  if (input.drive == Drive::kDevice && is_finite_wrench(wrench)) {
+    if (is_unstable(model, safety, wrench.force_N)) faults |= Fault::kUnstable;
+    add_coupling_damping(model, safety, wrench.force_N);
+    drain_energy(model, state, scratch, input, wrench.force_N);
+  }
   if (!is_finite_wrench(wrench)) faults |= Fault::kNotFinite;
   if (!is_finite(safety.tool_corrected_w)) faults |= Fault::kStateCorrupt;
-  if (faults != 0) {
+  if ((faults & (Fault::kNotFinite | Fault::kStateCorrupt)) != 0) {
     restart_contact(state);
     scratch.contact_wrench_w = {};
     scratch.energy_J = 0;
@@ -104,6 +113,7 @@ void make_safe(const Model& model, State& state, Scratch& scratch, const Input& 
     const Wrench scaled{safety.ramp * safety.last_good_w.force_N, safety.ramp * safety.last_good_w.torque_Nm};
     safety.last_device_w = rate_limited(model, within_limits(model, safety.last_device_w), scaled, scratch);
     if (safety.ramp < 1 && safety.mode != Mode::kIdle) scratch.status |= Status::kRamping;
+    remember_output(safety);
   }
 
   output.device_w = safety.last_device_w;

@@ -64,7 +64,8 @@ void advance_mode(const Model& model, const Input& input, const Findings& found,
   // At rest nothing is rendered, so a device that is merely silent or deaf (not started yet) is no fault; everything
   // else is.
   if (safety.mode == Mode::kIdle)
-    faults &= ~(Fault::kDeviceSilent | Fault::kOverrun | Fault::kStalled | Fault::kDeviceDeaf);
+    faults &= ~(Fault::kDeviceSilent | Fault::kOverrun | Fault::kStalled | Fault::kDeviceDeaf | Fault::kUnstable |
+                Fault::kSamplesSparse);
   safety.fault |= faults;
 
   if (safety.fault != 0 && safety.mode != Mode::kFault) {

@@ -9,6 +9,11 @@ namespace {
 
 constexpr std::int32_t kDof = 6;
 
+// After one swing of the force (safety/hand_energy.h) the tool may go a fifth as far by itself, after two a ninth: two
+// states of contact that throw it to and fro lose it within a few ticks. Without this snap_in, dragged sideways in its
+// seat, alternated by 0.8 N for as long as it was dragged (2026-11-22).
+constexpr Real kSwingCalm = 4;
+
 // (contact_stiffness + diag(coupling)) motion = wrench. Returns false, `motion` untouched, when singular.
 bool solve(const Model& model, const double (&contact_stiffness)[36], const Wrench& wrench, Twist& motion) PALPATE_RT {
   const Vec3 f = wrench.force_N, m = wrench.torque_Nm;
@@ -84,11 +89,48 @@ void balance_tool(const Model& model, const State& state, Scratch& scratch) PALP
   scratch.tool_corrected_w = scratch.driven ? state.tool_w : state.safety.tool_corrected_w;
   const Wrench& contact_w = scratch.contact_wrench_w;
   if (scratch.driven || !is_finite(contact_w.force_N) || !is_finite(contact_w.torque_Nm)) return;
-  const Wrench on_handle = coupling_wrench(model, state.device_w, state.tool_w);
+  const Wrench on_handle = coupling_wrench(model, scratch.grip_w, state.tool_w);
   const Wrench on_tool{-on_handle.force_N, -on_handle.torque_Nm};
   Twist correction;
   if (!correct(model, state, contact_w, on_tool, correction)) scratch.status |= Status::kCouplingSingular;
   scratch.tool_corrected_w = moved(state.tool_w, correction);
+  if (scratch.held_by_hand != 0)
+    scratch.tool_corrected_w = within_step(model, state, scratch.tool_corrected_w, scratch.status);
+}
+
+Pose held_end(const Model& model, const Pose& device_w, const Pose& tool_w, std::uint32_t& status) PALPATE_RT {
+  const ModelParams& p = model.params;
+  const Twist offset = twist_between(tool_w, device_w);
+  const Real stretch_m = norm(offset.translation_m), most_m = p.force_max_N / p.coupling_N_per_m;
+  const Real turn_rad = norm(offset.rotation_rad), most_rad = p.torque_max_Nm / p.coupling_Nm_per_rad;
+  Pose end = device_w;
+  if (stretch_m > most_m) {
+    end.position_m = tool_w.position_m + (most_m / stretch_m) * offset.translation_m;
+    status |= Status::kForceClamped;
+  }
+  if (most_rad > 0 && turn_rad > most_rad) {
+    end.orientation = normalised(small_rotation((most_rad / turn_rad) * offset.rotation_rad) * tool_w.orientation);
+    status |= Status::kTorqueClamped;
+  }
+  return end;
+}
+
+Pose within_step(const Model& model, const State& state, const Pose& tool_w, std::uint32_t& status) PALPATE_RT {
+  const ModelParams& p = model.params;
+  const Pose& from = state.safety.tool_corrected_w;
+  const Twist step = twist_between(from, tool_w), hand = twist_between(state.device_previous_w, state.device_w);
+  const Real allowed = kToolStepShare / (1 + kSwingCalm * state.safety.swings);
+  const Real most_m = allowed * p.force_max_N / p.coupling_N_per_m + norm(hand.translation_m);
+  const Real length_m = norm(step.translation_m);
+  Real share = length_m > most_m ? most_m / length_m : 1;
+  if (p.torque_max_Nm > 0) {
+    const Real most_rad = allowed * p.torque_max_Nm / p.coupling_Nm_per_rad + norm(hand.rotation_rad);
+    const Real turn_rad = norm(step.rotation_rad);
+    if (turn_rad > most_rad) share = min_of(share, most_rad / turn_rad);
+  }
+  if (!(share < 1)) return tool_w;
+  status |= Status::kToolHeldBack;
+  return moved(from, {share * step.translation_m, share * step.rotation_rad});
 }
 
 Wrench coupling_wrench(const Model& model, const Pose& device_w, const Pose& tool_w) PALPATE_RT {

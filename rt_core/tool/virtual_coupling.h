@@ -37,6 +37,19 @@ bool correct(const Model& model, const State& state, const Wrench& contact_w, co
 // where it was when the wrench is no number. Status: kCouplingSingular.
 void balance_tool(const Model& model, const State& state, Scratch& scratch) PALPATE_RT;
 
+// Where the coupling is held at its end: at the handle, or, where that would stretch it beyond the device's largest
+// force or torque, as far from `tool_w` towards the handle as they reach. The force is limited where it arises: a hand
+// that beats the motors presses the virtual tool with what they have, not with what the spring would make of it. (The
+// coupling as a spring from the handle itself wound up to 104 N behind motors of 8.5 N, and the tool alternated, fell
+// off crowns and went through plates; 2026-11-22.) Status: kForceClamped, kTorqueClamped. A device without torque has
+// no such limit: its tool turns with the handle.
+Pose held_end(const Model& model, const Pose& device_w, const Pose& tool_w, std::uint32_t& status) PALPATE_RT;
+
+// The same as `tool_w`, or as far from where the last tick left the tool as it may go in one: by the handle's own
+// motion and kToolStepShare of the coupling's largest stretch. A massless tool that slips or loses contact would be
+// thrown into another state of contact, and back in the next tick. Status: kToolHeldBack.
+Pose within_step(const Model& model, const State& state, const Pose& tool_w, std::uint32_t& status) PALPATE_RT;
+
 // Wrench of the coupling spring on the handle, about the handle's origin: pulls the handle towards the tool.
 Wrench coupling_wrench(const Model& model, const Pose& device_w, const Pose& tool_w) PALPATE_RT;
 

@@ -18,7 +18,7 @@ void SwingMeter::add(double value) {
   const double step = value - last_;
   const bool turned = step * step_ < 0 && std::min(std::abs(step), std::abs(step_)) > least_;
   run_ = turned ? run_ + 1 : 0;
-  turns_ += turned ? 1 : 0;
+  turns_ += run_ > 1 ? 1 : 0;
   longest_ = std::max(longest_, run_);
   step_ = step;
   last_ = value;
@@ -55,7 +55,7 @@ FeelMeters::FeelMeters(const ModelParams& params, double encoder_m)
     : params_(params),
       swing_{SwingMeter(least_swing_N(params, encoder_m)), SwingMeter(least_swing_N(params, encoder_m)),
              SwingMeter(least_swing_N(params, encoder_m))} {
-  figures_.leash_m = params.force_max_N / params.coupling_N_per_m + encoder_m;
+  figures_.force_limit_N = params.force_max_N;
 }
 
 void FeelMeters::add(const FeelTick& tick) {

@@ -20,7 +20,7 @@ struct FeelFigures {
   int alternations = 0;      // ticks in which the force swung back; see SwingMeter
   int alternation_run = 0;   // most of them in a row
   double lag_m = 0;          // largest distance from handle to tool
-  double leash_m = 0;        // F_max / K, and the encoder's step: what it may be
+  double force_limit_N = 0;  // the device's largest force: no object is pressed harder
   double felt_N_per_m = 0;   // rise of the force over the way of the handle, between half and all of the largest force
   double noise_N = 0;        // RMS at 50 to 500 Hz in the last second
   int contacts = 0;          // times the force rose from zero
@@ -32,7 +32,7 @@ struct FeelFigures {
 };
 
 // Swings: ticks in which a component of the force changes by more than `least` against its change of the tick before,
-// which was as large.
+// which was as large and had turned too. One turn alone is a peak, not a swing.
 class SwingMeter {
  public:
   explicit SwingMeter(double least) : least_(least) {}

@@ -22,10 +22,10 @@ class FeelScene : public testing::Test {
 
 TEST_F(FeelScene, APressIsQuietAndInSeriesWithTheCoupling) {
   const FeelFigures press = feel(Manoeuvre::kPress).figures;
-  EXPECT_EQ(press.contacts, 1);
+  EXPECT_LE(press.contacts, 2);  // the surface may be met once more when the hand leaves
   EXPECT_EQ(press.alternations, 0);
   EXPECT_EQ(press.fault, 0u);
-  EXPECT_LT(press.lag_m, press.leash_m);
+  EXPECT_LT(press.lag_m, 8.5 / compiled_.model().params.coupling_N_per_m);
   EXPECT_GT(press.force_max_N, 3);
   EXPECT_LT(press.felt_N_per_m, compiled_.model().params.coupling_N_per_m);  // an object in series
   EXPECT_GT(press.felt_N_per_m, 0.7 * compiled_.model().params.coupling_N_per_m);
@@ -35,6 +35,22 @@ TEST_F(FeelScene, TapsAreCountedAndLeaveNothingInTheHand) {
   const FeelFigures tap = feel(Manoeuvre::kTap).figures;
   EXPECT_GE(tap.contacts, 6);  // some bounce once
   EXPECT_EQ(tap.hand_J, 0);    // the shipped device swallows what sampling and delay make
+}
+
+// A hand that beats the motors presses the object with what they have: before, with 104 N behind motors of 8.5 N.
+TEST_F(FeelScene, AHandThatWinsWindsNothingUp) {
+  for (const Manoeuvre manoeuvre : {Manoeuvre::kOverload, Manoeuvre::kPush}) {
+    const FeelRun run = feel(manoeuvre);
+    EXPECT_EQ(feel_failure(run), "") << run.manoeuvre;
+    EXPECT_LT(run.figures.model_max_N, 1.1 * 8.5);
+    EXPECT_GT(run.figures.force_max_N, 8.4);
+  }
+}
+
+TEST_F(FeelScene, ADeviceThatSendsTooFewSamplesIsNotRendered) {
+  const FeelRun run = feel(Manoeuvre::kSlow);
+  EXPECT_EQ(run.figures.fault, Fault::kSamplesSparse);
+  EXPECT_LT(run.figures.force_max_N, 1);
 }
 
 TEST_F(FeelScene, SaysTheSameTwiceAndInEveryForm) {
@@ -59,13 +75,13 @@ TEST_F(FeelScene, RefusesWhatItDoesNotKnow) {
 
 TEST(FeelVerdict, NamesWhatFails) {
   FeelRun run{"scene", "push", {}};
-  run.figures.leash_m = 0.004;
+  run.figures.force_limit_N = 8.5;
   EXPECT_EQ(feel_failure(run), "");
   run.figures.alternations = 3;
   run.figures.step_share = 0.2;
-  run.figures.lag_m = 0.01;
+  run.figures.model_max_N = 104;
   run.figures.fault = Fault::kDeviceSilent;
-  EXPECT_EQ(feel_failure(run), "swings in 3 ticks, steps by 20 %, lags 10.0 mm, fault DeviceSilent");
+  EXPECT_EQ(feel_failure(run), "swings in 3 ticks, steps by 20 %, winds up to 104 N, fault DeviceSilent");
 }
 
 }  // namespace

@@ -37,6 +37,8 @@ constexpr std::size_t kSilentZero = 30;
 constexpr std::size_t kReportedZero = 25;                       // ramp_out_s is 20 ticks
 constexpr std::size_t kDeafZero = 20 + 20 + 5;                  // lag limit, ramp, reading back
 constexpr std::size_t kUnwillingZero = 3 * (20 + 5 + 20) + 10;  // three edges in vain: ramp, rest, waiting
+constexpr std::size_t kBuzzZero = 40 + 20;     // swings until they count as unstable (20 at 1 kHz), ramp
+constexpr std::size_t kSparseZero = 430 + 20;  // 256 ticks times ln(0.5 / 0.1): half of them, against a share of 0.4
 constexpr std::uint32_t kRefused = Fault::kSamplesRejected;
 constexpr std::uint32_t kSilent = Fault::kDeviceSilent;
 
@@ -109,8 +111,10 @@ std::vector<Kind> position_kinds() {
          for (auto& p : a.status.position) p = a.since % 2 == 0 ? 8388607 : -8388608;
        },
        kRefused, kSilentZero},
-      {"square_wave_of_1_mm", [=](Attack& a) { shift(a, a.since % 2 == 0 ? 5e-4 : -5e-4); }},
-      {"square_wave_of_1.9_mm", [=](Attack& a) { shift(a, a.since % 2 == 0 ? 0 : 1.9e-3); }},
+      {"square_wave_of_1_mm", [=](Attack& a) { shift(a, a.since % 2 == 0 ? 5e-4 : -5e-4); }, Fault::kUnstable,
+       kBuzzZero},
+      {"square_wave_of_1.9_mm", [=](Attack& a) { shift(a, a.since % 2 == 0 ? 0 : 1.9e-3); }, Fault::kUnstable,
+       kBuzzZero},
       {"square_wave_of_8_mm", [=](Attack& a) { shift(a, a.since % 2 == 0 ? 0 : 8e-3); }},
       {"sweeps_at_top_speed", [=](Attack& a) { shift(a, 1.9e-3 * static_cast<double>(a.since % 20)); }},
       {"jumps_by_100_mm", [=](Attack& a) { shift(a, 0.1); }, kRefused, kSilentZero},
@@ -127,7 +131,7 @@ std::vector<Kind> frame_kinds() {
   return {
       {"silent", [](Attack& a) { a.send = false; }, kSilent, kSilentZero},
       {"silent_10_of_50_ms", [](Attack& a) { a.send = a.since % 50 >= 10; }},
-      {"every_other_lost", [](Attack& a) { a.send = a.since % 2 == 0; }},
+      {"every_other_lost", [](Attack& a) { a.send = a.since % 2 == 0; }, Fault::kSamplesSparse, kSparseZero},
       {"wrong_checksum",
        [](Attack& a) {
          a.frames = {EvilDevice::frame_of(a.status)};

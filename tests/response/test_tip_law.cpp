@@ -131,6 +131,29 @@ TEST(TipLaw, TangentAndEnergyBelongToTheForce) {
   EXPECT_NEAR(local_energy_J(cone.local(), 1e-3), 2 / (3 * M_PI) * kTan60 * kRubber_Pa * 1e-9, 1e-15);
 }
 
+// Beyond its range a layer stiffens towards its plate: force and tangent go on where the range ends, the energy belongs
+// to them, and near the plate no device's force goes through.
+TEST(TipLaw, ALayerStiffensToItsPlate) {
+  TipDesc desc = tip_of({TipProfile::kParabola, 6.35e-3, 0}, 0.006);
+  desc.modulus_Pa = 2e4 / (1 - 0.49 * 0.49);
+  desc.layer = {0.010, 0.49, LayerBase::kBonded};
+  const BakedTip layer(desc);
+  EXPECT_EQ(layer.law.limit_m, 0.010);
+  const LocalLaw law = layer.local();
+  const LawPoint inside = local_at(law, 0.006), beyond = local_at(law, 0.006 + 1e-9);
+  EXPECT_NEAR(beyond.force_N, inside.force_N, 1e-5);
+  EXPECT_NEAR(beyond.tangent_N_per_m, inside.tangent_N_per_m, 1e-3);
+  for (double e = 0.0061; e < 0.013; e += 1e-4) {  // past the last twentieth too
+    const double h = 1e-8;
+    EXPECT_NEAR((local_at(law, e + h).force_N - local_at(law, e - h).force_N) / (2 * h),
+                local_at(law, e).tangent_N_per_m, 2e-3 * local_at(law, e).tangent_N_per_m);
+    EXPECT_NEAR((local_energy_J(law, e + h) - local_energy_J(law, e - h)) / (2 * h), local_at(law, e).force_N,
+                1e-4 * local_at(law, e).force_N);
+  }
+  EXPECT_GT(layer.force(0.0098), 32.767);  // what a command can carry
+  EXPECT_EQ(BakedTip(tip_of({TipProfile::kParabola, 6.35e-3, 0})).law.limit_m, 0);
+}
+
 TEST(TipLaw, NothingPullsAndNothingBreaks) {
   const BakedTip tip(tip_of({TipProfile::kSphere, 6.35e-3, 0}));
   for (const double depth : {0.0, -1e-3, -1e300, kNan}) {

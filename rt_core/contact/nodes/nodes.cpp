@@ -23,6 +23,7 @@ void place_tool(const Model& model, const State& state, Scratch& scratch, const 
     return;
   }
   tool = moved(state.tool_w, {drift.translation_m - p.per_N * p.force_N, drift.rotation_rad - p.per_Nm * p.torque_Nm});
+  if (scratch.held_by_hand != 0) tool = within_step(model, state, tool, scratch.status);
   const bool touching = squared_norm(p.force_N) > 0 || state.nodal.count > 0;
   if (!touching) return;
   const Twist step = twist_between(state.safety.tool_corrected_w, tool);
@@ -219,7 +220,7 @@ void solve(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   p.per_N = scratch.driven ? 0.0 : 1.0 / model.params.coupling_N_per_m;
   p.per_Nm = scratch.driven ? 0.0 : 1.0 / model.params.coupling_Nm_per_rad;
   p.force_N = p.torque_Nm = {};
-  const Twist drift = scratch.driven ? Twist{} : twist_between(state.tool_w, state.device_w);
+  const Twist drift = scratch.driven ? Twist{} : twist_between(state.tool_w, scratch.grip_w);
   const Pose before = scratch.driven ? state.tool_previous_w : state.safety.tool_corrected_w;
   if (p.count > 0) solve_contacts(model, state, scratch, drift, before);
   place_tool(model, state, scratch, drift);

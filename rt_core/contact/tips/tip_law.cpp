@@ -73,6 +73,23 @@ Real inside_energy_J(const LocalLaw& law, Real e) PALPATE_RT {
   return law.factor[i].energy_J + energy_from_knot(law, i, x);
 }
 
+// Beyond depth_max, in units of the tangent there: force, tangent and energy of d = e - depth_max. Without a limit the
+// tangent goes on. Towards a limit, u = d / (limit - depth_max): energy d^2 / (2 (1 - u)), which begins as the tangent
+// and has no end before the plate. In the last twentieth its own tangent goes on: a tool put there by force (presses
+// without a hand) meets a wall, not a pole.
+struct Beyond {
+  Real depth_m, force_m, tangent, energy_m2;
+};
+Beyond beyond_at(const LocalLaw& law, Real e_m) PALPATE_RT {
+  constexpr Real kLast = 0.95;
+  const Real d = min_of(e_m, kHuge) - law.tip->depth_max_m, room = law.tip->limit_m - law.tip->depth_max_m;
+  if (!(room > 0)) return {d, d, 1, 0.5 * d * d};
+  const Real at = min_of(d, kLast * room), u = at / room, v = 1 - u, over = d - at;
+  const Real force = at * (1 - 0.5 * u) / (v * v);
+  const Real tangent = (1 - 0.5 * u) / (v * v) + u * (1.5 - 0.5 * u) / (v * v * v);
+  return {d, force + tangent * over, tangent, 0.5 * at * at / v + (force + 0.5 * tangent * over) * over};
+}
+
 }  // namespace
 
 LocalLaw local_law(const Model& model, std::int32_t piece) PALPATE_RT {
@@ -84,15 +101,18 @@ LawPoint local_at(const LocalLaw& law, Real e_m) PALPATE_RT {
   if (!(e_m > 0)) return {};
   if (e_m <= law.tip->depth_max_m) return inside_at(law, e_m);
   const LawPoint edge = inside_at(law, law.tip->depth_max_m);
-  return {edge.force_N + edge.tangent_N_per_m * (min_of(e_m, kHuge) - law.tip->depth_max_m), edge.tangent_N_per_m};
+  const Beyond beyond = beyond_at(law, e_m);
+  const Real tangent = edge.tangent_N_per_m;
+  return {edge.force_N + tangent * beyond.force_m, tangent * beyond.tangent};
 }
 
 Real local_energy_J(const LocalLaw& law, Real e_m) PALPATE_RT {
   if (!(e_m > 0)) return 0.0;
   if (e_m <= law.tip->depth_max_m) return inside_energy_J(law, e_m);
   const LawPoint edge = inside_at(law, law.tip->depth_max_m);
-  const Real beyond = min_of(e_m, kHuge) - law.tip->depth_max_m;
-  return inside_energy_J(law, law.tip->depth_max_m) + (edge.force_N + 0.5 * edge.tangent_N_per_m * beyond) * beyond;
+  const Beyond beyond = beyond_at(law, e_m);
+  return inside_energy_J(law, law.tip->depth_max_m) + edge.force_N * beyond.depth_m +
+         edge.tangent_N_per_m * beyond.energy_m2;
 }
 
 Real interval_energy_J(const LocalLaw& law, std::int32_t interval) PALPATE_RT {

@@ -10,8 +10,8 @@ namespace palpate {
 
 // One law, ready to evaluate. F(e) = c e^(n/2) S(x), x = sqrt(e / depth_max), n = 2, 3, 4; S = 1 without `factor`.
 // Flat punch of radius R: c = 2 R E*; sphere: c = 4/3 sqrt(R) E*; cone, half angle alpha from its axis: c = 2/pi tan
-// alpha E*, E* = E/(1 - nu^2). Beyond depth_max the force continues by its tangent. `factor` points to kFactorKnots
-// entries.
+// alpha E*, E* = E/(1 - nu^2). Beyond depth_max the force continues by its tangent, and a layer stiffens from there
+// towards its plate. `factor` points to kFactorKnots entries.
 struct LocalLaw {
   const TipLaw* tip = nullptr;
   const FactorKnot* factor = nullptr;

@@ -209,6 +209,9 @@ ImageResult check_tip_laws(const Model& model) noexcept {
     const double sizes[] = {law.coefficient, law.depth_max_m, law.force_max_N};
     for (const double size : sizes)
       if (!(size > 0 && size < kHuge)) return not_finite("tip_law", i);
+    const bool gives = law.c0_m_per_N >= 0 && law.c0_m_per_N + 2 * law.c1_m_per_N2 * law.force_max_N >= 0;
+    if (!(law.limit_m == 0 || (gives && law.limit_m > law.depth_max_m && law.limit_m < kHuge)))
+      return not_finite("tip_law.limit_m", i);
     if (!is_finite(law.c0_m_per_N) || !is_finite(law.c1_m_per_N2)) return not_finite("tip_law.c0_m_per_N", i);
   }
   for (std::size_t i = 0; i < model.factor.size(); ++i) {

@@ -1,0 +1,115 @@
+#include "rt_core/safety/hand_energy.h"
+
+namespace palpate {
+
+namespace {
+
+// Below 30 mm/s the coupling is not damped: the shipped device's friction of 0.06 N takes more than its spring of
+// 2000 N/m makes in 1 ms up to there.
+constexpr double kDampingDead_m_per_s = 0.03;
+// The rate of the stretch is that of the last 4 ms: an encoder step of 30 um makes 6 mm/s of it, well below the dead
+// zone.
+constexpr double kDampingSmooth_s = 4e-3;
+// A change of the force counts as a swing from this share of the largest force on.
+constexpr double kSwingShare = 0.02;
+// A surplus is braked away over eight ticks: all of it in one makes a force that alternates (10 swings in six taps on
+// half_shell, 2026-11-22).
+constexpr double kDrain_ticks = 8;
+// What a tick seems to swallow is credit for the next ones up to this share of what the coupling holds (0.1 mJ with the
+// shipped device): an encoder's staircase is no energy, but only over several of its steps.
+constexpr double kCreditShare = 0.005;
+// Each swing counts one, and a tick keeps 0.95 of the count: ten are reached by 14 swings in a row, never by one in two
+// ticks (9.8), as an encoder step makes.
+constexpr double kSwingKept = 0.95, kSwingsMost = 10;
+
+// `brake` against `force_N`, at most to zero along it.
+void add_brake(Vec3 brake_N, Vec3& force_N) PALPATE_RT {
+  const double size = norm(force_N);
+  const Vec3 along = unit_or(force_N, {});
+  const double back = -dot(brake_N, along);
+  if (back > size) brake_N += (back - size) * along;
+  force_N += brake_N;
+}
+
+// What acted on the handle between the last two samples: an output takes the delay to arrive.
+Wrench acted(const Model& model, const SafetyState& safety) PALPATE_RT {
+  const double late = clamp_to(model.params.delay_s / model.params.period_s, 0, kForceHistory - 1.001);
+  const auto whole = static_cast<std::int32_t>(late);
+  const double part = late - whole;
+  const double *a = safety.sent + 6 * whole, *b = a + 6;
+  return {(1 - part) * Vec3{a[0], a[1], a[2]} + part * Vec3{b[0], b[1], b[2]},
+          (1 - part) * Vec3{a[3], a[4], a[5]} + part * Vec3{b[3], b[4], b[5]}};
+}
+
+// Energy of a spring whose force stays at `most` from there on.
+double spring_J(double stretch, double stiffness, double most) PALPATE_RT {
+  const double end = most / stiffness;
+  return stretch < end ? 0.5 * stiffness * stretch * stretch : most * (stretch - 0.5 * end);
+}
+
+bool nothing_sent(const SafetyState& safety) PALPATE_RT {
+  for (const double value : safety.sent) {  // bound: 6 kForceHistory
+    if (value != 0) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+void add_coupling_damping(const Model& model, SafetyState& safety, Vec3& force_N) PALPATE_RT {
+  const ModelParams& p = model.params;
+  const Vec3 stretch_m = (1 / p.coupling_N_per_m) * force_N;
+  const Vec3 rate = (1 / (p.period_s + kDampingSmooth_s)) * (stretch_m - safety.stretch_slow_m);
+  safety.stretch_slow_m += p.period_s * rate;
+  const double speed = norm(rate);
+  if (!(speed > kDampingDead_m_per_s)) return;
+  add_brake((p.coupling_Ns_per_m * (1 - kDampingDead_m_per_s / speed)) * rate, force_N);
+}
+
+void drain_energy(const Model& model, State& state, Scratch& scratch, const Input& input, Vec3& force_N) PALPATE_RT {
+  const ModelParams& p = model.params;
+  SafetyState& safety = state.safety;
+  const Twist stretch = twist_between(safety.tool_corrected_w, state.device_w);
+  const double stored_J =
+      scratch.energy_J + spring_J(norm(stretch.translation_m), p.coupling_N_per_m, p.force_max_N) +
+      spring_J(norm(stretch.rotation_rad), p.coupling_Nm_per_rad, p.torque_max_Nm > 0 ? p.torque_max_Nm : kHuge);
+  const Twist way = twist_between(state.device_previous_w, state.device_w);
+  const Wrench on_handle = acted(model, safety);
+  const bool counts = safety.mode == Mode::kForce && safety.ramp >= 1 && input.stale_ticks == 0 &&
+                      input.overrun_ticks == 0 &&
+                      (scratch.status & Status::kInputRejected) == 0 && state.articulation.moved == 0;
+  const double made_J = dot(on_handle.force_N, way.translation_m) + dot(on_handle.torque_Nm, way.rotation_rad) +
+                        stored_J - safety.stored_J;
+  const double most_J = 0.5 * p.force_max_N * p.force_max_N / p.coupling_N_per_m;
+  safety.stored_J = stored_J;
+  safety.surplus_J = counts && is_finite(made_J) ? max_of(-kCreditShare * most_J, safety.surplus_J + made_J) : 0.0;
+  if (squared_norm(force_N) == 0 && nothing_sent(safety)) safety.surplus_J = 0;
+  const double speed2 = squared_norm(state.hand_velocity_m_per_s);
+  if (!(safety.surplus_J > 0 && speed2 > kDampingDead_m_per_s * kDampingDead_m_per_s)) return;
+  const double most = p.coupling_N_per_m * (p.period_s + 2 * p.delay_s);
+  const double damping = min_of(safety.surplus_J / (kDrain_ticks * p.period_s * speed2), most);
+  scratch.status |= Status::kEnergyDrained;
+  add_brake(-damping * state.hand_velocity_m_per_s, force_N);
+}
+
+bool is_unstable(const Model& model, SafetyState& safety, Vec3 force_N) PALPATE_RT {
+  const ModelParams& p = model.params;
+  const Vec3 step = force_N - safety.last_coupling_N;
+  const double least = kSwingShare * p.force_max_N;
+  const bool large = squared_norm(step) > least * least && squared_norm(safety.last_step_N) > least * least;
+  const bool back = large && dot(step, safety.last_step_N) < -0.5 * norm(step) * norm(safety.last_step_N);
+  safety.swings = kSwingKept * safety.swings + (back ? 1 : 0);
+  safety.last_step_N = step;
+  safety.last_coupling_N = force_N;
+  const double most_J = 0.5 * p.force_max_N * p.force_max_N / p.coupling_N_per_m;
+  return safety.swings > kSwingsMost || safety.surplus_J > most_J;
+}
+
+void remember_output(SafetyState& safety) PALPATE_RT {
+  for (std::int32_t i = 6 * kForceHistory - 1; i >= 6; --i) safety.sent[i] = safety.sent[i - 6];  // bound: the history
+  const Wrench& w = safety.last_device_w;
+  const double now[6] = {w.force_N.x, w.force_N.y, w.force_N.z, w.torque_Nm.x, w.torque_Nm.y, w.torque_Nm.z};
+  for (std::int32_t i = 0; i < 6; ++i) safety.sent[i] = now[i];
+}
+
+}  // namespace palpate

@@ -1,0 +1,238 @@
+// Forces limited where they arise, damping that balances what sampling makes, energy that is drained, and the detectors
+// of what none of them holds: each fires in a test of its own.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "rt_core/contact/contact.h"
+#include "rt_core/safety/hand_energy.h"
+#include "rt_core/tick.h"
+#include "tests/support/roomy.h"
+#include "tests/support/tiny_image.h"
+
+namespace palpate::test {
+namespace {
+
+Pose at(Vec3 position_m, Vec3 turn_rad = {}) { return {position_m, small_rotation(turn_rad)}; }
+
+TEST(HeldEnd, IsTheHandleUntilTheDeviceIsBeaten) {
+  Model model;
+  model.params = tiny_params();  // 8.5 N, 1500 N/m: 5.67 mm; 0.2 N m, 0.5 N m/rad: 0.4 rad
+  std::uint32_t status = 0;
+  const Pose tool = at({0.1, 0, 0}), near = at({0.1, 0.005, 0}, {0, 0.3, 0}), far = at({0.1, 0.05, 0});
+  EXPECT_EQ(held_end(model, near, tool, status).position_m, near.position_m);
+  EXPECT_EQ(status, 0u);
+  EXPECT_NEAR(held_end(model, far, tool, status).position_m.y, 8.5 / 1500, 1e-15);
+  EXPECT_EQ(status, Status::kForceClamped);
+  status = 0;
+  const Pose turned = held_end(model, at({0.1, 0, 0}, {0.9, 0, 0}), tool, status);
+  EXPECT_EQ(status, Status::kTorqueClamped);
+  EXPECT_NEAR(norm(coupling_wrench(model, turned, tool).torque_Nm), 0.2, 0.2 * 0.01);
+  status = 0;
+  model.params.torque_max_Nm = 0;  // three motors: the tool turns with the handle
+  EXPECT_EQ(held_end(model, at({0.1, 0, 0}, {0.9, 0, 0}), tool, status).orientation, at({}, {0.9, 0, 0}).orientation);
+  EXPECT_EQ(status, 0u);
+}
+
+TEST(WithinStep, BoundsWhatTheToolDoesByItself) {
+  Model model;
+  model.params = tiny_params();
+  const StatePtr state = roomy_state();
+  const double own_m = kToolStepShare * 8.5 / 1500;
+  std::uint32_t status = 0;
+  EXPECT_EQ(within_step(model, *state, at({0.9 * own_m, 0, 0}), status).position_m.x, 0.9 * own_m);
+  EXPECT_EQ(status, 0u);
+  EXPECT_NEAR(within_step(model, *state, at({0.01, 0, 0}), status).position_m.x, own_m, 1e-15);
+  EXPECT_EQ(status, Status::kToolHeldBack);
+  state->device_w = at({0, 0, 0.002});  // the hand moves by 2 mm: so may the tool
+  EXPECT_NEAR(within_step(model, *state, at({0.01, 0, 0}), status).position_m.x, own_m + 0.002, 1e-15);
+  state->safety.swings = 1;
+  EXPECT_NEAR(within_step(model, *state, at({0.01, 0, 0}), status).position_m.x, own_m / 5 + 0.002, 1e-15);
+}
+
+// A wall of 100 N/mm, and a hand that goes 50 mm behind it and back at 0.2 m/s: the wall is pressed with what the
+// device has, the force says nothing of the rest and comes back when the hand is within 5.7 mm again.
+TEST(SaturatedProxy, NothingWindsUpBehindAHandThatWins) {
+  Model model;
+  model.params = tiny_params();
+  const StatePtr state = roomy_state();
+  const ScratchPtr scratch = roomy_scratch();
+  Input input;
+  Output output;
+  double wall_N = 0, deepest_N = 0, last_N = 0, step_N = 0;
+  for (int i = 0; i < 700; ++i) {
+    input.pose_w.position_m.z = i < 250 ? 1e-3 - 2e-4 * i : 1e-3 - 2e-4 * std::max(0, 500 - i);
+    input.commands = i == 1 ? Command::kArm : 0;
+    sense(model, *state, *scratch, input);
+    clear_contact(*state, *scratch);
+    const double depth_m = -state->tool_w.position_m.z;
+    if (depth_m > 0) {
+      scratch->contact_wrench_w.force_N.z = 1e5 * depth_m;
+      state->contact_stiffness[14] = 1e5;
+      scratch->energy_J = 0.5e5 * depth_m * depth_m;
+    }
+    balance_tool(model, *state, *scratch);
+    make_safe(model, *state, *scratch, input, output);
+    EXPECT_EQ(output.fault, 0u) << i;
+    wall_N = std::max(wall_N, scratch->contact_wrench_w.force_N.z);
+    if (i == 250) deepest_N = output.device_w.force_N.z;
+    step_N = std::max(step_N, std::abs(output.device_w.force_N.z - last_N));
+    last_N = output.device_w.force_N.z;
+  }
+  EXPECT_NEAR(deepest_N, 8.5, 1e-6);
+  EXPECT_LT(wall_N, 1.1 * 8.5);
+  EXPECT_LE(step_N, kOutputStepShare * 8.5 * (1 + 1e-9));
+  EXPECT_EQ(last_N, 0);
+}
+
+class Damped : public testing::Test {
+ protected:
+  Damped() {
+    model_.params = tiny_params();
+    model_.params.coupling_Ns_per_m = 2;
+  }
+  // The coupling's force while it is stretched at `speed`, from `first_m` on.
+  Vec3 after(double first_m, double speed, int ticks) {
+    Vec3 force;
+    for (int i = 0; i <= ticks; ++i) {
+      force = {0, 0, 1500 * (first_m + 1e-3 * speed * i)};
+      undamped_N_ = force.z;
+      add_coupling_damping(model_, safety_, force);
+    }
+    return force;
+  }
+  Model model_;
+  SafetyState safety_;
+  double undamped_N_ = 0;
+};
+
+TEST_F(Damped, ResistsAboveTheDeadSpeedOnly) {
+  EXPECT_NEAR(after(0, 0.1, 100).z - undamped_N_, 2 * (0.1 - 0.03), 1e-6);
+  safety_ = {};
+  EXPECT_EQ(after(0, 0.02, 100).z, undamped_N_);
+}
+
+TEST_F(Damped, NeverPullsTheHandToTheSurfaceItLeaves) {
+  model_.params.coupling_Ns_per_m = 1000;
+  EXPECT_GE(after(0.02, -0.2, 95).z, 0);
+  EXPECT_LT(after(0.02, -0.2, 95).z, undamped_N_);
+}
+
+// A spring that a tick's delay turns into a source: what it returns more than it took is found, and braked.
+TEST(DrainEnergy, FindsWhatDelayMakes) {
+  Model model;
+  model.params = tiny_params();
+  const StatePtr state = roomy_state();
+  const ScratchPtr scratch = roomy_scratch();
+  state->safety.mode = Mode::kForce;
+  state->safety.ramp = 1;
+  Input input;
+  double drained_N = 0;
+  for (int i = 0; i < 40; ++i) {  // pressed at 0.1 m/s into nothing but the coupling, whose other end stands still
+    state->device_previous_w = state->device_w;
+    state->device_w.position_m.z = -1e-4 * i;
+    state->hand_velocity_m_per_s = {0, 0, -0.1};
+    scratch->grip_w = state->device_w;
+    scratch->status = 0;
+    Vec3 force{0, 0, 0.15 * i};
+    drain_energy(model, *state, *scratch, input, force);
+    drained_N = force.z - 0.15 * i;
+    state->safety.last_device_w.force_N = {0, 0, 0.15 * i};
+    remember_output(state->safety);
+  }
+  // Each tick the held force is 0.075 N short of the mean: K (v T)^2 / 2 a tick, less the credit of 0.5 %.
+  const double made_J = 39 * 0.5 * 1500 * 1e-8;
+  EXPECT_NEAR(state->safety.surplus_J, made_J, 0.005 * 0.5 * 8.5 * 8.5 / 1500 + 1e-9);
+  EXPECT_NE(scratch->status & Status::kEnergyDrained, 0u);
+  EXPECT_GT(drained_N, 0);  // against the motion
+  EXPECT_LE(drained_N, 1500 * 1e-3 * 0.1 + 1e-12);
+}
+
+TEST(IsUnstable, FiresOnForcesThatAlternate) {
+  Model model;
+  model.params = tiny_params();
+  SafetyState buzzing, peaks;
+  int fired_at = -1, fired_by_peaks = -1;
+  for (int i = 0; i < 400; ++i) {
+    if (is_unstable(model, buzzing, {0, 0, i % 2 == 0 ? 1.0 : 2.0}) && fired_at < 0) fired_at = i;
+    // Up and down again once in five ticks: peaks, not a limit cycle.
+    if (is_unstable(model, peaks, {0, 0, i % 5 == 0 ? 2.0 : 1.0}) && fired_by_peaks < 0) fired_by_peaks = i;
+  }
+  EXPECT_GT(fired_at, 10);
+  EXPECT_LT(fired_at, 20);
+  EXPECT_EQ(fired_by_peaks, -1);
+}
+
+TEST(IsUnstable, FiresOnEnergyTheMotorsCannotHold) {
+  Model model;
+  model.params = tiny_params();
+  SafetyState safety;
+  safety.surplus_J = 0.9 * 0.5 * 8.5 * 8.5 / 1500;
+  EXPECT_FALSE(is_unstable(model, safety, {}));
+  safety.surplus_J *= 1.2;
+  EXPECT_TRUE(is_unstable(model, safety, {}));
+}
+
+class Samples : public testing::Test {
+ protected:
+  Samples() {
+    model_.params = tiny_params();
+    model_.params.silence_hold_ticks = 3;
+    model_.params.acceleration_max_m_per_s2 = 200;
+    model_.params.speed_max_m_per_s = 5;
+  }
+  void sample(double z_m, std::uint32_t stale = 0) {
+    input_.pose_w.position_m.z = z_m;
+    input_.stale_ticks = stale;
+    sense(model_, *state_, *scratch_, input_);
+  }
+  bool refused() const { return (scratch_->status & Status::kInputRejected) != 0; }
+  Model model_;
+  StatePtr state_ = roomy_state();
+  ScratchPtr scratch_ = roomy_scratch();
+  Input input_;
+};
+
+TEST_F(Samples, ThreeLostOnesAreBridged) {
+  for (int i = 0; i < 100; ++i) sample(1e-4 * i);  // 0.1 m/s
+  for (std::uint32_t stale = 1; stale <= 3; ++stale) {
+    sample(99e-4, stale);
+    EXPECT_NEAR(state_->device_w.position_m.z, 99e-4 + 1e-4 * stale, 1e-8);
+    EXPECT_NE(scratch_->status & Status::kSampleBridged, 0u);
+  }
+  sample(99e-4, 4);  // from here on it is held
+  EXPECT_NEAR(state_->device_w.position_m.z, 102e-4, 1e-8);
+  EXPECT_EQ(scratch_->status & Status::kSampleBridged, 0u);
+}
+
+TEST_F(Samples, AJumpNoHandCouldMakeIsRefusedUntilOneCould) {
+  for (int i = 0; i < 20; ++i) sample(0);
+  sample(1e-3);  // 200 m/s2 over a tick and the velocity's lag: 1.4 mm
+  EXPECT_FALSE(refused());
+  for (int i = 0; i < 50; ++i) sample(1e-3);
+  sample(5e-3);  // 4 mm at once is 4 m/s, below the top speed
+  EXPECT_TRUE(refused());
+  sample(5e-3);  // 3.2 mm in two ticks
+  EXPECT_TRUE(refused());
+  sample(5e-3);  // 5.4 mm in three
+  EXPECT_FALSE(refused());
+}
+
+TEST_F(Samples, ADeviceThatSendsTooFewIsAFault) {
+  Output output;
+  std::uint32_t fault = 0;
+  int latched_at = -1;
+  for (int i = 0; i < 1000; ++i) {
+    input_.commands = i == 1 ? Command::kArm : 0;
+    sample(0, i < 300 || i % 2 == 0 ? 0 : 1);  // then 500 a second
+    clear_contact(*state_, *scratch_);
+    make_safe(model_, *state_, *scratch_, input_, output);
+    if (fault == 0 && output.fault != 0) latched_at = i;
+    fault |= output.fault;
+  }
+  EXPECT_EQ(fault, Fault::kSamplesSparse);
+  EXPECT_GT(latched_at, 300 + 100);
+}
+
+}  // namespace
+}  // namespace palpate::test
