@@ -83,8 +83,8 @@ inline constexpr double kOutputStepShare = 0.10;
 inline constexpr double kToolStepShare = 0.08;
 // Ticks whose outputs may still be on their way to the motors: a delay of 4 ms at 1 kHz. A longer one counts as that.
 inline constexpr std::int32_t kForceHistory = 5;
-// Of the last quarter of a second this share of ticks may have no fresh sample: such a device holds the force of a press
-// for 2 ticks in 5 and hardly passes its delay through the coupling's bound. Fault::kSamplesSparse.
+// Of the last quarter of a second this share of ticks may have no fresh sample: such a device holds the force of a
+// press for 2 ticks in 5 and hardly passes its delay through the coupling's bound. Fault::kSamplesSparse.
 inline constexpr double kStaleShareMost = 0.4;
 // A tool that would push the hand harder than this the moment force may begin is not armed: Status::kStartsInside.
 inline constexpr double kArmForceMax_N = 1.0;

@@ -10,8 +10,12 @@ constexpr double kDampingDead_m_per_s = 0.03;
 // The rate of the stretch is that of the last 4 ms: an encoder step of 30 um makes 6 mm/s of it, well below the dead
 // zone.
 constexpr double kDampingSmooth_s = 4e-3;
+// A surplus below this lifts a handle of 0.1 kg by 1 mm: no kick, however weak the device (one of 0.05 N holds 0.6 uJ
+// in its coupling, which an encoder step makes).
+constexpr double kKick_J = 1e-3;
 // A change of the force counts as a swing from this share of the largest force on.
-constexpr double kSwingShare = 0.02;
+// A weak device's from what a few encoder steps of 30 um make through a coupling of 1 to 2 N/mm.
+constexpr double kSwingShare = 0.02, kSwingLeast_N = 0.1;
 // A surplus is braked away over eight ticks: all of it in one makes a force that alternates (10 swings in six taps on
 // half_shell, 2026-11-22).
 constexpr double kDrain_ticks = 8;
@@ -76,8 +80,8 @@ void drain_energy(const Model& model, State& state, Scratch& scratch, const Inpu
   const Twist way = twist_between(state.device_previous_w, state.device_w);
   const Wrench on_handle = acted(model, safety);
   const bool counts = safety.mode == Mode::kForce && safety.ramp >= 1 && input.stale_ticks == 0 &&
-                      input.overrun_ticks == 0 &&
-                      (scratch.status & Status::kInputRejected) == 0 && state.articulation.moved == 0;
+                      input.overrun_ticks == 0 && (scratch.status & Status::kInputRejected) == 0 &&
+                      state.articulation.moved == 0;
   const double made_J = dot(on_handle.force_N, way.translation_m) + dot(on_handle.torque_Nm, way.rotation_rad) +
                         stored_J - safety.stored_J;
   const double most_J = 0.5 * p.force_max_N * p.force_max_N / p.coupling_N_per_m;
@@ -95,13 +99,13 @@ void drain_energy(const Model& model, State& state, Scratch& scratch, const Inpu
 bool is_unstable(const Model& model, SafetyState& safety, Vec3 force_N) PALPATE_RT {
   const ModelParams& p = model.params;
   const Vec3 step = force_N - safety.last_coupling_N;
-  const double least = kSwingShare * p.force_max_N;
+  const double least = max_of(kSwingLeast_N, kSwingShare * p.force_max_N);
   const bool large = squared_norm(step) > least * least && squared_norm(safety.last_step_N) > least * least;
   const bool back = large && dot(step, safety.last_step_N) < -0.5 * norm(step) * norm(safety.last_step_N);
   safety.swings = kSwingKept * safety.swings + (back ? 1 : 0);
   safety.last_step_N = step;
   safety.last_coupling_N = force_N;
-  const double most_J = 0.5 * p.force_max_N * p.force_max_N / p.coupling_N_per_m;
+  const double most_J = max_of(kKick_J, 0.5 * p.force_max_N * p.force_max_N / p.coupling_N_per_m);
   return safety.swings > kSwingsMost || safety.surplus_J > most_J;
 }
 

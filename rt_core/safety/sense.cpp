@@ -82,6 +82,21 @@ void take_sample(const Model& model, State& state, Scratch& scratch, const Input
   state.rejected_ticks = 0;
 }
 
+// The tool goes with the handle as far as contact lets it: in the free all the way, however weak the device. Behind a
+// hand that has beaten the motors it goes with the end at which the coupling is held.
+void predict_tool(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
+  const Pose& before = state.safety.tool_corrected_w;
+  Twist way = twist_between(state.device_previous_w, state.device_w), tool;
+  if (scratch.held_by_hand != 0) {
+    std::uint32_t beaten = 0;
+    const Pose end = held_end(model, state.device_previous_w, before, beaten);
+    if (beaten != 0) way = twist_between(end, held_end(model, state.device_w, before, beaten));
+  }
+  if (!follow(model, state, way, tool)) scratch.status |= Status::kCouplingSingular;
+  state.tool_w = moved(before, tool);
+  if (scratch.held_by_hand != 0) scratch.grip_w = held_end(model, state.device_w, state.tool_w, scratch.status);
+}
+
 }  // namespace
 
 void sense(const Model& model, State& state, Scratch& scratch, const Input& input) PALPATE_RT {
@@ -102,17 +117,7 @@ void sense(const Model& model, State& state, Scratch& scratch, const Input& inpu
     state.tool_w = state.device_w;
     return;
   }
-  const Pose& before = state.safety.tool_corrected_w;
-  Pose grip_before = state.device_previous_w;
-  if (scratch.held_by_hand != 0) {
-    std::uint32_t unused = 0;
-    grip_before = held_end(model, state.device_previous_w, before, unused);
-    scratch.grip_w = held_end(model, state.device_w, before, scratch.status);
-  }
-  Twist tool;
-  if (!follow(model, state, twist_between(grip_before, scratch.grip_w), tool))
-    scratch.status |= Status::kCouplingSingular;
-  state.tool_w = moved(before, tool);
+  predict_tool(model, state, scratch);
 }
 
 }  // namespace palpate
