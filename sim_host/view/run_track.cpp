@@ -57,12 +57,7 @@ void RunTrack::find_events(const TrackTick& tick) {
   const TrackTick before = ticks_.size() > 1 ? ticks_[here - 1] : TrackTick{};
   const bool steps_in = tick.mode == Mode::kForce && before.mode == Mode::kIdle;
   const bool steps_out = tick.mode == Mode::kIdle && before.mode != Mode::kIdle;
-  const auto renders = [](Mode mode) { return mode == Mode::kForce || mode == Mode::kHold; };
-  const auto fades = [](Mode mode) { return mode == Mode::kPassive || mode == Mode::kRamp; };
-  // At the end of a run a ramp is order: the mark is "at rest" then, with the operator's stop.
-  if (renders(before.mode) && fades(tick.mode) && (tick.input.commands & Command::kStop) == 0)
-    note(TrackEvent::Kind::kWarning, "force fades");
-  if (fades(before.mode) && renders(tick.mode)) note(TrackEvent::Kind::kMode, "force again");
+  find_fades(tick, before);
   if (steps_in) note(TrackEvent::Kind::kMode, "armed");
   if (steps_out) note(TrackEvent::Kind::kMode, "at rest");
   if (const std::uint32_t fresh = tick.fault & ~before.fault; fresh != 0)
@@ -72,6 +67,22 @@ void RunTrack::find_events(const TrackTick& tick) {
     note(TrackEvent::Kind::kWarning, bit_names(status_bit_texts(), fresh));
     warned_ |= fresh;
   }
+}
+
+// Force let go and taken up again within half a second of one another is one spell: a device that is late now and then.
+void RunTrack::find_fades(const TrackTick& tick, const TrackTick& before) {
+  constexpr double kSameSpell_s = 0.5;
+  const std::size_t here = ticks_.size() - 1;
+  const auto renders = [](Mode mode) { return mode == Mode::kForce || mode == Mode::kHold; };
+  const bool fades = tick.mode == Mode::kPassive || tick.mode == Mode::kRamp;
+  // At the end of a run, with the operator's stop, a ramp is order; the mark is "at rest" then.
+  const bool begins = renders(before.mode) && fades && (tick.input.commands & Command::kStop) == 0;
+  if (begins && !fading_) note(TrackEvent::Kind::kWarning, "force fades");
+  fading_ = fading_ || begins;
+  if (fading_ && fades) last_fading_ = here;
+  if (!fading_ || static_cast<double>(here - last_fading_) * period_s_ < kSameSpell_s) return;
+  fading_ = false;
+  if (renders(tick.mode)) events_.push_back({TrackEvent::Kind::kMode, last_fading_ + 1, "force again"});
 }
 
 void RunTrack::append(const TickRecord& record) {

@@ -89,6 +89,7 @@ class RunTrack {
  private:
   void note(TrackEvent::Kind kind, std::string text);
   void find_events(const TrackTick& tick);
+  void find_fades(const TrackTick& tick, const TrackTick& before);
 
   double period_s_;
   mutable std::mutex mutex_;
@@ -98,7 +99,8 @@ class RunTrack {
   TrackTiming timing_;
   double largest_region_N_ = 0, strongest_N_ = -1;
   std::size_t strongest_ = 0, last_touching_ = 0;
-  bool touching_ = false;
+  std::size_t last_fading_ = 0;
+  bool touching_ = false, fading_ = false;
   std::uint32_t warned_ = 0;
 };
 

@@ -230,19 +230,28 @@ TEST(RunTrack, TellsWhatHappened) {
 TEST(RunTrack, ForceThatFadesAndComesBackIsMarked) {
   RunTrack track(1e-3);
   TickRecord record{};
-  for (const Mode mode : {Mode::kIdle, Mode::kForce, Mode::kHold, Mode::kPassive, Mode::kRamp, Mode::kForce}) {
-    record.sequence += 1;
-    record.tick += 1;
-    record.output.mode = mode;
-    track.append(record);
-  }
-  record.sequence += 1;
-  record.output.mode = Mode::kRamp;
+  const auto run = [&](Mode mode, int ticks) {
+    for (int i = 0; i < ticks; ++i) {
+      record.sequence += 1;
+      record.tick += 1;
+      record.output.mode = mode;
+      track.append(record);
+    }
+  };
+  run(Mode::kIdle, 1);
+  run(Mode::kForce, 10);
+  run(Mode::kHold, 1);
+  run(Mode::kPassive, 2);
+  run(Mode::kForce, 30);  // back for a moment: one spell
+  run(Mode::kRamp, 20);
+  run(Mode::kForce, 600);
   record.input.commands = Command::kStop;  // an operator's stop is no warning
-  track.append(record);
+  run(Mode::kRamp, 5);
   std::vector<std::string> texts;
   for (const TrackEvent& event : track.events()) texts.push_back(event.text);
   EXPECT_EQ(texts, (std::vector<std::string>{"armed", "force fades", "force again"}));
+  EXPECT_EQ(track.at(track.events().back().index).mode, Mode::kForce);
+  EXPECT_EQ(track.at(track.events().back().index - 1).mode, Mode::kRamp);
 }
 
 TEST(RunTrack, AGapIsMarked) {
