@@ -10,24 +10,32 @@ if(NOT PALPATE_COMPILER_KNOWS_V3)
 endif()
 
 add_library(palpate_compiler INTERFACE)
-target_include_directories(palpate_compiler INTERFACE ${CMAKE_SOURCE_DIR})
+target_compile_features(palpate_compiler INTERFACE cxx_std_20)
+target_include_directories(palpate_compiler INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+  $<INSTALL_INTERFACE:include/palpate>)
 target_compile_options(palpate_compiler INTERFACE
   -march=x86-64-v3          # one instruction set for everyone: part of the bit-determinism promise
   -ffp-contract=off         # a*b+c rounds twice everywhere
   -mno-fma                  # gcc 12 -O3 makes vfmaddsub of a*b-c, a*b+c pairs all the same (seen 2026-11-21)
-  -fno-math-errno           # sqrt is one instruction; changes no result
-  -Wall -Wextra -Wpedantic -Werror -Wconversion -Wdouble-promotion -Wshadow -Wvla -Wold-style-cast)
+  -fno-math-errno)          # sqrt is one instruction; changes no result
+# Ours alone: a project that takes this one in is not asked to meet them.
+if(PROJECT_IS_TOP_LEVEL)
+  target_compile_options(palpate_compiler INTERFACE $<BUILD_INTERFACE:-Wall;-Wextra;-Wpedantic;-Wconversion;-Wdouble-promotion;-Wshadow;-Wvla;-Wold-style-cast>)
+endif()
+if(PALPATE_WERROR)
+  target_compile_options(palpate_compiler INTERFACE $<BUILD_INTERFACE:-Werror>)
+endif()
 # Library functions are looked up at start, not at their first call, which could come in the middle of a tick.
 target_link_options(palpate_compiler INTERFACE -Wl,-z,now)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # -Wattributes: gcc does not know clang's nonblocking attribute. -Wrestrict: false alarm of gcc 12 in std::string's
   # operator+ when inlined (GCC bug 105651).
-  target_compile_options(palpate_compiler INTERFACE -Wno-attributes -Wno-restrict)
+  target_compile_options(palpate_compiler INTERFACE -Wno-attributes $<BUILD_INTERFACE:-Wno-restrict>)
 endif()
 
 if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
   # std::stable_sort of gcc 12's library uses a function it declares deprecated itself; gcc still checks our own calls.
-  target_compile_options(palpate_compiler INTERFACE -Wno-deprecated-declarations)
+  target_compile_options(palpate_compiler INTERFACE $<BUILD_INTERFACE:-Wno-deprecated-declarations>)
 endif()
 
 # Run-time checks. The first finding ends the program, so that a test cannot pass over it.

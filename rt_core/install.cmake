@@ -1,0 +1,37 @@
+# cmake --install, find_package(palpate COMPONENTS core host) and add_subdirectory: docs/library.md.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+add_library(palpate::core ALIAS rt_core)
+add_library(palpate::host ALIAS palpate_host)
+set_target_properties(palpate_compiler PROPERTIES EXPORT_NAME compiler)
+set_target_properties(rt_core PROPERTIES EXPORT_NAME core OUTPUT_NAME palpate_core)
+foreach(name hal record config host)
+  set_target_properties(palpate_${name} PROPERTIES EXPORT_NAME ${name})
+endforeach()
+
+# What a project that takes this one in installs is its own business.
+if(NOT PROJECT_IS_TOP_LEVEL)
+  return()
+endif()
+set(palpate_package ${CMAKE_INSTALL_LIBDIR}/cmake/palpate)
+install(TARGETS palpate_compiler rt_core EXPORT palpate_core ARCHIVE COMPONENT core)
+install(TARGETS palpate_hal palpate_record palpate_config palpate_host EXPORT palpate_host ARCHIVE COMPONENT host)
+install(TARGETS palpate palpate-rt palpate-device RUNTIME COMPONENT programs)
+foreach(program palpate-mesh palpate-view)
+  if(TARGET ${program})
+    install(TARGETS ${program} RUNTIME COMPONENT programs)
+  endif()
+endforeach()
+install(DIRECTORY config/scenes config/devices DESTINATION ${CMAKE_INSTALL_DATADIR}/palpate/config COMPONENT programs)
+install(DIRECTORY rt_core DESTINATION include/palpate COMPONENT core FILES_MATCHING PATTERN "*.h")
+install(DIRECTORY hal config sim_host DESTINATION include/palpate COMPONENT host FILES_MATCHING PATTERN "*.h")
+foreach(component core host)
+  install(EXPORT palpate_${component} NAMESPACE palpate:: DESTINATION ${palpate_package} COMPONENT ${component})
+endforeach()
+configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/palpate-config.cmake.in ${PROJECT_BINARY_DIR}/palpate-config.cmake
+  INSTALL_DESTINATION ${palpate_package})
+# Before 1.0 a minor version may break.
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/palpate-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/palpate-config.cmake ${PROJECT_BINARY_DIR}/palpate-config-version.cmake
+  DESTINATION ${palpate_package} COMPONENT core)
