@@ -57,13 +57,13 @@ double RestBody<kDim>::contact_modulus() const {
 }
 
 template <int kDim>
-Eigen::VectorXd RestBody<kDim>::solve(const Eigen::VectorXd& force_N) const {
-  Eigen::VectorXd reduced(assembly_.free_count()), u = Eigen::VectorXd::Zero(size_);
+Eigen::MatrixXd RestBody<kDim>::solve_all(const Eigen::MatrixXd& force_N) const {
+  Eigen::MatrixXd reduced(assembly_.free_count(), force_N.cols()), u = Eigen::MatrixXd::Zero(size_, force_N.cols());
   for (int dof = 0; dof < size_; ++dof)
-    if (const int q = assembly_.equation(dof); q >= 0) reduced[q] = force_N[dof];
-  reduced = factor_.solve(reduced);
+    if (const int q = assembly_.equation(dof); q >= 0) reduced.row(q) = force_N.row(dof);
+  reduced = factor_.solve_all(reduced);
   for (int dof = 0; dof < size_; ++dof)
-    if (const int q = assembly_.equation(dof); q >= 0) u[dof] = reduced[q];
+    if (const int q = assembly_.equation(dof); q >= 0) u.row(dof) = reduced.row(q);
   return u;
 }
 

@@ -25,7 +25,9 @@ class RestBody {
   double contact_modulus() const;
 
   // K^-1 f at rest.
-  Eigen::VectorXd solve(const Eigen::VectorXd& force_N) const;
+  Eigen::VectorXd solve(const Eigen::VectorXd& force_N) const { return solve_all(force_N); }
+  // The same for every column, to the same bits.
+  Eigen::MatrixXd solve_all(const Eigen::MatrixXd& force_N) const;
   // Nodal forces that hold `u_m`. Throws ConfigError when an element is turned inside out.
   Eigen::VectorXd internal_force(const Eigen::VectorXd& u_m) const;
   // Sets fixed components to zero.

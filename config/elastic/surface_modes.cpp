@@ -26,19 +26,25 @@ class KrylovBasis {
  public:
   explicit KrylovBasis(const RestBody<kDim>& body) : body_(body) {}
 
-  // False when the vector lies in the span already.
-  bool add(Eigen::VectorXd v) {
+  // Nothing when the vector lies in the span already. Its image waits for solve().
+  void add(Eigen::VectorXd v) {
     const double before = std::sqrt(std::max(0.0, v.dot(body_.surface().mass_times(v))));
     for (int pass = 0; pass < 2; ++pass)  // twice is enough (Kahan, in Parlett 1980)
       for (std::size_t i = 0; i < vector_.size(); ++i) v -= weighted_[i].dot(v) * vector_[i];
     Eigen::VectorXd weighted = body_.surface().mass_times(v);
     const double norm = std::sqrt(std::max(0.0, v.dot(weighted)));
-    if (!(norm > 1e-10 * before)) return false;
+    if (!(norm > 1e-10 * before)) return;
     vector_.push_back(v / norm);
     body_.release_fixed(weighted);
     weighted_.push_back(weighted / norm);
-    image_.push_back(body_.solve(weighted_.back()));
-    return true;
+  }
+  // The images that are missing, together: a solve spends its time on fetching the factor.
+  void solve() {
+    const std::size_t first = image_.size();
+    Eigen::MatrixXd load(body_.size(), static_cast<Eigen::Index>(size() - first));
+    for (std::size_t i = first; i < size(); ++i) load.col(static_cast<Eigen::Index>(i - first)) = weighted_[i];
+    const Eigen::MatrixXd images = body_.solve_all(load);
+    for (Eigen::Index i = 0; i < images.cols(); ++i) image_.emplace_back(images.col(i));
   }
   std::size_t size() const { return vector_.size(); }
   const Eigen::VectorXd& image(std::size_t i) const { return image_[i]; }
@@ -92,11 +98,13 @@ SurfaceModes surface_modes(const RestBody<kDim>& body, int count) {
     body.release_fixed(load);
     basis.add(body.solve(load));
   }
+  basis.solve();
   SurfaceModes modes;
   std::size_t done = 0;
   for (int block = 1; block < kMaxBlocks; ++block) {
     const std::size_t end = basis.size();
     for (; done < end; ++done) basis.add(basis.image(done));
+    basis.solve();
     const bool exhausted = basis.size() == end;
     if (!exhausted && (basis.size() < static_cast<std::size_t>(2 * count) || block % 4 != 0)) continue;
     const auto ritz = basis.ritz();

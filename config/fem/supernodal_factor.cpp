@@ -2,6 +2,7 @@
 
 #include <Eigen/OrderingMethods>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace palpate::fem {
@@ -262,29 +263,59 @@ int SupernodalFactor::negative_pivots() const {
 }
 
 Eigen::VectorXd SupernodalFactor::solve(const Eigen::VectorXd& b) const {
-  std::vector<double> x(static_cast<std::size_t>(size_));
-  for (int i = 0; i < size_; ++i) x[static_cast<std::size_t>(new_of_old_[static_cast<std::size_t>(i)])] = b[i];
+  Eigen::VectorXd out(size_);
+  substitute<1>(b, 0, out);
+  return out;
+}
+
+Eigen::MatrixXd SupernodalFactor::solve_all(const Eigen::MatrixXd& b) const {
+  Eigen::MatrixXd out(size_, b.cols());
+  for (Eigen::Index first = 0; first < b.cols(); first += kLanes) {
+    const Eigen::Index left = b.cols() - first;
+    if (left > kLanes / 2)
+      substitute<kLanes>(b, first, out);
+    else if (left > 1)
+      substitute<kLanes / 2>(b, first, out);
+    else
+      substitute<1>(b, first, out);
+  }
+  return out;
+}
+
+template <int kWide>
+void SupernodalFactor::substitute(const Eigen::Ref<const Eigen::MatrixXd>& b, Eigen::Index first,
+                                  Eigen::Ref<Eigen::MatrixXd> out) const {
+  using Row = std::array<double, static_cast<std::size_t>(kWide)>;
+  const auto count = static_cast<std::size_t>(std::min<Eigen::Index>(kWide, b.cols() - first));
+  std::vector<Row> x(static_cast<std::size_t>(size_));
+  for (int i = 0; i < size_; ++i)
+    for (std::size_t k = 0; k < count; ++k)
+      x[static_cast<std::size_t>(new_of_old_[static_cast<std::size_t>(i)])][k] = b(i, first + static_cast<int>(k));
+  const auto take_off = [](Row& from, double share, const Row& what) {
+    for (std::size_t k = 0; k < from.size(); ++k) from[k] -= share * what[k];
+  };
   for (const Node& node : nodes_)
     for (int c = 0; c < node.columns; ++c) {
       const double* column = &panel_[node.panel + static_cast<std::size_t>(c) * node.rows.size()];
-      const double value = x[static_cast<std::size_t>(node.first + c)];
+      const Row value = x[static_cast<std::size_t>(node.first + c)];
       for (std::size_t i = static_cast<std::size_t>(c) + 1; i < node.rows.size(); ++i)
-        x[static_cast<std::size_t>(node.rows[i])] -= column[i] * value;
+        take_off(x[static_cast<std::size_t>(node.rows[i])], column[i], value);
     }
-  for (std::size_t i = 0; i < x.size(); ++i) x[i] /= diagonal_[i];
+  for (std::size_t i = 0; i < x.size(); ++i)
+    for (double& value : x[i]) value /= diagonal_[i];
   for (std::size_t k = nodes_.size(); k-- > 0;) {
     const Node& node = nodes_[k];
     for (int c = node.columns; c-- > 0;) {
       const double* column = &panel_[node.panel + static_cast<std::size_t>(c) * node.rows.size()];
-      double value = x[static_cast<std::size_t>(node.first + c)];
+      Row value = x[static_cast<std::size_t>(node.first + c)];
       for (std::size_t i = static_cast<std::size_t>(c) + 1; i < node.rows.size(); ++i)
-        value -= column[i] * x[static_cast<std::size_t>(node.rows[i])];
+        take_off(value, column[i], x[static_cast<std::size_t>(node.rows[i])]);
       x[static_cast<std::size_t>(node.first + c)] = value;
     }
   }
-  Eigen::VectorXd out(size_);
-  for (int i = 0; i < size_; ++i) out[i] = x[static_cast<std::size_t>(new_of_old_[static_cast<std::size_t>(i)])];
-  return out;
+  for (int i = 0; i < size_; ++i)
+    for (std::size_t k = 0; k < count; ++k)
+      out(i, first + static_cast<int>(k)) = x[static_cast<std::size_t>(new_of_old_[static_cast<std::size_t>(i)])][k];
 }
 
 }  // namespace palpate::fem

@@ -57,6 +57,22 @@ TEST(SupernodalFactor, SolvesDefiniteAndIndefiniteGridsWithAndWithoutAShift) {
     }
 }
 
+// Whether columns go through the factor alone, in fours or in eights is not to be seen in a bit.
+TEST(SupernodalFactor, SolvesColumnsTogetherAsAlone) {
+  std::mt19937 random(3);
+  const Sparse lower = grid(5, 3, 1, random);
+  SupernodalFactor factor;
+  factor.analyse(lower);
+  ASSERT_TRUE(factor.factorise(lower, 0));
+  const Eigen::MatrixXd b = Eigen::MatrixXd::NullaryExpr(
+      lower.cols(), 21, [&] { return std::uniform_real_distribution<double>(-1, 1)(random); });
+  for (const Eigen::Index columns : {1, 3, 8, 13, 21}) {
+    const Eigen::MatrixXd x = factor.solve_all(b.leftCols(columns));
+    ASSERT_EQ(x.cols(), columns);
+    for (Eigen::Index i = 0; i < columns; ++i) EXPECT_TRUE(x.col(i) == factor.solve(b.col(i))) << i;
+  }
+}
+
 TEST(SupernodalFactor, TakesUnknownsThatNothingConnects) {
   Sparse lower(5, 5);
   for (int i = 0; i < 5; ++i) lower.insert(i, i) = i + 1.0;
