@@ -32,11 +32,13 @@ struct CheckedPress {
 // is held, each next farthest from those before.
 std::vector<CheckPress> check_places(const SceneDesc& scene, const ImageContents& image, const TetMesh& mesh,
                                      int count);
-// Solves for the reference of one press. Throws ConfigError when the finer mesh cannot be made.
+// Solves for the reference of one press, with elements as fine as the force in the baked `image` asks for. Throws
+// ConfigError when the finer mesh cannot be made.
 void press_elements(const SceneDesc& scene, const ImageContents& image, const TetMesh& mesh, CheckPress& press);
 
 // `image`, complete, with a frictionless ball of the press's radius as its only tool.
 ImageContents with_ball(const SceneDesc& scene, const ImageContents& image, double radius_m);
+// Errors are zero where the press has no reference yet.
 CheckedPress press_baked(const ImageContents& with_ball, const CheckPress& press);
 
 }  // namespace palpate

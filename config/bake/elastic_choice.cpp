@@ -128,14 +128,15 @@ ElasticReport bake_elastic_body(const SceneDesc& scene, ImageContents& image, st
   const auto unchecked = [&] {
     return bake.write(scene.elastic.soft > 0 ? scene.elastic.soft : kSoftUnlessStated, linear, 0, image);
   };
-  if (check_presses_of(scene.elastic) == 0) return unchecked();
+  const ElasticReport plain = unchecked();
+  if (check_presses_of(scene.elastic) == 0) return plain;
   std::vector<CheckPress> presses = solved_presses(scene, image, bake.mesh(), progress);
   const std::string where = scene.source.where("body.elastic.check_presses") + ": ";
   if (std::ranges::all_of(presses, [](const CheckPress& press) { return press.depth_m.empty(); })) {
     warnings.push_back(where +
                        "no place was found where a ball can press without the body going out from under it; nothing "
                        "is checked: hold more of the body, or use a smaller tool or contact.max_depth_mm");
-    return unchecked();
+    return plain;
   }
   const Chooser chooser(scene, bake, presses, image);
   Trial best;

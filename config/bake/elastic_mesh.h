@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "config/bake/image_writer.h"
+#include "config/fem/large_strain_solver.h"
 #include "config/fem/tet_mesh.h"
 #include "config/scene/scene.h"
 
@@ -23,5 +24,8 @@ struct Refinement {
 // The body that `base` fills, filled anew by gmsh below a surface split in the zones. Throws ConfigError.
 TetMesh refine_elastic_mesh(const SceneDesc& scene, const ImageContents& image, const TetMesh& base,
                             std::span<const Refinement> zones);
+
+// Neo-Hookean, for T10.
+fem::StrainBody elastic_material(const ModelParams& params);
 
 }  // namespace palpate

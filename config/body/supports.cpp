@@ -18,10 +18,6 @@ constexpr double kFlat_m = 1e-9;
 constexpr std::uint8_t kHeld[] = {kHoldAll, 1, 2, 4, 1 | 2, 1 | 4, 2 | 4};
 static_assert(std::size(kHeld) == ChoiceOf<HeldComponents>::kCount);
 
-std::vector<FixedDesc> entries_of(const SceneDesc& scene) {
-  return scene.fixed.empty() ? std::vector<FixedDesc>(1) : scene.fixed;
-}
-
 // Where the scene says it: a list's entries are numbered, a single table is not.
 std::string entry_label(const SceneDesc& scene, std::size_t i) {
   const std::string numbered = "body.fixed[" + std::to_string(i) + "]";
@@ -41,7 +37,27 @@ double lowest_of(const TetMesh& mesh) {
                     "; move the region to it or make it larger than the edge of an element (body.fem.edge_mm)");
 }
 
+// Nodes in an entry's region. A region is convex, but its middles of edges were bent to the surface: they are in it
+// with their edges' ends.
+std::vector<char> nodes_in(const FixedDesc& entry, const TetMesh& mesh, double lowest_m) {
+  std::vector<char> in(mesh.node_m.size());
+  for (std::size_t n = 0; n < in.size(); ++n) in[n] = in_region(entry, mesh.node_m[n], lowest_m) ? 1 : 0;
+  for (const Tet& tet : mesh.tet)
+    for (std::size_t e = 0; e < kTetEdge.size(); ++e) {
+      if (tet.node[4 + e] < 0) continue;  // a straight element has no middles
+      const auto end = [&](std::size_t k) {
+        return static_cast<std::size_t>(tet.node[static_cast<std::size_t>(kTetEdge[e][k])]);
+      };
+      if (in[end(0)] != 0 && in[end(1)] != 0) in[static_cast<std::size_t>(tet.node[4 + e])] = 1;
+    }
+  return in;
+}
+
 }  // namespace
+
+std::vector<FixedDesc> held_regions(const SceneDesc& scene) {
+  return scene.fixed.empty() ? std::vector<FixedDesc>(1) : scene.fixed;
+}
 
 bool in_region(const FixedDesc& entry, Vec3 x_w, double lowest_m) {
   switch (entry.region) {
@@ -58,7 +74,7 @@ bool in_region(const FixedDesc& entry, Vec3 x_w, double lowest_m) {
 }
 
 bool is_fixed(const SceneDesc& scene, Vec3 x_w, double lowest_m) {
-  return std::ranges::any_of(entries_of(scene),
+  return std::ranges::any_of(held_regions(scene),
                              [&](const FixedDesc& entry) { return in_region(entry, x_w, lowest_m); });
 }
 
@@ -68,7 +84,7 @@ double standing_base_m(const SceneDesc& scene, const std::string& who) {
         scene.source.where(scene.source.has("body.position_mm") ? "body.position_mm" : "body.rotation_deg") + ": " +
         who +
         " knows a body that stands where its shape is made; remove the key, or use contact.backend = \"elastic\"");
-  const std::vector<FixedDesc> entries = entries_of(scene);
+  const std::vector<FixedDesc> entries = held_regions(scene);
   if (entries.size() == 1 && entries[0].region == FixedRegion::kBase) return entries[0].base_height_m;
   throw ConfigError(entry_label(scene, 0) + ": " + who +
                     " knows a body that stands on its base alone; hold it by one base_height_mm, or use "
@@ -81,17 +97,14 @@ Supports supports_of(const SceneDesc& scene, const TetMesh& mesh) {
     take_back(scene.body, unplaced.node_m);
     return of_shape(unplaced);
   }
-  const std::vector<FixedDesc> entries = entries_of(scene);
+  const std::vector<FixedDesc> entries = held_regions(scene);
   const double lowest_m = lowest_of(mesh);
   Supports supports(mesh.node_m.size(), 0);
   for (std::size_t i = 0; i < entries.size(); ++i) {
-    bool any = false;
-    for (std::size_t n = 0; n < supports.size(); ++n) {
-      if (!in_region(entries[i], mesh.node_m[n], lowest_m)) continue;
-      supports[n] |= kHeld[static_cast<std::size_t>(entries[i].holds)];
-      any = true;
-    }
-    if (!any) fail_empty(entry_label(scene, i), mesh);
+    const std::vector<char> in = nodes_in(entries[i], mesh, lowest_m);
+    for (std::size_t n = 0; n < supports.size(); ++n)
+      if (in[n] != 0) supports[n] |= kHeld[static_cast<std::size_t>(entries[i].holds)];
+    if (std::ranges::find(in, 1) == in.end()) fail_empty(entry_label(scene, i), mesh);
   }
   if (std::ranges::all_of(supports, [](std::uint8_t held) { return held == kHoldAll; }))
     throw ConfigError(entry_label(scene, 0) + ": holds every node of the body: nothing could move; make it smaller");

@@ -8,6 +8,9 @@
 
 namespace palpate {
 
+// The regions that hold the body: the scene's, or the default base.
+std::vector<FixedDesc> held_regions(const SceneDesc& scene);
+
 // Whether an entry's region has point `x_w` of a body whose lowest point is at `lowest_m`.
 bool in_region(const FixedDesc& entry, Vec3 x_w, double lowest_m);
 // The same for all entries of the scene, whatever components they hold.

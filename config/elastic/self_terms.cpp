@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <string>
 
 #include "config/elastic/local_law.h"
@@ -16,6 +17,8 @@ namespace {
 // A wall's other side and a block's flanks carry nothing of a patch.
 constexpr double kFacingCosine = 0.5;
 constexpr double kPatchSigmas = 4;
+constexpr std::size_t kTogether = 4;  // nodes whose patches are solved in one pass through the factor
+constexpr double kWider = 1.4;        // deviation of the second patch, of the first's
 
 FacetPlace place_of_node(const std::vector<int>& nodes, int node) {
   const auto local = std::find(nodes.begin(), nodes.end(), node) - nodes.begin();
@@ -91,28 +94,63 @@ double soft_third_order(const SoftMaps& maps, const Eigen::VectorXd& g, const Ei
   return sum;
 }
 
+// Two patches at a node, the second wider.
+struct Met {
+  Eigen::VectorXd u_mpN;  // under the first
+  double sigma_m = 0;     // of the first
+  double give_mpN[2] = {};
+};
+// All nodes at once.
+template <int kDim>
+std::vector<Met> meet(const RestBody<kDim>& body, std::span<const int> nodes, double patch_edges) {
+  const Surface<kDim>& surface = body.surface();
+  const auto sigma = [&](std::size_t i) {
+    return (i % 2 == 0 ? 1 : kWider) * patch_edges * surface.edge_m(nodes[i / 2]);
+  };
+  Eigen::MatrixXd g(body.size(), static_cast<Eigen::Index>(2 * nodes.size()));
+  for (std::size_t i = 0; i < 2 * nodes.size(); ++i) {
+    const int node = nodes[i / 2];
+    g.col(static_cast<Eigen::Index>(i)) =
+        gaussian_patch<kDim>(body, surface.rest(node), node_normal(surface, node), sigma(i));
+  }
+  const Eigen::MatrixXd u = body.solve_all(g);
+  std::vector<Met> met(nodes.size());
+  for (std::size_t i = 0; i < 2 * nodes.size(); ++i) {
+    const auto col = static_cast<Eigen::Index>(i);
+    if (i % 2 == 0) met[i / 2].u_mpN = u.col(col);
+    if (i % 2 == 0) met[i / 2].sigma_m = sigma(i);
+    met[i / 2].give_mpN[i % 2] =
+        g.col(col).dot(u.col(col)) -
+        gaussian_self_compliance_mpN(kDim == 2, body.contact_modulus(), sigma(i), surface.extent_m());
+  }
+  return met;
+}
+
 }  // namespace
 
 template <int kDim>
 std::vector<SelfSample> self_samples(const RestBody<kDim>& body, const std::vector<int>& nodes, double probe_m,
                                      double patch_edges) {
   const Surface<kDim>& surface = body.surface();
-  std::vector<SelfSample> samples;
-  for (const int node : nodes) {
+  for (const int node : nodes)
     if (surface.facets_at(node).empty())
       throw ConfigError("elastic body: contact node " + std::to_string(node) + " lies inside the body");
-    const double sigma = patch_edges * surface.edge_m(node);
-    const Eigen::VectorXd g = gaussian_patch<kDim>(body, surface.rest(node), node_normal(surface, node), sigma),
-                          u = body.solve(g);
-    SelfSample sample;
-    sample.node = node;
-    sample.load_N = g.sparseView();
-    sample.give_mpN =
-        g.dot(u) - gaussian_self_compliance_mpN(kDim == 2, body.contact_modulus(), sigma, surface.extent_m());
-    sample.curvature_1pm = node_curvature(surface, node);
-    const double scale = probe_m / u.cwiseAbs().maxCoeff();
-    sample.third_mpN2 = (body.internal_force(scale * u) + body.internal_force(-scale * u)).dot(u) / (scale * scale);
-    samples.push_back(std::move(sample));
+  std::vector<SelfSample> samples;
+  for (std::size_t first = 0; first < nodes.size(); first += kTogether) {
+    const auto some = std::span(nodes).subspan(first, std::min(kTogether, nodes.size() - first));
+    const std::vector<Met> met = meet(body, some, patch_edges);
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      const double sigma2 = met[i].sigma_m * met[i].sigma_m;
+      const Eigen::VectorXd& u = met[i].u_mpN;
+      SelfSample sample;
+      sample.node = some[i];
+      sample.width_1pmN = (met[i].give_mpN[0] - met[i].give_mpN[1]) / ((kWider * kWider - 1) * sigma2);
+      sample.give_mpN = met[i].give_mpN[0] + sample.width_1pmN * sigma2;
+      sample.curvature_1pm = node_curvature(surface, some[i]);
+      const double scale = probe_m / u.cwiseAbs().maxCoeff();
+      sample.third_mpN2 = (body.internal_force(scale * u) + body.internal_force(-scale * u)).dot(u) / (scale * scale);
+      samples.push_back(sample);
+    }
   }
   return samples;
 }
@@ -122,14 +160,17 @@ SelfTerms self_terms(const RestBody<kDim>& body, const SurfaceModes& modes, cons
                      const std::vector<SelfSample>& samples) {
   SelfTerms terms;
   terms.self_mpN.assign(static_cast<std::size_t>(body.size() / kDim), std::numeric_limits<double>::quiet_NaN());
-  terms.curvature_1pm = terms.second_mpN2 = terms.self_mpN;
+  terms.curvature_1pm = terms.second_mpN2 = terms.width_1pmN = terms.self_mpN;
   terms.length_m = body.surface().extent_m();
   for (const SelfSample& sample : samples) {
     const std::size_t at = static_cast<std::size_t>(sample.node);
-    const Eigen::VectorXd g = sample.load_N, pull = modes.phi_1pm.leftCols(maps.potential.size()).transpose() * g,
+    Eigen::VectorXd g = Eigen::VectorXd::Zero(body.size());
+    g.template segment<kDim>(kDim * sample.node) = -node_normal(body.surface(), sample.node);
+    const Eigen::VectorXd pull = modes.phi_1pm.leftCols(maps.potential.size()).transpose() * g,
                           q1 = pull.cwiseQuotient(maps.potential.lambda());
     terms.nodes.push_back(sample.node);
     terms.curvature_1pm[at] = sample.curvature_1pm;
+    terms.width_1pmN[at] = sample.width_1pmN;
     terms.self_mpN[at] = sample.give_mpN - pull.dot(q1);
     terms.second_mpN2[at] = -0.5 * sample.third_mpN2 - 3 * soft_third_order(maps, g, q1);
   }

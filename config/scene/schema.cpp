@@ -100,10 +100,12 @@ const KeySpec kFem[] = {
     list<&FemDesc::zone_to_m>(kVec3, "zone_to_mm", -10000, 10000, kMilli, "mixed: its highest corner"),
     integer<&FemDesc::zone_layers>("zone_layers", 1, 10,
                                    "mixed: layers of quadratic elements around the nodes in the box"),
-    number_or_auto<&FemDesc::edge_m>("edge_mm", 0.01, 1000, kMilli,
-                                     "about this long an edge of a tetrahedron; auto: an eighth of the largest extent; "
-                                     "box: an even number along x or z makes its mesh symmetric there; "
-                                     "clip, tets: the mesh has its own"),
+    number_or_auto<&FemDesc::edge_m>(
+        "edge_mm", 0.01, 1000, kMilli,
+        "about this long an edge of a tetrahedron; auto: an eighth of the largest extent, and "
+        "where an elastic body's volume by its surface (half a wall) is less, that; "
+        "box: an even number along x or z makes its mesh symmetric there; "
+        "clip, tets: the mesh has its own"),
     integer<&FemDesc::level>("level", 1, 3, "clip: fineness of its mesh; 1 has 717 nodes"),
     choice<&FemDesc::precision>("precision",
                                 "numbers of the compliance table; auto: single where its force error is below 1e-4"),

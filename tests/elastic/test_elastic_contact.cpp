@@ -67,7 +67,7 @@ TEST(ElasticContact, RingBetweenPlatesGoesOval) {
     EXPECT_NEAR(state.force_on_tool_N[0][1], -state.force_on_tool_N[1][1], 0.01 * row.force_N);  // both plates alike
   }
   record_share("worst", worst);
-  EXPECT_LT(worst, 0.025);
+  EXPECT_LT(worst, 0.03);
 }
 
 // The ring under one finger, in full and with half its wall: what the reference says about the wall, the body says too.
@@ -188,7 +188,7 @@ TEST(SlowElastic, SphereOnABlock) {
     worst = std::max(worst, std::abs(state.force_on_tool_N[0][2] / row.force_N - 1));
   }
   record_share("worst", worst);
-  EXPECT_LT(worst, 0.015);
+  EXPECT_LT(worst, 0.025);
 }
 
 // A tongue that bends by a quarter of its length while the ball slides along it.

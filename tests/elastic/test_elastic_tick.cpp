@@ -57,7 +57,7 @@ class ArchInTick : public testing::Test {
   static constexpr double kRadius_m = 0.015;
   static constexpr Vec3 kTop{0, 0.07 + kRadius_m, 0};
   static const BakedScene& scene() {
-    static const BakedScene baked(elastic_scene(arch(10), 35, 8, 1e3 * kRadius_m, 4));
+    static const BakedScene baked(elastic_scene(arch(10), 35, 5, 1e3 * kRadius_m, 4));
     return baked;
   }
 };
@@ -69,7 +69,7 @@ TEST_F(ArchInTick, PressesAsLargeStrainElementsDo) {
 }
 
 TEST_F(ArchInTick, TenTimesTheModulusIsTenTimesTheForce) {
-  SceneDesc stiff = parse_scene(elastic_scene(arch(10), 35, 8, 1e3 * kRadius_m, 4), "test.toml");
+  SceneDesc stiff = parse_scene(elastic_scene(arch(10), 35, 5, 1e3 * kRadius_m, 4), "test.toml");
   stiff.material.youngs_modulus_Pa *= 10;
   const BakedScene other(stiff);
   for (const double depth_m : {5e-4, 3e-3})
@@ -137,8 +137,9 @@ TEST_F(ArchInTick, ForceOfASlideHasNoSteps) {
   EXPECT_LT(largest, 0.01);
 }
 
-TEST_F(ArchInTick, ReleaseAndTeleportsStayFinite) {
-  Bench bench(scene().model());
+TEST(ElasticTeleports, OnAnArchStayFinite) {
+  const BakedScene scene(elastic_scene(arch(10), 35, 12, 15, 4));
+  Bench bench(scene.model());
   elastic::FixedRandom random(1);
   const auto uniform = [&] { return 0.5 * random.symmetric(); };
   for (int i = 0; i < 3000; ++i) {

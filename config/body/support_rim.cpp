@@ -1,0 +1,169 @@
+#include "config/body/support_rim.h"
+
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <vector>
+
+#include "config/body/body_card.h"
+#include "config/body/supports.h"
+
+namespace palpate {
+
+namespace {
+
+// Shares of an edge, from its held corner: a rim nearer to a corner than the first is at it; nearer than the second
+// takes a corner there instead of cutting slivers off.
+constexpr double kAtCorner = 0.02, kMoves = 0.35;
+constexpr double kLeastArea = 0.2;  // of a facet, after one of its corners was moved
+constexpr int kBisections = 40;     // 1e-12 of an edge
+constexpr double kSmoothCos = 0.8;  // between neighbouring facets: corners of sharper edges stay where they are
+
+std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
+
+// The rim of regions that hold the same components.
+class Rim {
+ public:
+  using Inside = std::function<bool(Vec3)>;
+  Rim(Inside inside, SurfaceMesh& mesh) : inside_(std::move(inside)), mesh_(mesh) {}
+
+  void lay() {
+    move_corners();
+    while (cut_edges()) {
+    }
+  }
+
+ private:
+  struct Crossing {
+    double share = 0;  // of the edge, from its held end
+    Vec3 point_m;      // held
+  };
+  // Between a held and a free corner.
+  Crossing crossing(std::int32_t held, std::int32_t free) const {
+    const Vec3 a = mesh_.vertex_m[at(held)], b = mesh_.vertex_m[at(free)];
+    Crossing out{0, a};
+    double end = 1;
+    for (int i = 0; i < kBisections; ++i) {
+      const double middle = 0.5 * (out.share + end);
+      const Vec3 p = a + middle * (b - a);
+      if (inside_(p)) {
+        out = {middle, p};
+      } else {
+        end = middle;
+      }
+    }
+    return out;
+  }
+  bool is_held(std::int32_t v) const { return inside_(mesh_.vertex_m[at(v)]); }
+
+  // Each corner by the least move that takes it to the rim, if that is a short one.
+  void move_corners() {
+    const std::vector<char> is_sharp = sharp_corners();
+    std::map<std::int32_t, Crossing> best;
+    const auto offer = [&](std::int32_t v, double share, Vec3 point_m) {
+      if (is_sharp[at(v)] != 0 || share > kMoves) return;
+      const auto [entry, is_new] = best.try_emplace(v, Crossing{share, point_m});
+      if (!is_new && share < entry->second.share) entry->second = {share, point_m};
+    };
+    for (const Corners& t : mesh_.triangle)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::int32_t a = t[k], b = t[(k + 1) % 3];
+        if (!is_held(a) || is_held(b)) continue;
+        const Crossing at_rim = crossing(a, b);
+        offer(a, at_rim.share, at_rim.point_m);
+        offer(b, 1 - at_rim.share, at_rim.point_m);
+      }
+    const std::vector<std::vector<std::size_t>> facets = facets_of_corners();
+    for (const auto& [v, to] : best) move(v, to.point_m, facets[at(v)]);
+  }
+  // Unless a facet would turn over, or nearly.
+  void move(std::int32_t v, Vec3 to, const std::vector<std::size_t>& facets) {
+    std::vector<Vec3> before;
+    for (const std::size_t t : facets) before.push_back(triangle_cross(mesh_, t));
+    const Vec3 from = mesh_.vertex_m[at(v)];
+    mesh_.vertex_m[at(v)] = to;
+    for (std::size_t i = 0; i < facets.size(); ++i)
+      if (dot(triangle_cross(mesh_, facets[i]), before[i]) < kLeastArea * squared_norm(before[i])) {
+        mesh_.vertex_m[at(v)] = from;
+        return;
+      }
+  }
+  std::vector<std::vector<std::size_t>> facets_of_corners() const {
+    std::vector<std::vector<std::size_t>> facets(mesh_.vertex_m.size());
+    for (std::size_t t = 0; t < mesh_.triangle.size(); ++t)
+      for (const std::int32_t v : mesh_.triangle[t]) facets[at(v)].push_back(t);
+    return facets;
+  }
+
+  std::vector<char> sharp_corners() const {
+    std::vector<char> is_sharp(mesh_.vertex_m.size());
+    const std::vector<Corners> across = triangle_adjacency(mesh_);
+    for (std::size_t t = 0; t < mesh_.triangle.size(); ++t)
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (across[t][k] < 0) continue;
+        const Vec3 a = triangle_cross(mesh_, t), b = triangle_cross(mesh_, at(across[t][k]));
+        if (dot(a, b) >= kSmoothCos * norm(a) * norm(b)) continue;
+        is_sharp[at(mesh_.triangle[t][k])] = is_sharp[at(mesh_.triangle[t][(k + 1) % 3])] = 1;
+      }
+    return is_sharp;
+  }
+
+  // At most one cut a triangle; whether any was made. Every cut takes a crossing away, and makes none: the new corner
+  // is at the rim.
+  bool cut_edges() {
+    using Edge = std::pair<std::int32_t, std::int32_t>;
+    std::map<Edge, std::vector<std::size_t>> sides;
+    for (std::size_t t = 0; t < mesh_.triangle.size(); ++t)
+      for (std::size_t k = 0; k < 3; ++k)
+        sides[std::minmax(mesh_.triangle[t][k], mesh_.triangle[t][(k + 1) % 3])].push_back(t);
+    std::vector<char> is_cut(mesh_.triangle.size());
+    bool any = false;
+    for (const auto& [edge, triangles] : sides) {
+      const bool first = is_held(edge.first);
+      if (first == is_held(edge.second)) continue;
+      if (std::any_of(triangles.begin(), triangles.end(), [&](std::size_t t) { return is_cut[t] != 0; })) {
+        any = true;
+        continue;
+      }
+      const Crossing rim = first ? crossing(edge.first, edge.second) : crossing(edge.second, edge.first);
+      if (rim.share < kAtCorner || rim.share > 1 - kAtCorner) continue;
+      any = true;
+      const auto middle = static_cast<std::int32_t>(mesh_.vertex_m.size());
+      mesh_.vertex_m.push_back(rim.point_m);
+      for (const std::size_t t : triangles) {
+        is_cut[t] = 1;
+        halve(t, edge, middle);
+      }
+    }
+    return any;
+  }
+  void halve(std::size_t t, std::pair<std::int32_t, std::int32_t> edge, std::int32_t middle) {
+    Corners half = mesh_.triangle[t];
+    std::replace(half.begin(), half.end(), edge.first, middle);
+    std::replace(mesh_.triangle[t].begin(), mesh_.triangle[t].end(), edge.second, middle);
+    mesh_.triangle.push_back(half);
+  }
+
+  Inside inside_;
+  SurfaceMesh& mesh_;
+};
+
+}  // namespace
+
+void lay_support_rims(const SceneDesc& scene, SurfaceMesh& mesh) {
+  if (card_of(scene.body.shape).supports != nullptr) return;  // its supports are not regions
+  const double lowest_m = bounds_of(mesh).lower_m.y;
+  const std::vector<FixedDesc> regions = held_regions(scene);
+  std::vector<HeldComponents> laid;
+  for (const FixedDesc& one : regions) {
+    if (std::ranges::find(laid, one.holds) != laid.end()) continue;
+    laid.push_back(one.holds);
+    const auto inside = [&](Vec3 x) {
+      return std::ranges::any_of(
+          regions, [&](const FixedDesc& entry) { return entry.holds == one.holds && in_region(entry, x, lowest_m); });
+    };
+    Rim(inside, mesh).lay();
+  }
+}
+
+}  // namespace palpate
