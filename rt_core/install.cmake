@@ -18,11 +18,20 @@ set(palpate_package ${CMAKE_INSTALL_LIBDIR}/cmake/palpate)
 install(TARGETS palpate_compiler rt_core EXPORT palpate_core ARCHIVE COMPONENT core)
 install(TARGETS palpate_hal palpate_record palpate_config palpate_host EXPORT palpate_host ARCHIVE COMPONENT host)
 install(TARGETS palpate palpate-rt palpate-device RUNTIME COMPONENT programs)
+set(palpate_helped palpate)
 foreach(program palpate-mesh palpate-view)
   if(TARGET ${program})
     install(TARGETS ${program} RUNTIME COMPONENT programs)
+    list(APPEND palpate_helped ${program})
   endif()
 endforeach()
+# What bash completes, from the help of the programs as they were built.
+add_custom_command(OUTPUT ${PROJECT_BINARY_DIR}/palpate.bash
+  COMMAND ${PROJECT_SOURCE_DIR}/sim_host/completion.sh $<TARGET_FILE:palpate> > ${PROJECT_BINARY_DIR}/palpate.bash
+  DEPENDS ${palpate_helped} sim_host/completion.sh VERBATIM)
+add_custom_target(completion ALL DEPENDS ${PROJECT_BINARY_DIR}/palpate.bash)
+install(FILES ${PROJECT_BINARY_DIR}/palpate.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME palpate
+  COMPONENT programs)
 install(DIRECTORY config/scenes config/devices DESTINATION ${CMAKE_INSTALL_DATADIR}/palpate/config COMPONENT programs)
 install(DIRECTORY rt_core DESTINATION include/palpate COMPONENT core FILES_MATCHING PATTERN "*.h")
 install(DIRECTORY hal config sim_host DESTINATION include/palpate COMPONENT host FILES_MATCHING PATTERN "*.h")

@@ -80,7 +80,7 @@ int run_replay(const ReplayOptions& options) {
 void add_replay_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<ReplayOptions>();
   CLI::App* command = app.add_subcommand("replay", "Run a recording again and compare every tick, bit for bit");
-  command->add_option("RECORDING", options->recording, "file written by `palpate run --record`")->required();
+  command->add_option("RECORDING", options->recording, "recording (.plr), written by `palpate run`")->required();
   command->add_option("--image", options->image,
                       "scene image to use; default: the one the recording names, or the one inside it");
   command->add_option("--dump", options->dump, "write one row per recorded tick to this CSV file");
