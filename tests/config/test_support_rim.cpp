@@ -59,7 +59,7 @@ TEST(SupportRim, BasesOfATubeEndAlongEdges) {
 }
 
 TEST(SupportRim, BoxesAndBallsEndAlongEdges) {
-  expect_whole({"shape = \"ellipsoid\"\nsemi_axes_mm = [40, 30, 40]\ntriangles = 1200\n",
+  expect_whole({"shape = \"ellipsoid\"\nhalf_axes_mm = [40, 30, 40]\ntriangles = 1200\n",
                 "[[body.fixed]]\nregion = \"box\"\nfrom_mm = [-50, -1, -50]\nto_mm = [-21.7, 70, 50]\n"
                 "[[body.fixed]]\nregion = \"ball\"\ncentre_mm = [40, 30, 0]\nradius_mm = 17.3\n"},
                5e-3);
