@@ -10,6 +10,7 @@
 #include <fstream>
 #include <iterator>
 #include <random>
+#include <sstream>
 #include <thread>
 
 #include "sim_host/record/mapped_file.h"
@@ -24,9 +25,12 @@ namespace {
 
 using std::chrono::milliseconds;
 
+// What can be read: a process may be gone between opening its file and reading it, on which an iterator would throw.
 std::string text_of(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
 }
 
 class Kills : public BallRun {
