@@ -308,11 +308,9 @@ elastic::ElasticOptions options_of(int soft, int linear) {
 // The patch under a ball is as wide as its contact: Hertz' pressure has the variance a^2 / 5, and a^2 = R d at a dent
 // d. One dent stands for all, an eighth of the law's range: on a wall of 10 mm under a ball of 8, none at all or four
 // times as much changes the force by 1 % (2026-11-22).
-void widen_patches(const ImageContents& image, double max_depth_m, elastic::SelfTerms& self) {
+void widen_patches(double radius_m, double max_depth_m, elastic::SelfTerms& self) {
   constexpr double kDent = 0.125;
-  double radius = 0;
-  for (const ToolPoint& point : image.tool_point) radius = std::max(radius, point.margin_m);
-  const double variance = kDent * max_depth_m * radius / 5;
+  const double variance = kDent * max_depth_m * radius_m / 5;
   for (const int node : self.nodes) self.self_mpN[at(node)] -= self.width_1pmN[at(node)] * variance;
 }
 
@@ -356,9 +354,9 @@ ElasticReport ElasticBake::write(int soft, int linear, double add_c_mpN, ImageCo
   const Parts& parts = *parts_;
   elastic::ElasticBody<3> body = elastic::make_elastic_body(parts.stock, options_of(soft, linear));
   for (const int node : body.self.nodes) body.self.self_mpN[at(node)] += add_c_mpN;
-  widen_patches(image, parts.max_depth_m, body.self);
   double radius = 0;
   for (const ToolPoint& point : image.tool_point) radius = std::max(radius, point.margin_m);
+  widen_patches(radius, parts.max_depth_m, body.self);
   const double least_c = radius > 0 ? -kLeastOwnShare / (2 * parts.rest.contact_modulus() * radius) : 0;
   const SelfField self(parts.rest.surface(), body.self, parts.spacing_m, least_c);
   add_energy(body.maps.potential, image);
