@@ -3,13 +3,13 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 
 #include "config/bake/fem_body.h"
 #include "config/bake/image_rules.h"
 #include "config/body/body.h"
 #include "config/body/body_card.h"
+#include "config/body/edge_cut.h"
 #include "config/body/remesh.h"
 #include "config/body/support_rim.h"
 #include "config/fem/large_strain_elements.h"
@@ -134,14 +134,10 @@ class SmoothSurface {
 // says.
 template <class Wanted, class Place>
 void split_edges(SurfaceMesh& mesh, const Wanted& wanted_m, const Place& place) {
-  using Edge = std::pair<std::int32_t, std::int32_t>;
   for (bool again = true; again;) {
     again = false;
-    std::map<Edge, std::vector<std::size_t>> sides;
-    std::vector<std::pair<double, Edge>> long_edge;
-    for (std::size_t t = 0; t < mesh.triangle.size(); ++t)
-      for (std::size_t k = 0; k < 3; ++k)
-        sides[std::minmax(mesh.triangle[t][k], mesh.triangle[t][(k + 1) % 3])].push_back(t);
+    const auto sides = triangles_at_edges(mesh);
+    std::vector<std::pair<double, MeshEdge>> long_edge;
     for (const auto& [edge, triangles] : sides) {
       const Vec3 a = mesh.vertex_m[at(edge.first)], b = mesh.vertex_m[at(edge.second)];
       if (norm(b - a) > wanted_m(0.5 * (a + b))) long_edge.emplace_back(-norm(b - a), edge);
@@ -149,18 +145,11 @@ void split_edges(SurfaceMesh& mesh, const Wanted& wanted_m, const Place& place) 
     std::sort(long_edge.begin(), long_edge.end());
     std::vector<char> is_cut(mesh.triangle.size());
     for (const auto& [length, edge] : long_edge) {
-      const auto& triangles = sides[edge];
+      const auto& triangles = sides.at(edge);
       if (std::any_of(triangles.begin(), triangles.end(), [&](std::size_t t) { return is_cut[t] != 0; })) continue;
       again = true;
-      const auto middle = static_cast<std::int32_t>(mesh.vertex_m.size());
-      mesh.vertex_m.push_back(place(0.5 * (mesh.vertex_m[at(edge.first)] + mesh.vertex_m[at(edge.second)])));
-      for (const std::size_t t : triangles) {
-        is_cut[t] = 1;
-        Corners half = mesh.triangle[t];
-        std::replace(half.begin(), half.end(), edge.first, middle);
-        std::replace(mesh.triangle[t].begin(), mesh.triangle[t].end(), edge.second, middle);
-        mesh.triangle.push_back(half);
-      }
+      for (const std::size_t t : triangles) is_cut[t] = 1;
+      cut_edge(mesh, edge, triangles, place(0.5 * (mesh.vertex_m[at(edge.first)] + mesh.vertex_m[at(edge.second)])));
     }
   }
 }

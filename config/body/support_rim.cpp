@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "config/body/body_card.h"
+#include "config/body/edge_cut.h"
 #include "config/body/supports.h"
 
 namespace palpate {
@@ -111,11 +112,7 @@ class Rim {
   // At most one cut a triangle; whether any was made. Every cut takes a crossing away, and makes none: the new corner
   // is at the rim.
   bool cut_edges() {
-    using Edge = std::pair<std::int32_t, std::int32_t>;
-    std::map<Edge, std::vector<std::size_t>> sides;
-    for (std::size_t t = 0; t < mesh_.triangle.size(); ++t)
-      for (std::size_t k = 0; k < 3; ++k)
-        sides[std::minmax(mesh_.triangle[t][k], mesh_.triangle[t][(k + 1) % 3])].push_back(t);
+    const auto sides = triangles_at_edges(mesh_);
     std::vector<char> is_cut(mesh_.triangle.size());
     bool any = false;
     for (const auto& [edge, triangles] : sides) {
@@ -128,20 +125,10 @@ class Rim {
       const Crossing rim = first ? crossing(edge.first, edge.second) : crossing(edge.second, edge.first);
       if (rim.share < kAtCorner || rim.share > 1 - kAtCorner) continue;
       any = true;
-      const auto middle = static_cast<std::int32_t>(mesh_.vertex_m.size());
-      mesh_.vertex_m.push_back(rim.point_m);
-      for (const std::size_t t : triangles) {
-        is_cut[t] = 1;
-        halve(t, edge, middle);
-      }
+      for (const std::size_t t : triangles) is_cut[t] = 1;
+      cut_edge(mesh_, edge, triangles, rim.point_m);
     }
     return any;
-  }
-  void halve(std::size_t t, std::pair<std::int32_t, std::int32_t> edge, std::int32_t middle) {
-    Corners half = mesh_.triangle[t];
-    std::replace(half.begin(), half.end(), edge.first, middle);
-    std::replace(mesh_.triangle[t].begin(), mesh_.triangle[t].end(), edge.second, middle);
-    mesh_.triangle.push_back(half);
   }
 
   Inside inside_;
