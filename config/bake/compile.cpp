@@ -27,7 +27,7 @@ namespace {
 // One bake: fills `image` and `report` step by step; later steps use what earlier ones wrote.
 class Compiler {
  public:
-  Compiler(const SceneDesc& scene, const Progress& progress) : scene_(scene), progress_(progress) {}
+  Compiler(const SceneDesc& scene, const BakeRun& run) : scene_(scene), run_(run) {}
 
   CompileResult run() {
     check_scene(scene_);
@@ -45,7 +45,7 @@ class Compiler {
     bake_response(scene_, image_, report_.response, report_.warnings);
     add_device();
     add_skeleton();
-    if (is_elastic()) report_.elastic = bake_elastic_body(scene_, image_, report_.warnings, progress_);
+    if (is_elastic()) report_.elastic = bake_elastic_body(scene_, image_, report_.warnings, run_);
     add_costs();
     report_.array = array_bytes(image_);
     CompileResult result{write_image(image_), std::move(report_)};
@@ -85,7 +85,7 @@ class Compiler {
   }
 
   void add_finite_elements() {
-    const FemBody body = make_fem_body(scene_, report_.warnings, progress_);
+    const FemBody body = make_fem_body(scene_, report_.warnings, run_.progress);
     mesh_ = body.condensed.surface;
     const BvhBuild bvh = add_nodal_body(body.condensed, body.precision, scene_.source.where("body.shape"), image_);
     image_.strain_gauge = body.strain_gauge;
@@ -483,7 +483,7 @@ class Compiler {
   }
 
   const SceneDesc& scene_;
-  const Progress& progress_;
+  const BakeRun& run_;
   double cluster_distance_m_ = 0;  // nodal
   SurfaceMesh mesh_;
   ImageContents image_;
@@ -493,8 +493,6 @@ class Compiler {
 
 }  // namespace
 
-CompileResult compile_scene(const SceneDesc& scene, const Progress& progress) {
-  return Compiler(scene, progress).run();
-}
+CompileResult compile_scene(const SceneDesc& scene, const BakeRun& run) { return Compiler(scene, run).run(); }
 
 }  // namespace palpate

@@ -71,7 +71,12 @@ struct CompileResult {
   std::vector<std::byte> bytes;
   CompileReport report;
 };
+// How a bake goes about it; nothing of that is in the bytes.
+struct BakeRun {
+  Progress progress;
+  unsigned jobs = 0;  // threads for what can go side by side; 0: as many as there are processors
+};
 // Same scene, same bytes: nothing of paths, time or addresses goes into them. Throws ConfigError.
-CompileResult compile_scene(const SceneDesc& scene, const Progress& progress = {});
+CompileResult compile_scene(const SceneDesc& scene, const BakeRun& run = {});
 
 }  // namespace palpate

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 
 #include "config/bake/elastic_check.h"
 #include "config/bake/elastic_image.h"
+#include "config/bake/parallel.h"
 #include "config/scene/schema.h"
 
 namespace palpate {
@@ -95,14 +97,17 @@ class Chooser {
 std::string per_cent(double share) { return number_text(std::round(1e3 * share) / 10) + " %"; }
 
 std::vector<CheckPress> solved_presses(const SceneDesc& scene, const ImageContents& image, const TetMesh& mesh,
-                                       const Progress& progress) {
+                                       const BakeRun& run) {
   const std::int32_t wanted = check_presses_of(scene.elastic);
   std::vector<CheckPress> presses = check_places(scene, image, mesh, wanted);
-  for (std::size_t i = 0; i < presses.size(); ++i) {
-    if (progress) progress("check presses", static_cast<double>(i) / static_cast<double>(presses.size()));
+  std::mutex saying;
+  double done = 0;
+  if (run.progress) run.progress("check presses", 0);
+  for_each_piece(presses.size(), run.jobs, [&](std::size_t i) {
     press_elements(scene, image, mesh, presses[i]);
-  }
-  if (progress) progress("check presses", 1);
+    const std::lock_guard lock(saying);
+    if (run.progress) run.progress("check presses", (done += 1) / static_cast<double>(presses.size()));
+  });
   return presses;
 }
 
@@ -122,7 +127,7 @@ ElasticReport::Check check_of(const CheckPress& press, const CheckedPress& check
 }  // namespace
 
 ElasticReport bake_elastic_body(const SceneDesc& scene, ImageContents& image, std::vector<std::string>& warnings,
-                                const Progress& progress) {
+                                const BakeRun& run) {
   const ElasticBake bake(scene, image, modes_of(scene.elastic), warnings);
   const std::int32_t linear = scene.elastic.linear;
   const auto unchecked = [&] {
@@ -130,7 +135,7 @@ ElasticReport bake_elastic_body(const SceneDesc& scene, ImageContents& image, st
   };
   const ElasticReport plain = unchecked();
   if (check_presses_of(scene.elastic) == 0) return plain;
-  std::vector<CheckPress> presses = solved_presses(scene, image, bake.mesh(), progress);
+  std::vector<CheckPress> presses = solved_presses(scene, image, bake.mesh(), run);
   const std::string where = scene.source.where("body.elastic.check_presses") + ": ";
   if (std::ranges::all_of(presses, [](const CheckPress& press) { return press.depth_m.empty(); })) {
     warnings.push_back(where +

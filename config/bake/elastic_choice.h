@@ -9,6 +9,6 @@ namespace palpate {
 // with the fewest soft ones that meet elastic.check_error at the check presses, or those that miss it least, with a
 // warning. The ball of amplitudes in which V is trusted becomes the one that was checked. Throws ConfigError.
 ElasticReport bake_elastic_body(const SceneDesc& scene, ImageContents& image, std::vector<std::string>& warnings,
-                                const Progress& progress);
+                                const BakeRun& run);
 
 }  // namespace palpate

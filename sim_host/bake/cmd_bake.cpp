@@ -20,6 +20,7 @@ struct BakeOptions {
   std::string scene, output, dump;
   SceneOverlays overlays;
   bool report = false, schema = false;
+  unsigned jobs = 0;
 };
 
 int dump_image(const std::string& path) {
@@ -31,8 +32,8 @@ int dump_image(const std::string& path) {
 int bake(const BakeOptions& options) {
   const std::string output =
       options.output.empty() ? std::filesystem::path(options.scene).stem().string() + ".pal" : options.output;
-  const CompileResult result = compile_scene(load_scene(options.scene, options.overlays),
-                                             isatty(STDERR_FILENO) != 0 ? progress_bar(stderr) : Progress{});
+  const BakeRun run{isatty(STDERR_FILENO) != 0 ? progress_bar(stderr) : Progress{}, options.jobs};
+  const CompileResult result = compile_scene(load_scene(options.scene, options.overlays), run);
   std::string error;
   if (!save_image(output, result.bytes, error)) throw std::runtime_error(output + ": " + error);
   if (options.report) fmt::print("{}", report_text(result.report));
@@ -69,6 +70,13 @@ void add_bake_command(CLI::App& app, int& exit_code) {
                    "lay a file with some of the scene's tables over it, such as another tool or material; repeatable")
       ->needs(scene);
   command->add_option("--set", options->overlays.setting, "KEY=VALUE: set one key; repeatable")->needs(scene);
+  command
+      ->add_option("--jobs", options->jobs,
+                   "threads for check presses, which go side by side; 0: as many as there are processors. The image is "
+                   "the same whatever their number")
+      ->needs(scene)
+      ->capture_default_str()
+      ->check(CLI::Range(0U, 256U));
   auto* dump = command->add_option("--dump", options->dump, "print the contents of an image instead")->excludes(scene);
   command->add_flag("--schema", options->schema, "print all keys of a scene file, as Markdown, instead")
       ->excludes(scene)

@@ -5,6 +5,7 @@
 
 #include "config/bake/elastic_check.h"
 #include "config/bake/elastic_mesh.h"
+#include "config/bake/parallel.h"
 #include "config/scene/config_error.h"
 #include "rt_core/status.h"
 #include "tests/elastic/elastic_tick_scene.h"
@@ -76,6 +77,24 @@ TEST_F(CheckedArch, TickSaysWhatWasNotChecked) {
   EXPECT_EQ(bench.output.status & Status::kDepthBeyondRange, 0u);
   move_to(bench, top - Vec3{0, check.depth_m, 0}, top - Vec3{0, 2 * check.depth_m, 0}, 5e-5);
   EXPECT_NE(bench.output.status & Status::kDepthBeyondRange, 0u);
+}
+
+TEST(ElasticCheck, PiecesAreDoneOnceByHoweverManyThreads) {
+  for (const unsigned jobs : {0U, 1U, 3U, 50U}) {
+    std::vector<int> done(20);
+    for_each_piece(done.size(), jobs, [&](std::size_t i) { ++done[i]; });
+    EXPECT_EQ(done, std::vector<int>(20, 1)) << jobs;
+    try {
+      for_each_piece(done.size(), jobs, [&](std::size_t i) {
+        ++done[i];
+        if (i % 7 == 3) throw ConfigError(std::to_string(i));
+      });
+      ADD_FAILURE() << "nothing was thrown";
+    } catch (const ConfigError& error) {
+      EXPECT_STREQ(error.what(), "3");
+    }
+    EXPECT_EQ(done, std::vector<int>(20, 2)) << jobs;
+  }
 }
 
 TEST(ElasticCheck, KeysWithoutPressesAreRefused) {
