@@ -21,15 +21,30 @@ install(TARGETS palpate palpate-rt palpate-device RUNTIME COMPONENT programs)
 set(palpate_helped palpate)
 foreach(program palpate-mesh palpate-view)
   if(TARGET ${program})
-    install(TARGETS ${program} RUNTIME COMPONENT programs)
     list(APPEND palpate_helped ${program})
   endif()
 endforeach()
+if(TARGET palpate-mesh)
+  install(TARGETS palpate-mesh RUNTIME COMPONENT programs)
+endif()
+if(TARGET palpate-view)
+  install(TARGETS palpate-view RUNTIME COMPONENT viewer)
+endif()
 # What bash completes, from the help of the programs as they were built.
 add_custom_command(OUTPUT ${PROJECT_BINARY_DIR}/palpate.bash
   COMMAND ${PROJECT_SOURCE_DIR}/sim_host/completion.sh $<TARGET_FILE:palpate> > ${PROJECT_BINARY_DIR}/palpate.bash
   DEPENDS ${palpate_helped} sim_host/completion.sh VERBATIM)
 add_custom_target(completion ALL DEPENDS ${PROJECT_BINARY_DIR}/palpate.bash)
+# Manual pages, from the same help.
+set(palpate_manual ${PROJECT_BINARY_DIR}/manual)
+add_custom_command(OUTPUT ${palpate_manual}/palpate.1
+  COMMAND ${PROJECT_SOURCE_DIR}/sim_host/manual.sh $<TARGET_FILE:palpate> ${PROJECT_VERSION} ${palpate_manual}
+  DEPENDS ${palpate_helped} palpate-rt palpate-device sim_host/manual.sh VERBATIM)
+add_custom_target(manual ALL DEPENDS ${palpate_manual}/palpate.1)
+install(DIRECTORY ${palpate_manual}/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT programs PATTERN palpate-view.1 EXCLUDE)
+if(TARGET palpate-view)
+  install(FILES ${palpate_manual}/palpate-view.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT viewer)
+endif()
 install(FILES ${PROJECT_BINARY_DIR}/palpate.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME palpate
   COMPONENT programs)
 install(DIRECTORY config/scenes config/devices DESTINATION ${CMAKE_INSTALL_DATADIR}/palpate/config COMPONENT programs)
@@ -44,3 +59,8 @@ configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/palpate-config.cmake.in 
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/palpate-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/palpate-config.cmake ${PROJECT_BINARY_DIR}/palpate-config-version.cmake
   DESTINATION ${palpate_package} COMPONENT core)
+if(TARGET palpate_python)
+  install(TARGETS palpate_python DESTINATION ${PALPATE_PYTHON_DIR}/palpate COMPONENT python)
+  install(FILES ${python_package_files} DESTINATION ${PALPATE_PYTHON_DIR}/palpate COMPONENT python)
+endif()
+include(${PROJECT_SOURCE_DIR}/sim_host/debian/package.cmake)

@@ -24,12 +24,16 @@ SceneModel::SceneModel(const std::string& path, const SceneOverlays& overlays) {
 
 SceneModel::SceneModel(const SceneDesc& scene) : scene_(scene) { compile(); }
 
+std::span<const std::byte> SceneModel::bytes() const {
+  return file_ ? file_->bytes() : std::span(reinterpret_cast<const std::byte*>(blocks_.data()), size_);
+}
+
 void SceneModel::compile() {
   const CompileResult compiled = compile_scene(*scene_);
-  const std::size_t size = compiled.bytes.size();
-  blocks_.resize((size + kImageAlignment - 1) / kImageAlignment);
-  std::memcpy(blocks_.data(), compiled.bytes.data(), size);
-  const ImageResult result = open_image({reinterpret_cast<const std::byte*>(blocks_.data()), size}, model_);
+  size_ = compiled.bytes.size();
+  blocks_.resize((size_ + kImageAlignment - 1) / kImageAlignment);
+  std::memcpy(blocks_.data(), compiled.bytes.data(), size_);
+  const ImageResult result = open_image(bytes(), model_);
   if (result.error != ImageError::kNone) {
     throw std::runtime_error(fmt::format("{}: the compiled scene fails its own check: {}: {}", scene_->name,
                                          result.field, describe(result.error)));

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,8 @@ class SceneModel {
   explicit SceneModel(const std::string& path, const SceneOverlays& overlays = {});
   explicit SceneModel(const SceneDesc& scene);
   const Model& model() const { return file_ ? file_->model() : model_; }
+  // The whole image.
+  std::span<const std::byte> bytes() const;
   // The description, known only for a .toml.
   const std::optional<SceneDesc>& scene() const { return scene_; }
 
@@ -28,6 +31,7 @@ class SceneModel {
   };
   std::optional<SceneDesc> scene_;
   std::vector<Block> blocks_;
+  std::size_t size_ = 0;  // of the image in them
   std::unique_ptr<ImageFile> file_;
   Model model_;
 };
