@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "rt_core/limits.h"
+#include "rt_core/live.h"
 #include "rt_core/status.h"
 #include "rt_core/vec.h"
 
@@ -47,6 +48,7 @@ struct Input {
   std::uint32_t buttons = 0;
   Drive drive = Drive::kDevice;
   JointCommand joints;
+  LiveSettings live;  // what is wanted; the tick follows in bounded steps
 };
 
 // X(type, name, stage, meaning). Every field of Output, so that replay and the state hash of the determinism test

@@ -15,7 +15,7 @@ void fill_record(const State& state, const Input& input, const Output& output, T
     record.region[record.region_count++] = {region.id,
                                             region.point_count,
                                             region.centre_w,
-                                            region.wrench_w.force_N,
+                                            state.live.stiffness * region.wrench_w.force_N,
                                             region.depth_equivalent_m,
                                             static_cast<std::int32_t>(region.friction),
                                             0};

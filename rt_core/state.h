@@ -211,6 +211,19 @@ struct HighWater {
 
 using Matrix6 = double[36];
 
+#define PALPATE_LIVE_STATE(X)                                           \
+  X(double, stiffness, 1, "of the body, as a factor of what was baked") \
+  X(double, friction, 1, "of its friction")                             \
+  X(double, force_limit, 1, "of the largest force and torque")          \
+  X(double, coupling, 1, "of the virtual coupling")                     \
+  X(std::int32_t, moves, 0, "1: one of them changed in this tick")      \
+  X(std::int32_t, changed, 0, "1: one of them is not 1")
+
+// Live settings as they act now (rt_core/live.h).
+struct SettingsState {
+  PALPATE_STATE_FIELDS_OF(PALPATE_LIVE_STATE)
+};
+
 #define PALPATE_STATE_FIELDS(X)                                                                                 \
   X(std::uint64_t, tick, 0, "ticks since reset")                                                                \
   X(Pose, device_w, {}, "of the last accepted sample")                                                          \
@@ -224,6 +237,7 @@ using Matrix6 = double[36];
   X(double, stale_share, 0, "part of the ticks, lately, that had no fresh sample")                              \
   X(std::uint32_t, next_region_id, 1, "of the next region to be born")                                          \
   X(std::int32_t, first_point, 0, "tool point with which the search begins: where the last tick's share ended") \
+  X(SettingsState, live, {}, "settings that may change during a run")                                           \
   X(SafetyState, safety, {}, "memory of the last gate")
 #define PALPATE_STATE_POOLS(X)                                                            \
   X(PointState, point, model.sizes.n_tool_point, point.size(), "one for each tool point") \

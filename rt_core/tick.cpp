@@ -1,6 +1,7 @@
 #include "rt_core/tick.h"
 
 #include "rt_core/float_mode.h"
+#include "rt_core/live_model.h"
 #include "rt_core/stage_cost.h"
 
 namespace palpate {
@@ -26,15 +27,41 @@ void publish(State& state, const Scratch& scratch, Output& output) PALPATE_RT {
   state.tick += 1;
 }
 
-void tick(const Model& model, State& state, Scratch& scratch, const Input& input, Output& output,
-          const StageProbe& probe) PALPATE_RT {
-  const TickFloatMode mode;
+namespace {
+
+void find_forces(const Model& model, State& state, Scratch& scratch, const Input& input,
+                 const StageProbe& probe) PALPATE_RT {
   sense(model, state, scratch, input);
   probe.passed(Stage::kSense);
   articulate(model, state, scratch, input);
   probe.passed(Stage::kArticulate);
   contact(model, state, scratch, probe);
-  make_safe(model, state, scratch, input, output);
+}
+
+// A tick under settings that are not as they were baked.
+void tick_as_set(const Model& model, State& state, Scratch& scratch, const Input& input, Output& output,
+                 const StageProbe& probe) PALPATE_RT {
+  Model set = model;
+  apply_in_units_of_stiffness(state.live, set.params);
+  find_forces(set, state, scratch, input, probe);
+  to_newtons(state.live, scratch);
+  set.params = model.params;
+  apply(state.live, set.params);
+  make_safe(set, state, scratch, input, output);
+}
+
+}  // namespace
+
+void tick(const Model& model, State& state, Scratch& scratch, const Input& input, Output& output,
+          const StageProbe& probe) PALPATE_RT {
+  const TickFloatMode mode;
+  follow_settings(input.live, state.live);
+  if (state.live.changed == 0) {
+    find_forces(model, state, scratch, input, probe);
+    make_safe(model, state, scratch, input, output);
+  } else {
+    tick_as_set(model, state, scratch, input, output, probe);
+  }
   if (is_beyond_stated(model, scratch.work)) scratch.status |= Status::kWorkBeyondStated;
   probe.passed(Stage::kSafety);
   publish(state, scratch, output);

@@ -42,6 +42,7 @@ int main(int argc, char** argv) {
   palpate::add_explain_command(app, exit_code);
   palpate::add_press_command(app, exit_code);
   palpate::add_run_command(app, exit_code);
+  palpate::add_set_command(app, exit_code);
   palpate::add_replay_command(app, exit_code);
   palpate::add_recover_command(app, exit_code);
   palpate::add_latency_command(app, exit_code);

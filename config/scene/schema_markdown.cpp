@@ -5,6 +5,7 @@
 #include "config/body/body_card.h"
 #include "config/scene/schema.h"
 #include "config/tool/piece_card.h"
+#include "rt_core/live.h"
 
 namespace palpate {
 
@@ -164,6 +165,15 @@ std::string piece_shapes_markdown() {
   return text;
 }
 
+// Of a key that may change while a run goes on (rt_core/live.h).
+std::string live_text(const std::string& path) {
+#define PALPATE_FIELD(name, lowest, highest, key, what) \
+  if (path == key) return ". **Live**: [`" #name "`](live_settings.md)";
+  PALPATE_LIVE_SETTINGS(PALPATE_FIELD)
+#undef PALPATE_FIELD
+  return "";
+}
+
 }  // namespace
 
 std::string schema_markdown() {
@@ -178,7 +188,7 @@ std::string schema_markdown() {
     text += std::string(table.meaning) + "\n\n| key | default | allowed | meaning |\n|---|---|---|---|\n";
     for (const KeySpec& key : table.keys)
       text += "| `" + std::string(key.key) + "` | " + default_text(key, fields) + " | " + allowed_text(key) + " | " +
-              key.meaning + " |\n";
+              key.meaning + live_text(name + "." + key.key) + " |\n";
     if (name == "body") text += "\n" + body_shapes_markdown();
     if (name == "tool.piece") text += "\n" + piece_shapes_markdown();
     text += "\n";

@@ -81,8 +81,8 @@ concept Controller = requires(T c, const Input& in, Output& out, const StageProb
   c.step(in, out, probe);
   c.fill(in, out, record);
 };
-// Telemetry must never wait; commands are level bits, polled once per tick. A source may also have joints(), the
-// command for an articulated tool that came with the last poll.
+// Telemetry must never wait; commands are level bits, polled once per tick. A source may also have joints() and
+// live(): what came with the last poll for an articulated tool, and for the live settings.
 template <typename T>
 concept RecordSink = requires(T sink, const TickRecord& record) {
   sink.publish(record);
@@ -232,6 +232,7 @@ class Loop {
     if (!link_.proven()) input_.commands &= ~Command::kArm;  // nobody there to render it
     if (link_.unheard()) input_.commands |= Command::kUnheard;
     if constexpr (requires { host_.joints(); }) input_.joints = host_.joints();
+    if constexpr (requires { host_.live(); }) input_.live = host_.live();
     input_.device_fault = sample_.faults;
     if (link_.fault()) input_.device_fault |= Fault::kDeviceDeaf;
     std::uint32_t late = stale_ >= options_.silence_fault_ticks ? Fault::kDeviceSilent : 0u;

@@ -81,7 +81,7 @@ void drain_energy(const Model& model, State& state, Scratch& scratch, const Inpu
   const Wrench on_handle = acted(model, safety);
   const bool counts = safety.mode == Mode::kForce && safety.ramp >= 1 && input.stale_ticks == 0 &&
                       input.overrun_ticks == 0 && (scratch.status & Status::kInputRejected) == 0 &&
-                      state.articulation.moved == 0;
+                      state.articulation.moved == 0 && state.live.moves == 0;
   const double made_J = dot(on_handle.force_N, way.translation_m) + dot(on_handle.torque_Nm, way.rotation_rad) +
                         stored_J - safety.stored_J;
   const double most_J = 0.5 * p.force_max_N * p.force_max_N / p.coupling_N_per_m;

@@ -70,6 +70,12 @@ void add_input(std::vector<Field>& fields) {
   fields.push_back(
       {"joint_target", "(21,)<f4", joints + offsetof(JointCommand, target), "commanded positions, rad or m"});
   fields.push_back({"joint_direct", "<u4", joints + offsetof(JointCommand, direct), "bit i: joint i has a position"});
+#define PALPATE_FIELD(name, lowest, highest, key, meaning)                                              \
+  fields.push_back({"live_" #name, format_of<float>(),                                                  \
+                    offsetof(TickRecord, input) + offsetof(Input, live) + offsetof(LiveSettings, name), \
+                    std::string("wanted factor: ") + meaning});
+  PALPATE_LIVE_SETTINGS(PALPATE_FIELD)
+#undef PALPATE_FIELD
   static_assert(kMaxFingers == 5 && kMaxJoints == 21, "the formats above");
 }
 

@@ -103,6 +103,14 @@ StateFault check_safety(const SafetyState& s) noexcept {
   return is_wrench(s.last_device_w) ? StateFault{} : StateFault{"safety.last_device_w"};
 }
 
+StateFault check_live(const SettingsState& live) noexcept {
+#define PALPATE_FIELD(name, lowest, highest, key, meaning) \
+  if (!(live.name >= lowest && live.name <= highest)) return {"live." #name};
+  PALPATE_LIVE_SETTINGS(PALPATE_FIELD)
+#undef PALPATE_FIELD
+  return {};
+}
+
 StateFault check_articulation(const ArticulationState& a) noexcept {
   if (a.started < 0 || a.started > 1 || a.moved < 0 || a.moved > 1) return {"articulation.started"};
   for (int32_t i = 0; i < kMaxFingers; ++i)
@@ -125,7 +133,7 @@ StateFault check_state(const Model& model, const State& state) noexcept {
   const StateFault faults[] = {
       check_poses(state),        check_points(model, state), check_regions(state),
       check_nodes(model, state), check_safety(state.safety), check_articulation(state.articulation),
-      check_elastic(state),
+      check_elastic(state),      check_live(state.live),
   };
   for (const StateFault& fault : faults)
     if (fault.field != nullptr) return fault;

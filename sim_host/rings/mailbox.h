@@ -23,7 +23,7 @@
 namespace palpate {
 
 inline constexpr std::uint64_t kMailboxMagic = 0x31304C49414D504Cull;  // bytes "LPMAIL01"
-inline constexpr std::uint32_t kMailboxVersion = 2;
+inline constexpr std::uint32_t kMailboxVersion = 3;
 
 // What the host asks for. Levels, not events: the newest replaces the older ones.
 struct HostCommand {
@@ -32,6 +32,7 @@ struct HostCommand {
   std::uint32_t quit = 0;        // 1: ramp to zero force, then leave the loop
   std::uint64_t heartbeat = 0;   // +1 several times a second while the host lives
   JointCommand joints;           // for an articulated tool; reserved must be 0
+  LiveSettings live;             // what is wanted of the settings that may change during a run
   std::uint64_t reserved = 0;    // must be 0
 };
 static_assert(std::is_trivially_copyable_v<HostCommand> && sizeof(HostCommand) % 8 == 0);
@@ -89,6 +90,11 @@ class MailboxWriter {
     current_.joints = joints;
     publish();
   }
+  void set_live(const LiveSettings& live) noexcept {
+    current_.generation += 1;
+    current_.live = live;
+    publish();
+  }
   void beat() noexcept {
     current_.heartbeat += 1;
     publish();
@@ -132,7 +138,7 @@ class MailboxReader {
     HostCommand copy;
     if (region_ == nullptr || !read(copy)) return MailboxResult::kBusy;
     if ((copy.commands & ~kKnownCommands) != 0 || copy.quit > 1 || copy.reserved != 0) return MailboxResult::kInvalid;
-    if (!is_valid(copy.joints)) return MailboxResult::kInvalid;
+    if (!is_valid(copy.joints) || !is_valid(copy.live)) return MailboxResult::kInvalid;
     if (copy.generation < generation_) return MailboxResult::kInvalid;
     generation_ = copy.generation;
     command = copy;

@@ -38,7 +38,7 @@
 namespace palpate {
 
 inline constexpr std::uint64_t kTelemetryMagic = 0x3130544C4554504Cull;  // bytes "LPTELT01"
-inline constexpr std::uint32_t kTelemetryVersion = 1;
+inline constexpr std::uint32_t kTelemetryVersion = 2;
 // Slots of the ring: 4 s at 1 kHz, so an ordinary process under load does not lose records. Overflow: the oldest
 // record is overwritten and the reader counts it as lost.
 inline constexpr std::uint64_t kTelemetryCapacity = 4096;
@@ -79,6 +79,8 @@ constexpr std::uint64_t record_layout_hash() noexcept {
                                  offsetof(Input, drive),
                                  offsetof(Input, joints),
                                  sizeof(JointCommand),
+                                 offsetof(Input, live),
+                                 sizeof(LiveSettings),
                                  sizeof(Output),
                                  offsetof(Output, contact_w),
                                  offsetof(Output, tool_w),

@@ -50,6 +50,8 @@ class HostPort {
   void host_has_died() noexcept { host_died_.store(true, std::memory_order_relaxed); }
   // What the host last asked of an articulated tool's joints; open without a host.
   const JointCommand& joints() const noexcept { return command_.joints; }
+  // What it last asked of the live settings; as they were baked without a host.
+  const LiveSettings& live() const noexcept { return command_.live; }
   // Fault bits; they stay for the rest of this controller's life.
   std::uint32_t faults() const noexcept { return faults_; }
 

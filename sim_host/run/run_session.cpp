@@ -26,6 +26,7 @@
 #include "sim_host/run/device_process.h"
 #include "sim_host/run/hand_path_file.h"
 #include "sim_host/run/host_time.h"
+#include "sim_host/run/settings_port.h"
 #include "sim_host/run/socket_pair.h"
 #include "sim_host/run/status_line.h"
 #include "sim_host/tick_memory.h"
@@ -209,6 +210,7 @@ class Watch {
     while (next() && time_.elapsed_s() < options_.duration_s && stop_signal == 0 && !faulted_ && !waits_in_vain()) {
       if (options_.companion.goes_on && !options_.companion.goes_on()) break;
       tell_joints();
+      tell_live();
       look();
       report(time_.elapsed_s(), false);
     }
@@ -239,6 +241,13 @@ class Watch {
     if (options_.companion.joints) told = options_.companion.joints();
     if (!told && !joints_.empty()) told = joints_.at(time_.elapsed_s());
     if (told) link_.mailbox().set_joints(*told);
+  }
+
+  void tell_live() {
+    const LiveSettings before = live_;
+    if (options_.companion.live) live_ = options_.companion.live().value_or(live_);
+    settings_.poll(live_);
+    if (!(live_ == before)) link_.mailbox().set_live(live_);
   }
 
   // The next look: false when there is nobody left to look at.
@@ -286,6 +295,8 @@ class Watch {
   const JointScript& joints_;
   SharedSummary& summary_;
   TelemetryReader reader_;
+  SettingsPort settings_;
+  LiveSettings live_;
   StatusLine line_;
   bool show_;
   std::unique_ptr<RunSummary> all_, recent_;

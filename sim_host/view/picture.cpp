@@ -34,15 +34,15 @@ std::vector<ForceArrow> force_arrows(const Model& model, const State& state, dou
   double largest = force_max_N;
   for (const Region& region : state.region) {
     if (force_max_N > 0 || region.id == 0 || region.lost_ticks > 0) continue;
-    largest = std::max(largest, norm(region.wrench_w.force_N));
+    largest = std::max(largest, state.live.stiffness * norm(region.wrench_w.force_N));
   }
   std::vector<ForceArrow> arrows;
   const double size = model.params.surface_size_m;
   for (const Region& region : state.region) {
-    const double force = norm(region.wrench_w.force_N);
+    const double force = state.live.stiffness * norm(region.wrench_w.force_N);
     if (region.id == 0 || region.lost_ticks > 0 || !(force > 0.01 * largest) || !(largest > 0)) continue;
     const double length = size * (0.12 + 0.33 * std::min(1.0, force / largest));
-    arrows.push_back({region.centre_w, region.centre_w + (length / force) * region.wrench_w.force_N, force});
+    arrows.push_back({region.centre_w, region.centre_w + length * unit_or(region.wrench_w.force_N, {}), force});
   }
   return arrows;
 }
@@ -378,7 +378,7 @@ void Renderer::draw_title(Canvas& canvas) const {
   int regions = 0;
   for (const Region& region : state_.region) {
     if (region.id == 0 || region.lost_ticks > 0) continue;
-    force += region.wrench_w.force_N;
+    force += state_.live.stiffness * region.wrench_w.force_N;
     depth = std::max(depth, region.depth_max_m);
     ++regions;
   }

@@ -2,9 +2,13 @@
 #pragma once
 
 #include <atomic>
+#include <mutex>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "hal/system/shared_memory.h"
+#include "rt_core/live.h"
 #include "sim_host/rings/hand_target.h"
 
 namespace palpate {
@@ -24,12 +28,24 @@ class Steering {
   void close_to(double closing) { closing_.store(static_cast<float>(closing)); }
   // Below 0: nobody asked yet.
   float closing() const { return closing_.load(); }
+  // What is wanted of the run's live settings from now on.
+  void set(const LiveSettings& wanted) {
+    const std::lock_guard lock(mutex_);
+    wanted_ = wanted;
+  }
+  // Told once; nothing when nothing new is wanted.
+  std::optional<LiveSettings> take_settings() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(wanted_, std::nullopt);
+  }
   // For the simulated device (palpate-device --hand-fd).
   int fd() const { return memory_.fd(); }
 
  private:
   SharedMemory memory_;
   HandTargetWriter writer_;
+  std::mutex mutex_;
+  std::optional<LiveSettings> wanted_;
   std::atomic<float> closing_{-1};
   std::atomic<std::uint64_t> pulls_{0};
 };

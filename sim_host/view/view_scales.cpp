@@ -41,7 +41,8 @@ std::vector<DrawnForce> drawn_forces(const State& state) {
   std::vector<DrawnForce> forces;
   for (const Region& region : state.region) {
     if (region.id == 0 || region.lost_ticks > 0) continue;
-    forces.push_back({region.centre_w, region.wrench_w.force_N, region.friction_force_w});
+    const double unit_N = state.live.stiffness;
+    forces.push_back({region.centre_w, unit_N * region.wrench_w.force_N, unit_N * region.friction_force_w});
   }
   const auto size = [](const DrawnForce& force) { return norm(force.force_N); };
   std::ranges::sort(forces, std::greater{}, size);

@@ -86,6 +86,11 @@ void time_span(const PanelScene& scene, double& from_s, double& until_s) {
   if (!(until_s > from_s + 0.1)) until_s = from_s + 0.1;
 }
 
+std::string slider_name(std::string name) {
+  std::ranges::replace(name, '_', ' ');
+  return name;
+}
+
 void plots(const PanelScene& scene, double now_s) {
   double from_s = 0, until_s = 1;
   time_span(scene, from_s, until_s);
@@ -220,6 +225,23 @@ void event_marks(ImVec2 low, ImVec2 high, const PanelScene& scene, double first_
   }
 }
 
+// Live settings, as the run has them now; a slider that is moved says what is wanted.
+void settings_block(const PanelScene& scene) {
+  const SettingsState& now = scene.frame->state->live;
+  LiveSettings wanted = {static_cast<float>(now.stiffness), static_cast<float>(now.friction),
+                         static_cast<float>(now.force_limit), static_cast<float>(now.coupling)};
+  bool moved = false;
+  ImGui::PushItemWidth(0.5f * ImGui::GetContentRegionAvail().x);
+#define PALPATE_FIELD(name, lowest, highest, key, meaning)                                          \
+  moved |= ImGui::SliderFloat(slider_name(#name).c_str(), &wanted.name, static_cast<float>(lowest), \
+                              static_cast<float>(highest), "x %.2f", ImGuiSliderFlags_AlwaysClamp); \
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", meaning);
+  PALPATE_LIVE_SETTINGS(PALPATE_FIELD)
+#undef PALPATE_FIELD
+  ImGui::PopItemWidth();
+  if (moved) scene.steering->set(wanted);
+}
+
 }  // namespace
 
 void side_panel(ImVec2 low, ImVec2 size, const PanelScene& scene, ViewLayers& layers, OrbitCamera& camera,
@@ -237,6 +259,7 @@ void side_panel(ImVec2 low, ImVec2 size, const PanelScene& scene, ViewLayers& la
     ImGui::Spacing();
     times(scene, tick);
     ImGui::Spacing();
+    if (scene.is_live && scene.steering != nullptr) settings_block(scene);
   }
   ImGui::Separator();
   switches(layers, camera, reset_camera);

@@ -7,6 +7,7 @@
 
 #include "sim_host/view/frame_maker.h"
 #include "sim_host/view/player.h"
+#include "sim_host/view/steering.h"
 #include "sim_host/viewer/overlay.h"
 #include "sim_host/viewer/scene_renderer.h"
 
@@ -18,6 +19,7 @@ struct PanelScene {
   const ViewFrame* frame;  // null before the first
   bool is_live = false;    // a run goes on
   bool can_steer = false;  // its device is the mouse
+  Steering* steering = nullptr;
 };
 
 // At the right, over the given rectangle of the window.

@@ -136,7 +136,7 @@ class Viewer {
       draw_overlay(list, {0, 0}, place.scene_size, camera_, overlay(colours, forces), window_.fonts());
     }
     bool reset = false;
-    const PanelScene panels{run_.model, run_.track, shown_.get(), live(), run_.can_steer() && live()};
+    const PanelScene panels{run_.model, run_.track, shown_.get(), live(), run_.can_steer() && live(), run_.steering};
     if (panel_) side_panel(place.panel_at, place.panel_size, panels, layers_, camera_, reset);
     timeline(place.timeline_at, place.timeline_size, panels, player_);
     if (reset && shown_) reset_camera(*shown_->state);

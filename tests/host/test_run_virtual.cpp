@@ -14,6 +14,10 @@
 #include <thread>
 #include <vector>
 
+#include "sim_host/record/mapped_file.h"
+#include "sim_host/record/recorded_image.h"
+#include "sim_host/record/replay.h"
+#include "sim_host/run/settings_port.h"
 #include "tests/support/ball_run.h"
 
 namespace palpate {
@@ -140,6 +144,60 @@ TEST_F(RunVirtual, BelongsToTheSimulatedDevice) {
   EXPECT_TRUE(runs_in_virtual_time(options_));
   options_.device = "loopback:elsewhere";
   EXPECT_THROW(runs_in_virtual_time(options_), std::runtime_error);
+}
+
+// Settings asked for from outside and by a companion: they come with the recording, and the replay makes the same bits.
+TEST_F(RunVirtual, LiveSettingsAreRecordedAndReplayed) {
+  int look = 0;
+  std::string answer, refusal;
+  std::thread asker;
+  options_.companion.look = std::chrono::milliseconds(10);
+  options_.companion.live = [&]() -> std::optional<LiveSettings> {
+    if (++look == 50) return LiveSettings{0.5f, 1, 1, 1};
+    if (look == 90) {
+      asker = std::thread([&] {
+        answer = ask_run(getpid(), "friction=0 coupling=0.5");
+        try {
+          ask_run(getpid(), "stiffness=7");
+        } catch (const std::runtime_error& error) {
+          refusal = error.what();
+        }
+      });
+      // It waits for the run's looks; give it the time to ask.
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    return std::nullopt;
+  };
+  options_.pace = true;
+  const RunResult result = run_session(options_);
+  asker.join();
+  EXPECT_EQ(answer, "stiffness=0.5 friction=0 force_limit=1 coupling=0.5");
+  EXPECT_NE(refusal.find("0.1 to 2"), std::string::npos) << refusal;
+  EXPECT_EQ(result.summary.fault, 0u);
+
+  const MappedFile file(options_.record);
+  RecordingReader recording(file.bytes());
+  const RecordedScene scene(recording, "");
+  bool softened = false, both = false;
+  const ReplayResult again = replay(recording, scene.model(), [&](const TickRecord& record, const TickRecord&) {
+    softened = softened || record.input.live == LiveSettings{0.5f, 1, 1, 1};
+    both = both || record.input.live == LiveSettings{0.5f, 0, 1, 0.5f};
+  });
+  EXPECT_TRUE(again.identical()) << again.stage << " " << again.field;
+  EXPECT_TRUE(softened && both);
+}
+
+TEST(SettingsPort, WordsAreAppliedAllOrNone) {
+  LiveSettings settings;
+  EXPECT_EQ(apply_settings("stiffness=0.5  force_limit=0.1", settings), "");
+  EXPECT_EQ(settings, (LiveSettings{0.5f, 1, 0.1f, 1}));
+  for (const char* wrong : {"stiffness", "stiffness=", "stiffness=nan", "stiffness=1x", "force_limit=1.1", "mass=1",
+                            "friction=1 coupling=0", "=1", "stiffness=inf"}) {
+    EXPECT_NE(apply_settings(wrong, settings), "") << wrong;
+    EXPECT_EQ(settings, (LiveSettings{0.5f, 1, 0.1f, 1})) << wrong;
+  }
+  EXPECT_EQ(settings_text(settings), "stiffness=0.5 friction=1 force_limit=0.1 coupling=1");
+  EXPECT_THROW(ask_run(getpid(), ""), std::runtime_error);  // no run here
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <random>
 #include <thread>
@@ -239,6 +240,10 @@ TEST(Mailbox, InvalidContentsAreRefused) {
   EXPECT_EQ(result_of([](HostCommand&) {}), MailboxResult::kAccepted);
   EXPECT_EQ(result_of([](HostCommand& c) { c.commands |= 1u << 7; }), MailboxResult::kInvalid);
   EXPECT_EQ(result_of([](HostCommand& c) { c.quit = 2; }), MailboxResult::kInvalid);
+  EXPECT_EQ(result_of([](HostCommand& c) { c.live = {0.5f, 0, 0.05f, 1}; }), MailboxResult::kAccepted);
+  EXPECT_EQ(result_of([](HostCommand& c) { c.live.force_limit = 1.01f; }), MailboxResult::kInvalid);
+  EXPECT_EQ(result_of([](HostCommand& c) { c.live.stiffness = std::numeric_limits<float>::quiet_NaN(); }),
+            MailboxResult::kInvalid);
   EXPECT_EQ(result_of([](HostCommand& c) { c.reserved = 1; }), MailboxResult::kInvalid);
   EXPECT_EQ(result_of([](HostCommand& c) { c.generation -= 1; }), MailboxResult::kInvalid);
   // Joint commands: fractions, finite positions, known joints.
