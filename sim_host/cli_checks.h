@@ -2,8 +2,11 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "sim_host/doctor/certify.h"
 
 namespace palpate {
 
@@ -29,6 +32,25 @@ inline CLI::Validator number_in(double lowest, double highest) {
         if (CLI::detail::lexical_cast(text, value) && value >= lowest && value <= highest) return std::string();
         return text + " is not a number from " + CLI::detail::to_string(lowest) + " to " +
                CLI::detail::to_string(highest);
+      },
+      "");
+}
+
+// For transform(): seconds, or 10s, 5m, 1h, 1h30m; the option gets seconds.
+inline CLI::Validator duration_in(double lowest_s, double highest_s) {
+  return CLI::Validator(
+      [lowest_s, highest_s](std::string& text) {
+        double seconds = 0;
+        if (const std::optional<double> told = parse_duration_s(text)) {
+          seconds = *told;
+        } else if (!CLI::detail::lexical_cast(text, seconds)) {
+          return text + " is no duration such as 10s, 5m or 1h";
+        }
+        if (!(seconds >= lowest_s && seconds <= highest_s))
+          return text + " is not a duration from " + CLI::detail::to_string(lowest_s) + " s to " +
+                 CLI::detail::to_string(highest_s) + " s";
+        text = CLI::detail::to_string(seconds);
+        return std::string();
       },
       "");
 }

@@ -21,6 +21,15 @@ std::string unknown_command(const CLI::App& app, const std::string& word) {
   return text + "; `palpate --help` says what they do";
 }
 
+// What `palpate` alone says.
+constexpr char kWelcome[] =
+    "Palpate: feel soft objects. Three things to begin with, from the folder it was fetched into:\n"
+    "  palpate run config/scenes/ellipsoid_mallet.toml    a simulated hand presses a rubber ellipsoid\n"
+    "  palpate view config/scenes/ellipsoid_mallet.toml   your mouse is the device\n"
+    "  palpate press config/scenes/ring.toml --plot f.svg force against time, no device at all\n"
+    "`palpate --help` lists every command, `palpate COMMAND --help` what one can do. Installed scenes: "
+    "/usr/share/palpate/config\n";
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -52,6 +61,10 @@ int main(int argc, char** argv) {
   palpate::add_feel_command(app, exit_code);
   palpate::add_doctor_command(app, exit_code);
   palpate::add_device_test_command(app, exit_code);
+  if (argc == 1) {
+    std::fputs(kWelcome, stdout);
+    return palpate::kExitOk;
+  }
   if (const std::string unknown = argc > 1 ? unknown_command(app, argv[1]) : ""; !unknown.empty()) {
     std::fprintf(stderr, "palpate: %s\n", unknown.c_str());
     return palpate::kExitUsage;

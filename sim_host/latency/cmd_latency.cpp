@@ -186,9 +186,9 @@ void add_latency_command(CLI::App& app, int& exit_code) {
                                 "follow the recording of a run that is still going on; default file: run.plr")
                    ->expected(0, 1)
                    ->excludes(recording);
-  command->add_option("--duration", options->measure.duration_s, "seconds to measure")
+  command->add_option("--duration", options->measure.duration_s, "how long to measure: seconds, or 10s, 5m, 1h")
       ->capture_default_str()
-      ->check(number_in(0.01, 604800))
+      ->transform(duration_in(0.01, 604800))
       ->excludes(recording);
   command->add_option("--cpu", options->measure.cpu, "CPU to measure on; -1: any")
       ->capture_default_str()

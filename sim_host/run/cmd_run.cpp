@@ -108,9 +108,9 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command->add_option("--profile", options->profile,
                       "what the device can do (config/devices/*.toml; docs/devices.md): needed on can: and usb:; the "
                       "simulated device of a .toml scene becomes like it");
-  command->add_option("--duration", options->duration_s, "seconds")
+  command->add_option("--duration", options->duration_s, "seconds, or 10s, 5m, 1h")
       ->capture_default_str()
-      ->check(number_in(0.1, 86400));
+      ->transform(duration_in(0.1, 86400));
   CLI::Option* virtual_time =
       command->add_flag("--virtual-time", settings->virtual_time,
                         "controller, simulated device and hand in lock step: as fast as the machine can, the same bits "

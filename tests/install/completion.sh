@@ -47,6 +47,7 @@ expect 'palpate run a.toml --device can:' can0 can1
 COMP_WORDBREAKS=$' \t\n'
 expect 'palpate run a.toml --device can:' can:can0 can:can1
 
+grep -q '^  palpate run config/scenes/' <<<"$("$palpate")" || { echo "palpate alone does not say how to begin"; problems=$((problems + 1)); }
 commands=$("$palpate" --help | sed -n 's/^  \([a-z-]*\)   .*/\1/p')
 [ "$(wc -w <<<"$commands")" -ge 12 ] || { echo "the help names too few commands: $commands"; exit 1; }
 for command in $commands; do
