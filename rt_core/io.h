@@ -68,6 +68,11 @@ struct Input {
   X(std::int32_t, regions, "rows", "in contact")                                                                     \
   X(std::int32_t, contacts, "rows", "in contact")                                                                    \
   X(std::int32_t, reserved, "safety", "0")                                                                           \
+  X(Vec3, handle_w_m, "safety", "where the tick took the handle to be: the local model's point")                     \
+  X(Vec3, felt_along_N_per_m, "safety",                                                                              \
+    "xx, yy, zz of the stiffness the handle feels there: a device that evaluates the local model pushes with "       \
+    "device_w - felt (x - handle_w_m); zero for a device that holds forces")                                         \
+  X(Vec3, felt_across_N_per_m, "safety", "its yz, xz, xy")                                                           \
   X(Wrench, palm_w, "account",                                                                                       \
     "hand only: what the palm must exert on the body to balance fingers and weight, about "                          \
     "the tool's origin")

@@ -59,6 +59,14 @@ namespace palpate {
   X(std::int32_t, elastic_soft, "-", 0, kMaxSoftModes, "soft modes: nonlinear")                        \
   X(std::int32_t, elastic_linear, "-", 0, kMaxLinearModes, "linear modes: through which regions meet") \
   X(double, elastic_radius_rootJ, "J^1/2", 0, 1e6, "the soft energy is a quartic up to here, then goes on by tangents")
+// Relaxation of the body (rt_core/contact/relaxation.h): up to three Prony terms.
+#define PALPATE_RELAXATION_PARAMS(X)                                                                              \
+  X(double, relax_share_1, "-", 0, 1, "part of the stiffness that relaxes with the first time constant; 0: none") \
+  X(double, relax_share_2, "-", 0, 1, "with the second")                                                          \
+  X(double, relax_share_3, "-", 0, 1, "with the third")                                                           \
+  X(double, relax_kept_1, "-", 0, 1, "exp(-T / tau) of the first: kept from tick to tick")                        \
+  X(double, relax_kept_2, "-", 0, 1, "of the second")                                                             \
+  X(double, relax_kept_3, "-", 0, 1, "of the third")
 // Friction.
 #define PALPATE_FRICTION_PARAMS(X)                                                                    \
   PALPATE_CHOICE_PARAM(X, FrictionLaw, friction_law, "limit and motion of friction")                  \
@@ -90,6 +98,10 @@ namespace palpate {
   X(double, coupling_Nm_per_rad, "N*m/rad", 1e-6, 1e4, "rotational stiffness of the virtual coupling")        \
   X(double, coupling_Ns_per_m, "N*s/m", 0, 1e4, "damping of the virtual coupling")                            \
   X(double, delay_s, "s", 0, 0.1, "of the device, from sample to force, beyond the tick")                     \
+  X(double, local_period_s, "s", 0, 0.1,                                                                      \
+    "of the device's own evaluation of the local contact model; 0: it has none, forces are held")             \
+  X(double, encoder_step_m, "m", 0, 0.1, "of the device: within it the handle's position is observed")        \
+  X(double, encoder_step_rad, "rad", 0, 1, "and its orientation")                                             \
   X(double, force_max_N, "N", 0, kWireForceMax_N, "magnitude limit of the rendered force")                    \
   X(double, torque_max_Nm, "N*m", 0, kWireTorqueMax_Nm, "magnitude limit of the rendered torque")             \
   X(double, force_rate_max_N_per_s, "N/s", 1, 1e7, "fault limiter of the force change")                       \
@@ -113,6 +125,7 @@ namespace palpate {
   G("whole tips and tables", PALPATE_TIP_PARAMS, kOfTips)                          \
   G("nodes of a finite-element body", PALPATE_NODE_PARAMS, kOfNodes)               \
   G("elastic body", PALPATE_ELASTIC_PARAMS, kOfElastic)                            \
+  G("relaxation", PALPATE_RELAXATION_PARAMS, kOfPoints | kOfTips | kOfElastic)     \
   G("friction", PALPATE_FRICTION_PARAMS, kOfAll)                                   \
   G("regions, and how they influence one another", PALPATE_REGION_PARAMS, kOfAll)  \
   G("the shape as drawn, and beams", PALPATE_SKELETON_PARAMS, kOfPoints | kOfTips) \
@@ -125,6 +138,7 @@ namespace palpate {
   PALPATE_TIP_PARAMS(X)         \
   PALPATE_NODE_PARAMS(X)        \
   PALPATE_ELASTIC_PARAMS(X)     \
+  PALPATE_RELAXATION_PARAMS(X)  \
   PALPATE_FRICTION_PARAMS(X)    \
   PALPATE_REGION_PARAMS(X)      \
   PALPATE_SKELETON_PARAMS(X)    \

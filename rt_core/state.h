@@ -226,13 +226,17 @@ struct SettingsState {
 
 #define PALPATE_STATE_FIELDS(X)                                                                                 \
   X(std::uint64_t, tick, 0, "ticks since reset")                                                                \
-  X(Pose, device_w, {}, "of the last accepted sample")                                                          \
+  X(Pose, device_w, {}, "of the handle: the last accepted sample, smoothed within the encoder's step")          \
   X(Pose, device_previous_w, {}, "of the one before")                                                           \
   X(Pose, tool_w, {}, "at which this tick's contact was evaluated")                                             \
   X(Pose, tool_previous_w, {}, "and the last tick's")                                                           \
   X(Matrix6, contact_stiffness, {}, "tangent (force, torque about the tool's origin), row-major")               \
   X(std::int32_t, started, 0, "0: the next sample is the first")                                                \
   X(std::int32_t, rejected_ticks, 0, "consecutive samples found implausible")                                   \
+  X(Pose, told_w, {}, "of the last accepted sample, as it came")                                                \
+  X(Vec3, observed_m_per_s, {}, "velocity with which device_w goes on between the encoder's steps")             \
+  X(Vec3, observed_rad_per_s, {}, "and turns")                                                                  \
+  X(Vec3, relaxed_rootJ, {}, "how far each relaxation term has yielded: root of twice an energy")               \
   X(Vec3, hand_velocity_m_per_s, {}, "of the handle, smoothed: bridges lost samples")                           \
   X(double, stale_share, 0, "part of the ticks, lately, that had no fresh sample")                              \
   X(std::uint32_t, next_region_id, 1, "of the next region to be born")                                          \

@@ -1,4 +1,5 @@
 #include "config/bake/compile.h"
+#include "config/bake/time_params.h"
 
 #include <algorithm>
 #include <cmath>
@@ -358,7 +359,8 @@ class Compiler {
   void add_device() {
     ModelParams& p = image_.params;
     const DeviceDesc& d = scene_.device;
-    report_.bound = admissible_stiffness(d.damping_Ns_per_m, d.friction_N, d.encoder_step_m, d.period_s, d.delay_s);
+    report_.bound =
+        admissible_stiffness(d.damping_Ns_per_m, d.friction_N, d.encoder_step_m, d.period_s, d.delay_s, d.local_Hz);
     report_.rotational_bound =
         admissible_stiffness(d.damping_Nms_per_rad, d.friction_Nm, d.encoder_step_rad, d.period_s, d.delay_s);
     p.coupling_N_per_m = coupling(d.coupling_N_per_m, report_.bound, 1, "device.coupling_N_per_m", "N/m");
@@ -368,8 +370,7 @@ class Compiler {
     report_.coupling_Nm_per_rad = p.coupling_Nm_per_rad;
     p.period_s = d.period_s;
     p.delay_s = d.delay_s;
-    p.coupling_Ns_per_m =
-        is_auto(d.coupling_Ns_per_m) ? p.coupling_N_per_m * (0.5 * d.period_s + d.delay_s) : d.coupling_Ns_per_m;
+    set_times(scene_, p);
     p.force_max_N = d.force_max_N;
     p.torque_max_Nm = d.torque_max_Nm;
     // All of it within 5 ms: above what a hand's tap on a wall asks for, and still able to act on a device of any size.

@@ -59,6 +59,8 @@ struct MaterialDesc {
   double youngs_modulus_Pa = 3e6;
   double poisson_ratio = 0.5;
   double density_kg_per_m3 = 1100;
+  Vec3 relaxation_share{0, 0, 0};
+  Vec3 relaxation_s{1, 1, 1};
   bool legacy_paper_material = false;
 };
 // One place where the body is held; see config/body/supports.h.
@@ -209,6 +211,7 @@ struct DeviceDesc {
 #define PALPATE_KEY(member, key, value, lowest, highest, scale, meaning) double member = value;
   PALPATE_PROFILE_KEYS(PALPATE_KEY)
 #undef PALPATE_KEY
+  bool smooth_encoder = false;
   double force_rate_max_N_per_s = kAuto;
   double coupling_N_per_m = kAuto;
   double coupling_Nm_per_rad = kAuto;

@@ -56,8 +56,22 @@ void check_skeleton(const SceneDesc& scene) {
                "unless skeleton.law is \"circular\" or \"circular_paper\"");
 }
 
+void check_relaxation(const SceneDesc& scene) {
+  const Vec3 share = scene.material.relaxation_share;
+  if (share == Vec3{}) return;
+  if (!(share.x > 0))
+    fail(scene, "body.material.relaxation_share", "the first term is 0; begin with the first and end with zeros");
+  if (!(share.x + share.y + share.z < 0.95))
+    fail(scene, "body.material.relaxation_share",
+         number_text(share.x + share.y + share.z) + " of the force would relax; allowed below 0.95 together");
+  if (scene.contact.backend == Backend::kNodal)
+    fail(scene, "body.material.relaxation_share",
+         "has no effect with contact.backend = \"nodal\"; remove it or take \"elastic\"");
+}
+
 void check_body(const SceneDesc& scene) {
   check_body_keys(scene);
+  check_relaxation(scene);
   check_skeleton(scene);
   const double nu = scene.material.poisson_ratio;
   if (nu > 0.5 && !(scene.material.legacy_paper_material && nu == 1.0))

@@ -129,6 +129,10 @@ const KeySpec kMaterial[] = {
     number<&MaterialDesc::poisson_ratio>("poisson_ratio", -0.999, 1, 1,
                                          "Poisson's ratio nu; at most 0.5 (larger is thermodynamically impossible)"),
     number<&MaterialDesc::density_kg_per_m3>("density_kg_per_m3", 1, 1e5, 1, "density rho"),
+    list<&MaterialDesc::relaxation_share>(
+        kVec3, "relaxation_share", 0, 0.95, 1,
+        "parts of the force that relax when the body is held, one for each term (0: none); below 0.95 together"),
+    list<&MaterialDesc::relaxation_s>(kVec3, "relaxation_s", 1e-3, 1e4, 1, "and with which time constants"),
     boolean<&MaterialDesc::legacy_paper_material>(
         "legacy_paper_material", "accept the nu = 1.0 printed by Cui & Xiao 2008 and use 0.47 instead, with a warning"),
 };
@@ -375,6 +379,8 @@ const KeySpec kDevice[] = {
         number_or_auto<&DeviceDesc::force_rate_max_N_per_s>(
             "force_rate_max_N_per_s", 1, 1e7, 1,
             "fault limiter of the force change; auto: force_max_N in 5 ms. In no tick more than 10 % of force_max_N"),
+    boolean<&DeviceDesc::smooth_encoder>("smooth_encoder",
+                                         "smooth the handle within the encoder's step, at most two steps late"),
     number_or_auto<&DeviceDesc::coupling_N_per_m>(
         "coupling_N_per_m", 1, 1e6, 1,
         "virtual coupling; auto: 0.8 of what the device admits, min(2b / (T + 2 tau), 2 f_c / Delta)"),

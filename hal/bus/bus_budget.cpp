@@ -93,10 +93,11 @@ BusVerdict check_bus_budget(const BusBudget& budget) {
   return verdict;
 }
 
-BusBudget haptic_node_budget(bool fd, int nodes) {
+BusBudget haptic_node_budget(bool fd, int nodes, bool local) {
   BusBudget budget;
+  const std::uint32_t other = local ? wire::kCommandId : wire::kLocalCommandId;  // one of the two is sent
   for (const wire::MessageInfo& m : wire::messages())
-    if (m.fd == fd) budget.messages.push_back({m.name, m.bytes, m.fd, false, nodes});
+    if (m.fd == fd && m.base_id != other) budget.messages.push_back({m.name, m.bytes, m.fd, false, nodes});
   return budget;
 }
 

@@ -50,7 +50,7 @@ struct BusVerdict {
 // more than the formula for the switch of rates and the transceiver's delay.
 BusVerdict check_bus_budget(const BusBudget& budget);
 
-// Traffic of `nodes` haptic nodes of this project in one period.
-BusBudget haptic_node_budget(bool fd, int nodes = 1);
+// Traffic of `nodes` haptic nodes of this project in one period; `local`: their commands carry the local model (FD).
+BusBudget haptic_node_budget(bool fd, int nodes = 1, bool local = false);
 
 }  // namespace palpate

@@ -108,6 +108,9 @@ constexpr double kForceUnit_N = unit_of(kSignalsCommand, 48);
 constexpr double kTorqueUnit_Nm = unit_of(kSignalsCommand, 96);
 constexpr double kPositionUnit_m = unit_of(kSignalsStatus, 96);
 constexpr double kQuaternionUnit = unit_of(kSignalsStatus, 168);
+constexpr double kStiffnessUnit_N_per_m = unit_of(kSignalsLocalCommand, 144);
+constexpr double kPointUnit_m = unit_of(kSignalsLocalCommand, 288);
+constexpr double kValidUnit_s = unit_of(kSignalsLocalCommand, 360);
 constexpr double kClassicForceUnit_N = unit_of(kSignalsClassicForce, 8);
 constexpr double kClassicTorqueUnit_Nm = unit_of(kSignalsClassicTorque, 14);
 constexpr double kClassicPositionUnit_m = unit_of(kSignalsClassicPosition, 8);
@@ -231,6 +234,38 @@ void set_wrench(Command& command, Vec3 force_N, Vec3 torque_Nm) noexcept {
 void get_wrench(const Command& command, Vec3& force_N, Vec3& torque_Nm) noexcept {
   force_N = vector_of(command.force, kForceUnit_N);
   torque_Nm = vector_of(command.torque, kTorqueUnit_Nm);
+}
+
+void set_wrench(LocalCommand& command, Vec3 force_N, Vec3 torque_Nm) noexcept {
+  put_direction(command.force, force_N, kForceUnit_N, 16);
+  put_direction(command.torque, torque_Nm, kTorqueUnit_Nm, 16);
+}
+
+void get_wrench(const LocalCommand& command, Vec3& force_N, Vec3& torque_Nm) noexcept {
+  force_N = vector_of(command.force, kForceUnit_N);
+  torque_Nm = vector_of(command.torque, kTorqueUnit_Nm);
+}
+
+void set_local(LocalCommand& command, const LocalModel& model) noexcept {
+  constexpr double kMost_N_per_m = kStiffnessUnit_N_per_m * ((1 << 23) - 1);
+  Vec3 along = model.along_N_per_m, across = model.across_N_per_m;
+  const bool is_number = is_finite(model.point_m) && is_finite(along) && is_finite(across);
+  if (!is_number || !(model.valid_s > 0)) return;
+  // No entry of a positive semi-definite matrix is larger than its largest on the diagonal.
+  const double largest = max_of(along.x, max_of(along.y, along.z));
+  if (largest > kMost_N_per_m) {
+    along = (kMost_N_per_m / largest) * along;
+    across = (kMost_N_per_m / largest) * across;
+  }
+  put_vector(command.stiffness, along, kStiffnessUnit_N_per_m, 24);
+  put_vector(command.stiffness + 3, across, kStiffnessUnit_N_per_m, 24);
+  put_vector(command.point, model.point_m, kPointUnit_m, 24);
+  command.valid = static_cast<std::uint32_t>(to_counts(model.valid_s, kValidUnit_s, 9));
+}
+
+LocalModel get_local(const LocalCommand& command) noexcept {
+  return {vector_of(command.point, kPointUnit_m), vector_of(command.stiffness, kStiffnessUnit_N_per_m),
+          vector_of(command.stiffness + 3, kStiffnessUnit_N_per_m), kValidUnit_s * command.valid};
 }
 
 void set_wrench(ClassicForce& f, ClassicTorque& t, Vec3 force_N, Vec3 torque_Nm) noexcept {

@@ -17,6 +17,12 @@ struct Command {
   std::int32_t force[3] = {}, torque[3] = {};
   friend bool operator==(const Command&, const Command&) = default;
 };
+struct LocalCommand {
+  std::uint32_t sequence = 0, status_sequence = 0, flags = 0;
+  std::int32_t force[3] = {}, torque[3] = {}, stiffness[6] = {}, point[3] = {};
+  std::uint32_t valid = 0;
+  friend bool operator==(const LocalCommand&, const LocalCommand&) = default;
+};
 struct ClassicForce {
   std::uint32_t sequence = 0;
   std::int32_t force[3] = {};
@@ -104,6 +110,12 @@ void set_pose(ClassicPosition& p, ClassicOrientation& o, Vec3 position_m, Quat o
 void get_pose(const ClassicPosition& p, const ClassicOrientation& o, Vec3& position_m, Quat& orientation) noexcept;
 void set_wrench(Command& command, Vec3 force_N, Vec3 torque_Nm) noexcept;
 void get_wrench(const Command& command, Vec3& force_N, Vec3& torque_Nm) noexcept;
+void set_wrench(LocalCommand& command, Vec3 force_N, Vec3 torque_Nm) noexcept;
+void get_wrench(const LocalCommand& command, Vec3& force_N, Vec3& torque_Nm) noexcept;
+// A stiffness beyond its field is scaled as a whole, so that it stays positive semi-definite; a model with a number
+// that is none is none. The point saturates.
+void set_local(LocalCommand& command, const LocalModel& model) noexcept;
+LocalModel get_local(const LocalCommand& command) noexcept;
 void set_wrench(ClassicForce& f, ClassicTorque& t, Vec3 force_N, Vec3 torque_Nm) noexcept;
 void get_wrench(const ClassicForce& f, const ClassicTorque& t, Vec3& force_N, Vec3& torque_Nm) noexcept;
 

@@ -180,6 +180,13 @@ void DeviceBus::receive(DeviceSample& sample) noexcept {
 
 int make_command_frames(WireProfile profile, int node, const wire::Command& command, const DeviceCommand& si,
                         Frame (&frames)[2]) noexcept {
+  if (profile == WireProfile::kFd && si.local.valid_s > 0) {
+    wire::LocalCommand local{command.sequence, command.status_sequence, command.flags, {}, {}, {}, {}, 0};
+    wire::set_wrench(local, si.force_N, si.torque_Nm);
+    wire::set_local(local, si.local);
+    fill<wire::LocalCommand, wire::kLocalCommandBytes>(frames[0], wire::kLocalCommandId, node, true, local);
+    return 1;
+  }
   if (profile == WireProfile::kFd) {
     wire::Command full = command;
     wire::set_wrench(full, si.force_N, si.torque_Nm);
@@ -230,7 +237,7 @@ WireIds status_ids(WireProfile profile, int node) noexcept {
 
 WireIds command_ids(WireProfile profile, int node) noexcept {
   const auto n = static_cast<std::uint32_t>(node);
-  if (profile == WireProfile::kFd) return {{wire::kCommandId + n, 0}, 1};
+  if (profile == WireProfile::kFd) return {{wire::kCommandId + n, wire::kLocalCommandId + n}, 2};
   return {{wire::kClassicForceId + n, wire::kClassicTorqueId + n}, 2};
 }
 

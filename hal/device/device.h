@@ -13,6 +13,7 @@
 #include <concepts>
 #include <cstdint>
 
+#include "hal/device/local_model.h"
 #include "rt_core/vec.h"
 
 namespace palpate {
@@ -25,6 +26,8 @@ inline constexpr std::uint32_t kStopButton = 1u << 2;  // its emergency stop is 
 inline constexpr std::uint32_t kError = 1u << 3;       // see error_code
 inline constexpr std::uint32_t kWatchdog = 1u << 4;    // commands stopped coming: zero force until enabled anew
 inline constexpr std::uint32_t kSaturated = 1u << 5;   // the last command was cut to its force limit
+// It evaluates the local contact model of commands that carry one. Not in the classic profile, which carries none.
+inline constexpr std::uint32_t kLocalModel = 1u << 6;
 }  // namespace DeviceFlag
 
 namespace CommandFlag {
@@ -52,6 +55,8 @@ struct DeviceCommand {
   Vec3 force_N;    // on the hand, device frame
   Vec3 torque_Nm;  // about the handle's origin
   std::uint32_t flags = 0;
+  LocalModel local = {};     // none: the force is held
+  std::uint32_t number = 0;  // counts commands: the age of a model is that of its command
 };
 
 // receive: drains everything that arrived, the newest sample wins. transmit: false if the command could not be handed

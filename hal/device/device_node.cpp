@@ -5,10 +5,19 @@
 
 namespace palpate {
 
+namespace {
+
+PlantOptions bounded_slope(PlantOptions plant, const NodeOptions& options) {
+  plant.local_slew_N_per_s = 1e3 * options.slew_share_per_ms * plant.force_max_N;
+  return plant;
+}
+
+}  // namespace
+
 DeviceNode::DeviceNode(Transport& transport, const NodeOptions& options, const PlantOptions& plant, HandPath path)
     : transport_(transport),
       options_(options),
-      plant_(plant, std::move(path)),
+      plant_(bounded_slope(plant, options), std::move(path)),
       sequence_(options.profile == WireProfile::kFd ? 16 : 8) {}
 
 void DeviceNode::obey(std::uint32_t sequence, const DeviceCommand& command, std::int64_t now_ns) noexcept {
@@ -24,6 +33,7 @@ void DeviceNode::obey(std::uint32_t sequence, const DeviceCommand& command, std:
   if (enable && !enabled_) latched_ = false;
   enabled_ = enable;
   command_ = command;
+  command_.number = static_cast<std::uint32_t>(counters_.commands);
   last_command_ns_ = now_ns;
   expired_ = false;
 }
@@ -40,6 +50,14 @@ void DeviceNode::take(const Frame& frame, std::int64_t now_ns) noexcept {
     wire::get_wrench(full, command.force_N, command.torque_Nm);
     command.flags = full.flags;
     return obey(full.sequence, command, now_ns);
+  }
+  wire::LocalCommand local;
+  if (fd && frame.fd && base_id == wire::kLocalCommandId && plant_.options().local_Hz > 0 &&
+      wire::decode(payload, options_.node, local) == wire::DecodeResult::kOk) {
+    wire::get_wrench(local, command.force_N, command.torque_Nm);
+    command.local = wire::get_local(local);
+    command.flags = local.flags;
+    return obey(local.sequence, command, now_ns);
   }
   if (!fd && !frame.fd && base_id == wire::kClassicForceId &&
       wire::decode(payload, options_.node, pending_) == wire::DecodeResult::kOk) {
@@ -63,6 +81,7 @@ std::uint32_t DeviceNode::flags() const noexcept {
   if (error_ != 0) flags |= DeviceFlag::kError;
   if (latched_) flags |= DeviceFlag::kWatchdog;
   if (plant_.saturated()) flags |= DeviceFlag::kSaturated;
+  if (plant_.options().local_Hz > 0 && options_.profile == WireProfile::kFd) flags |= DeviceFlag::kLocalModel;
   return flags;
 }
 
@@ -125,12 +144,17 @@ void DeviceNode::render() noexcept {
     rendered_ = {};
     return plant_.step(rendered_);
   }
+  if (rendered_.local.valid_s > 0) rendered_.force_N = plant_.motor().force_N;  // what it came to
   const DeviceCommand wanted = latched_ || !enabled_ ? DeviceCommand{} : command_;
   const double share = options_.slew_share_per_ms * plant.period_s * 1e3;
   const bool finite = is_finite(wanted.force_N) && is_finite(wanted.torque_Nm);
   const Wrench target = finite ? Wrench{wanted.force_N, wanted.torque_Nm} : Wrench{};
   rendered_.force_N = moved_towards(rendered_.force_N, target.force_N, share * plant.force_max_N);
   rendered_.torque_Nm = moved_towards(rendered_.torque_Nm, target.torque_Nm, share * plant.torque_max_Nm);
+  // A command with a model is not approached here: the slope of what is evaluated is bounded where that happens.
+  rendered_.local = finite ? wanted.local : LocalModel{};
+  rendered_.number = wanted.number;
+  if (rendered_.local.valid_s > 0) rendered_.force_N = target.force_N;
   const bool moving = !(rendered_.force_N == Vec3{} && rendered_.torque_Nm == Vec3{});
   rendered_.flags = moving ? CommandFlag::kEnable : wanted.flags;
   plant_.step(rendered_);

@@ -17,11 +17,12 @@ struct Key {
   double DeviceProfile::*member;
   const char* name;
   double lowest, highest, scale;
+  bool may_lack;  // a default of 0: the device cannot do it
 };
 
 constexpr Key kKeys[] = {
 #define PALPATE_KEY(member, key, value, lowest, highest, scale, meaning) \
-  {&DeviceProfile::member, key, lowest, highest, scale},
+  {&DeviceProfile::member, key, lowest, highest, scale, (value) == 0},
     PALPATE_PROFILE_KEYS(PALPATE_KEY)
 #undef PALPATE_KEY
 };
@@ -66,7 +67,8 @@ class Reader {
       if (std::ranges::find(seen_, key) == seen_.end()) text += (text.empty() ? "" : ", ") + key;
     };
     add("name");
-    for (const Key& key : kKeys) add(key.name);
+    for (const Key& key : kKeys)
+      if (!key.may_lack) add(key.name);
     return text;
   }
 
@@ -112,7 +114,7 @@ struct Bounds {
   StiffnessBound translation, rotation;
 };
 Bounds bounds_of(const DeviceProfile& p, double period_s) {
-  return {admissible_stiffness(p.damping_Ns_per_m, p.friction_N, p.encoder_step_m, period_s, p.delay_s),
+  return {admissible_stiffness(p.damping_Ns_per_m, p.friction_N, p.encoder_step_m, period_s, p.delay_s, p.local_Hz),
           admissible_stiffness(p.damping_Nms_per_rad, p.friction_Nm, p.encoder_step_rad, period_s, p.delay_s)};
 }
 
@@ -163,6 +165,9 @@ std::string profile_contradictions(const DeviceProfile& profile, const ModelPara
   compare(text, "torque_max_Nm", scene.torque_max_Nm, profile.torque_max_Nm, "N m", "has");
   compare(text, "coupling_N_per_m", scene.coupling_N_per_m, bounds.translation.value, "N/m",
           std::string("admits, by ") + reason_of(bounds.translation) + ",");
+  if (scene.local_period_s > 0)
+    compare(text, "local_kHz", 1e-3 / scene.local_period_s, 1e-3 * profile.local_Hz, "kHz",
+            "evaluates the local contact model with");
   // Without torque the rotational spring moves nothing.
   if (scene.torque_max_Nm > 0)
     compare(text, "coupling_Nm_per_rad", scene.coupling_Nm_per_rad, bounds.rotation.value, "N m/rad",

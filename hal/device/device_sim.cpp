@@ -4,6 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "rt_core/device_profile.h"
+#include "rt_core/safety/encoder_observer.h"
+
 namespace palpate {
 namespace {
 
@@ -59,6 +62,9 @@ Vec3 midpoint_step(const Motion& m, double dt_s, Vec3& velocity, PlantEnergy& en
 PlantOptions checked(PlantOptions o) {
   o.delay_ticks = std::clamp(o.delay_ticks, 0, kMaxDelayTicks);
   o.substeps = std::clamp(o.substeps, 1, 1000);
+  if (o.local_Hz > 0 && !(o.local_N_per_m > 0))
+    o.local_N_per_m =
+        admissible_stiffness(o.damping_N_s_per_m, o.friction_N, o.encoder_m, o.period_s, 0, o.local_Hz).value;
   return o;
 }
 
@@ -67,7 +73,7 @@ PlantOptions checked(PlantOptions o) {
 DevicePlant::DevicePlant(const PlantOptions& options, HandPath path)
     : options_(checked(options)), path_(std::move(path)), random_(options.noise_seed) {
   pose_ = path_.at(0).pose;
-  last_measured_m_ = pose_.position_m;
+  last_measured_m_ = observed_m_ = pose_.position_m;
 }
 
 void DevicePlant::drive(const DeviceCommand& command) noexcept {
@@ -75,10 +81,37 @@ void DevicePlant::drive(const DeviceCommand& command) noexcept {
   const auto delay = static_cast<std::uint64_t>(options_.delay_ticks);
   const DeviceCommand due = ticks_ >= delay ? delay_[(ticks_ - delay) % kDelaySlots] : DeviceCommand{};
   saturated_ = false;
+  if (due.number != due_.number) age_s_ = 0;
+  due_ = due;
+  due_.local = bounded_model(due.local, options_.local_N_per_m);
+  const Vec3 before_N = motor_.force_N;
   motor_ = {};
-  if ((due.flags & CommandFlag::kEnable) == 0) return;
+  if ((due.flags & CommandFlag::kEnable) == 0) {
+    due_.local = {};
+    return;
+  }
   motor_.force_N = limited(due.force_N, options_.force_max_N, saturated_);
   motor_.torque_Nm = limited(due.torque_Nm, options_.torque_max_Nm, saturated_);
+  // Held until it is evaluated: within this period.
+  if (due_.local.valid_s > 0 && options_.local_Hz > 0) motor_.force_N = before_N;
+}
+
+// The device's own fast loop: smooths its encoder, and where a command carries a model, evaluates it there.
+void DevicePlant::evaluate_local(double elapsed_s) noexcept {
+  if (!(options_.local_Hz > 0)) return;
+  const double period_s = 1 / options_.local_Hz;
+  local_due_s_ -= elapsed_s;
+  age_s_ += elapsed_s;
+  if (local_due_s_ > 1e-9) return;
+  local_due_s_ += period_s;
+  const Vec3 expected = observed_m_ + period_s * observed_m_per_s_;
+  observed_m_ = expected +
+                observe(device_observer_gains(options_.encoder_m, period_s), encoder_m() - expected, observed_m_per_s_);
+  if (!(due_.local.valid_s > 0) || age_s_ > due_.local.valid_s) return;
+  const Vec3 wanted = limited(local_force_N(due_.force_N, due_.local, observed_m_), options_.force_max_N, saturated_);
+  const Vec3 step = wanted - motor_.force_N;
+  const double most = options_.local_slew_N_per_s * period_s, size = norm(step);
+  motor_.force_N = most > 0 && size > most ? motor_.force_N + (most / size) * step : wanted;
 }
 
 HandTarget DevicePlant::aim_at(double time_s) const noexcept {
@@ -167,7 +200,10 @@ void DevicePlant::step(const DeviceCommand& command) noexcept {
   follow();
   const double dt_s = options_.period_s / options_.substeps;
   const double start_s = time_s();
-  for (int i = 0; i < options_.substeps; ++i) integrate(start_s + i * dt_s, dt_s);
+  for (int i = 0; i < options_.substeps; ++i) {
+    evaluate_local(dt_s);
+    integrate(start_s + i * dt_s, dt_s);
+  }
   ticks_ += 1;
 }
 
@@ -180,7 +216,9 @@ double DevicePlant::noise() noexcept {
   return static_cast<double>(z >> 11) * 0x1p-52 - 1.0;
 }
 
-Vec3 DevicePlant::measured_m() noexcept {
+Vec3 DevicePlant::measured_m() noexcept { return options_.local_Hz > 0 ? observed_m_ : encoder_m(); }
+
+Vec3 DevicePlant::encoder_m() noexcept {
   if (frozen_) return last_measured_m_;
   Vec3 p = pose_.position_m + encoder_shift_m_;
   if (options_.noise_m > 0) {
@@ -215,13 +253,16 @@ void SimulatedDevice::receive(DeviceSample& sample) noexcept {
     sample_.flags = DeviceFlag::kCalibrated;
     if ((command_.flags & CommandFlag::kEnable) != 0) sample_.flags |= DeviceFlag::kEnabled;
     if (plant_.saturated()) sample_.flags |= DeviceFlag::kSaturated;
+    if (plant_.options().local_Hz > 0) sample_.flags |= DeviceFlag::kLocalModel;
   }
   first_ = false;
   sample = sample_;
 }
 
 bool SimulatedDevice::transmit(const DeviceCommand& command) noexcept {
+  const std::uint32_t number = command_.number + 1;
   command_ = command;
+  command_.number = number;
   return true;
 }
 

@@ -31,11 +31,14 @@ struct PlantOptions {
   double hand_damping_N_s_per_m = 5;
   double hand_stiffness_Nm_per_rad = 1;
   double hand_damping_Nm_s_per_rad = 2e-2;
-  double tremor_m = 0;     // amplitude of the hand's tremor: it aims aside by so much, a circle in two axes
-  double tremor_rad = 0;   // and turns by so much
-  double tremor_Hz = 9;    // physiological: 8 to 12 Hz
-  double period_s = 1e-3;  // device tick: commands are taken over and samples made
-  int substeps = 20;       // of the integration per period, 1..1000
+  double tremor_m = 0;            // amplitude of the hand's tremor: it aims aside by so much, a circle in two axes
+  double tremor_rad = 0;          // and turns by so much
+  double tremor_Hz = 9;           // physiological: 8 to 12 Hz
+  double local_Hz = 0;            // evaluations of the local contact model; 0: forces are held
+  double local_N_per_m = 0;       // stiffest it evaluates; 0: what its damping, friction and encoder admit
+  double local_slew_N_per_s = 0;  // largest change of its force; 0: any
+  double period_s = 1e-3;         // device tick: commands are taken over and samples made
+  int substeps = 20;              // of the integration per period, 1..1000
 };
 
 inline constexpr int kMaxDelayTicks = 63;  // 6.3 ms in a bench that steps the plant ten times a tick
@@ -66,8 +69,9 @@ class DevicePlant {
   Pose pose() const noexcept { return pose_; }  // exact, device frame
   Vec3 velocity_m_per_s() const noexcept { return velocity_; }
   Vec3 spin_rad_per_s() const noexcept { return spin_; }
-  Vec3 measured_m() noexcept;                                      // with noise and encoder quantum; draws noise
-  void freeze_encoder(bool frozen) noexcept { frozen_ = frozen; }  // repeats the last measurement
+  // With noise and encoder quantum; draws noise. Of a device that evaluates the local model: what it smoothed of that.
+  Vec3 measured_m() noexcept;
+  void freeze_encoder(bool frozen) noexcept { frozen_ = frozen; }               // repeats the last measurement
   void shift_encoder(Vec3 offset_m) noexcept { encoder_shift_m_ += offset_m; }  // lost counts
   Wrench motor() const noexcept { return motor_; }                              // rendered in the last period
   bool trigger() const noexcept { return aim_at(time_s()).trigger; }            // the hand holds the closing button
@@ -81,6 +85,8 @@ class DevicePlant {
  private:
   static constexpr std::uint64_t kDelaySlots = kMaxDelayTicks + 1;
   void drive(const DeviceCommand& command) noexcept;
+  void evaluate_local(double elapsed_s) noexcept;
+  Vec3 encoder_m() noexcept;
   HandTarget hand_at(double time_s) const noexcept;
   void integrate(double time_s, double dt_s) noexcept;
   double noise() noexcept;
@@ -104,6 +110,10 @@ class DevicePlant {
   double hand_s_ = 0;
   bool frozen_ = false;
   Vec3 encoder_shift_m_, last_measured_m_;
+  // Of the local model: the command in force, how old it is, where the handle is within an encoder step.
+  DeviceCommand due_;
+  double age_s_ = 0, local_due_s_ = 0;
+  Vec3 observed_m_, observed_m_per_s_;
 };
 
 // The plant as a Device in virtual time: each receive() first lets it run up to the clock, holding the last command, so

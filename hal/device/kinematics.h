@@ -55,13 +55,31 @@ inline std::int32_t to_counts(double value, double unit, int bits) noexcept {
 }
 inline double from_counts(std::int32_t counts, double unit) noexcept { return static_cast<double>(counts) * unit; }
 
-inline DeviceCommand to_command(const CartesianKinematics& k, const Output& output, std::uint32_t flags) noexcept {
+// What the handle feels around `handle_w_m`, for a device that evaluates it; magnified motion is felt as much stiffer.
+// R^T K R column by column.
+inline LocalModel local_model_in_device(const CartesianKinematics& k, const Output& output, double valid_s) noexcept {
+  const Quat back = conjugate(k.orientation_w);
+  const Vec3 d = output.felt_along_N_per_m, o = output.felt_across_N_per_m;
+  const auto column = [&](Vec3 axis) {
+    const Vec3 w = k.scale * rotate(k.orientation_w, axis);
+    return rotate(back, {d.x * w.x + o.z * w.y + o.y * w.z, o.z * w.x + d.y * w.y + o.x * w.z,
+                         o.y * w.x + o.x * w.y + d.z * w.z});
+  };
+  const Vec3 x = column({1, 0, 0}), y = column({0, 1, 0}), z = column({0, 0, 1});
+  const Vec3 point_m = (1.0 / k.scale) * rotate(back, output.handle_w_m - k.position_w);
+  return {point_m, {x.x, y.y, z.z}, {y.z, x.z, x.y}, valid_s};
+}
+
+// `valid_s` > 0: with the local model.
+inline DeviceCommand to_command(const CartesianKinematics& k, const Output& output, std::uint32_t flags,
+                                double valid_s = 0) noexcept {
   const Wrench wrench = wrench_in_device(k, output.device_w);
   DeviceCommand command;
   command.flags = flags;
   if (is_finite(wrench.force_N) && is_finite(wrench.torque_Nm)) {  // the last finite check before the wire
     command.force_N = wrench.force_N;
     command.torque_Nm = wrench.torque_Nm;
+    if (valid_s > 0) command.local = local_model_in_device(k, output, valid_s);
   }
   return command;
 }

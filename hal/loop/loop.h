@@ -40,10 +40,16 @@ inline LinkLimits link_limits(const ModelParams& params) noexcept {
   return limits;
 }
 
+// How long a device may evaluate one command's local model: as long as a lost sample is bridged by default.
+inline double local_valid_s(const ModelParams& params) noexcept {
+  return params.local_period_s > 0 ? min_of(3 * params.period_s, kLocalValid_s) : 0;
+}
+
 struct LoopOptions {
   DeadlineLimits deadline;
   LinkLimits link;
-  std::uint64_t ticks = 0;                   // controller ticks before an orderly stop; 0: until stopped
+  double local_valid_s = 0;  // > 0: the scene is baked for a device that evaluates the local model, and needs one
+  std::uint64_t ticks = 0;   // controller ticks before an orderly stop; 0: until stopped
   std::uint32_t start_timeout_ticks = 2000;  // without any sample at start
   std::uint32_t silence_fault_ticks = 20;    // without a fresh sample in motion: Fault::kDeviceSilent
   // Ticks in a row, in time and with a sample, after which a run that stood still goes on by itself; 0: it latches the
@@ -204,7 +210,7 @@ class Loop {
     const std::int64_t computed_ns = clock_.now_ns();
     const bool armed = output_.mode != Mode::kIdle && output_.mode != Mode::kFault;
     const bool enabled = link_.enable(armed, output_.device_w == Wrench{});
-    send(to_command(kinematics_, output_, enabled ? CommandFlag::kEnable : 0u));
+    send(to_command(kinematics_, output_, enabled ? CommandFlag::kEnable : 0u, options_.local_valid_s));
     const std::int64_t sent_ns = clock_.now_ns();
     timing.receive_ns = brief(received_ns - woke_ns_);
     timing.compute_ns = brief(computed_ns - received_ns);
@@ -229,7 +235,8 @@ class Loop {
     input_.stale_ticks = stale_;
     input_.overrun_ticks = slots_.missed();
     input_.commands = host_.poll() | (stopping ? Command::kStop : 0u);
-    if (!link_.proven()) input_.commands &= ~Command::kArm;  // nobody there to render it
+    const bool lacks_model = options_.local_valid_s > 0 && (sample_.flags & DeviceFlag::kLocalModel) == 0;
+    if (!link_.proven() || lacks_model) input_.commands &= ~Command::kArm;  // nobody there to render it
     if (link_.unheard()) input_.commands |= Command::kUnheard;
     if constexpr (requires { host_.joints(); }) input_.joints = host_.joints();
     if constexpr (requires { host_.live(); }) input_.live = host_.live();

@@ -1,5 +1,7 @@
 #include "rt_core/contact/region_load.h"
 
+#include "rt_core/contact/relaxation.h"
+
 #include "rt_core/contact/regions.h"
 #include "rt_core/tool/virtual_coupling.h"
 
@@ -212,6 +214,7 @@ void sum_up(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
     scratch.energy_J += region.energy_J;
   }
   if (scratch.rows.regions > 0) store(scratch.stiffness, state.contact_stiffness);
+  relax(model, state, scratch);
   balance_tool(model, state, scratch);
 }
 

@@ -35,13 +35,16 @@ void add_brake(Vec3 brake_N, Vec3& force_N) PALPATE_RT {
   force_N += brake_N;
 }
 
-// What acted on the handle between the last two samples: an output takes the delay to arrive.
-Wrench acted(const Model& model, const SafetyState& safety) PALPATE_RT {
+// What acted on the handle between the last two samples: an output takes the delay to arrive; but a device that
+// evaluates the local model pushes with what the last tick said at the beginning and with `now_N` at the end.
+Wrench acted(const Model& model, const SafetyState& safety, Vec3 now_N) PALPATE_RT {
   const double late = clamp_to(model.params.delay_s / model.params.period_s, 0, kForceHistory - 1.001);
   const auto whole = static_cast<std::int32_t>(late);
   const double part = late - whole;
   const double *a = safety.sent + 6 * whole, *b = a + 6;
-  return {(1 - part) * Vec3{a[0], a[1], a[2]} + part * Vec3{b[0], b[1], b[2]},
+  const Vec3 held_N = (1 - part) * Vec3{a[0], a[1], a[2]} + part * Vec3{b[0], b[1], b[2]};
+  const bool local = model.params.local_period_s > 0;
+  return {local ? 0.5 * (Vec3{safety.sent[0], safety.sent[1], safety.sent[2]} + now_N) : held_N,
           (1 - part) * Vec3{a[3], a[4], a[5]} + part * Vec3{b[3], b[4], b[5]}};
 }
 
@@ -78,7 +81,7 @@ void drain_energy(const Model& model, State& state, Scratch& scratch, const Inpu
       scratch.energy_J + spring_J(norm(stretch.translation_m), p.coupling_N_per_m, p.force_max_N) +
       spring_J(norm(stretch.rotation_rad), p.coupling_Nm_per_rad, p.torque_max_Nm > 0 ? p.torque_max_Nm : kHuge);
   const Twist way = twist_between(state.device_previous_w, state.device_w);
-  const Wrench on_handle = acted(model, safety);
+  const Wrench on_handle = acted(model, safety, force_N);
   const bool counts = safety.mode == Mode::kForce && safety.ramp >= 1 && input.stale_ticks == 0 &&
                       input.overrun_ticks == 0 && (scratch.status & Status::kInputRejected) == 0 &&
                       state.articulation.moved == 0 && state.live.moves == 0;

@@ -1,3 +1,4 @@
+#include "rt_core/safety/encoder_observer.h"
 #include "rt_core/tick.h"
 #include "rt_core/tool/virtual_coupling.h"
 
@@ -27,10 +28,10 @@ bool is_plausible(const Model& model, const State& state, const Input& input) PA
   const double elapsed_s = model.params.period_s * elapsed_ticks;
   const double reach_m = model.params.speed_max_m_per_s * elapsed_s;
   const double reach_rad = model.params.turn_max_rad_per_s * elapsed_s;
-  const Quat now = normalised(input.pose_w.orientation), last = state.device_w.orientation;
+  const Quat now = normalised(input.pose_w.orientation), last = state.told_w.orientation;
   const double cosine = abs_of(now.w * last.w + now.x * last.x + now.y * last.y + now.z * last.z);
   const double chord2 = max_of(0.0, 2 - 2 * cosine);
-  const Vec3 way = input.pose_w.position_m - state.device_w.position_m;
+  const Vec3 way = input.pose_w.position_m - state.told_w.position_m;
   if (!(norm(way) <= reach_m && 4 * chord2 <= reach_rad * reach_rad)) return false;
   // Nor can it have left the motion it had by more than its largest acceleration makes of the time, and of as long
   // again for what the smoothed velocity is late by; a step of the encoder is nobody's acceleration.
@@ -39,27 +40,49 @@ bool is_plausible(const Model& model, const State& state, const Input& input) PA
   return !(bend_m > 0) || norm(way - elapsed_s * state.hand_velocity_m_per_s) <= bend_m;
 }
 
+// `pose`, as the encoders told it, to where the handle is between their steps.
+void observe_handle(const Model& model, State& state, Pose& pose) PALPATE_RT {
+  const ModelParams& p = model.params;
+  const Pose told = pose;
+  // A device that evaluates the local model smooths by itself, ten times as often, and tells where it evaluated it.
+  if (p.encoder_step_m > 0 && !(p.local_period_s > 0)) {
+    const Vec3 expected = state.device_w.position_m + p.period_s * state.observed_m_per_s;
+    pose.position_m = expected + observe(observer_gains(p.encoder_step_m, p.period_s), told.position_m - expected,
+                                         state.observed_m_per_s);
+  }
+  if (p.encoder_step_rad > 0) {
+    const Quat expected = small_rotation(p.period_s * state.observed_rad_per_s) * state.device_w.orientation;
+    const Vec3 ahead = small_rotation_vector(told.orientation * conjugate(expected));
+    const Vec3 turn = observe(observer_gains(p.encoder_step_rad, p.period_s), ahead, state.observed_rad_per_s);
+    pose.orientation = normalised(small_rotation(turn) * expected);
+  }
+  if (!is_finite(pose)) pose = told;  // a state spoilt in memory
+}
+
 // Velocity of the handle from fresh samples; between them, for as long as the last force is held, the handle is taken
 // to move on. One number lost in a press at 50 mm/s is 0.05 mm and 0.1 N.
 void follow_hand(const Model& model, State& state, Scratch& scratch, const Input& input, Pose& pose) PALPATE_RT {
   const double period_s = model.params.period_s;
   if (input.stale_ticks == 0 || state.rejected_ticks > 0) {
     const double elapsed_s = period_s * (1.0 + input.overrun_ticks + state.rejected_ticks);
-    const Vec3 velocity = (1 / elapsed_s) * (pose.position_m - state.device_w.position_m);
+    const Vec3 velocity = (1 / elapsed_s) * (pose.position_m - state.told_w.position_m);
     state.hand_velocity_m_per_s += (1 / kVelocityLag_ticks) * (velocity - state.hand_velocity_m_per_s);
-    return;
+    state.told_w = pose;
+    return observe_handle(model, state, pose);
   }
   pose = state.device_w;
+  state.told_w = pose;
   if (input.stale_ticks > static_cast<std::uint32_t>(model.params.silence_hold_ticks)) {
     state.hand_velocity_m_per_s = {};
     return;
   }
   pose.position_m += period_s * state.hand_velocity_m_per_s;
+  state.told_w = pose;  // what the next sample is measured against
   scratch.status |= Status::kSampleBridged;
 }
 
 void start_at(State& state, const Pose& pose) PALPATE_RT {
-  state.device_w = state.device_previous_w = pose;
+  state.device_w = state.device_previous_w = state.told_w = pose;
   state.tool_w = state.tool_previous_w = pose;
   state.safety.tool_corrected_w = pose;
   state.started = 1;
@@ -77,6 +100,7 @@ void take_sample(const Model& model, State& state, Scratch& scratch, const Input
   }
   Pose pose{input.pose_w.position_m, normalised(input.pose_w.orientation)};
   if (state.started == 0) start_at(state, pose);
+  state.told_w = input.drive == Drive::kDevice ? state.told_w : pose;
   if (input.drive == Drive::kDevice) follow_hand(model, state, scratch, input, pose);
   state.device_w = pose;
   state.rejected_ticks = 0;

@@ -14,17 +14,22 @@ constexpr std::int32_t kDof = 6;
 // seat, alternated by 0.8 N for as long as it was dragged (2026-11-22).
 constexpr Real kSwingCalm = 4;
 
-// (contact_stiffness + diag(coupling)) motion = wrench. Returns false, `motion` untouched, when singular.
-bool solve(const Model& model, const double (&contact_stiffness)[36], const Wrench& wrench, Twist& motion) PALPATE_RT {
-  const Vec3 f = wrench.force_N, m = wrench.torque_Nm;
-  Real x[kDof] = {f.x, f.y, f.z, m.x, m.y, m.z};
-  Real matrix[kDof * kDof];
+// Cholesky factor of contact_stiffness + diag(coupling). Returns false when singular.
+bool factor(const Model& model, const double (&contact_stiffness)[36], Real (&matrix)[36]) PALPATE_RT {
   __builtin_memcpy(matrix, contact_stiffness, sizeof matrix);
   for (std::int32_t i = 0; i < 3; ++i) {
     matrix[i * (kDof + 1)] += model.params.coupling_N_per_m;
     matrix[(i + 3) * (kDof + 1)] += model.params.coupling_Nm_per_rad;
   }
-  if (!cholesky_factor(matrix, kDof)) return false;
+  return cholesky_factor(matrix, kDof);
+}
+
+// (contact_stiffness + diag(coupling)) motion = wrench. Returns false, `motion` untouched, when singular.
+bool solve(const Model& model, const double (&contact_stiffness)[36], const Wrench& wrench, Twist& motion) PALPATE_RT {
+  const Vec3 f = wrench.force_N, m = wrench.torque_Nm;
+  Real x[kDof] = {f.x, f.y, f.z, m.x, m.y, m.z};
+  Real matrix[kDof * kDof];
+  if (!factor(model, contact_stiffness, matrix)) return false;
   cholesky_solve(matrix, x, kDof);
   motion = {{x[0], x[1], x[2]}, {x[3], x[4], x[5]}};
   return true;
@@ -136,6 +141,25 @@ Pose within_step(const Model& model, const State& state, const Pose& tool_w, std
 Wrench coupling_wrench(const Model& model, const Pose& device_w, const Pose& tool_w) PALPATE_RT {
   const Twist offset = twist_between(device_w, tool_w);
   return {model.params.coupling_N_per_m * offset.translation_m, model.params.coupling_Nm_per_rad * offset.rotation_rad};
+}
+
+FeltStiffness felt_stiffness(const Model& model, const State& state, const Scratch& scratch) PALPATE_RT {
+  const bool held = (scratch.status & Status::kForceClamped) != 0;
+  if (!(model.params.local_period_s > 0) || scratch.held_by_hand == 0 || scratch.contact_count == 0 || held) return {};
+  // The contact was found in units of the stiffness that is set during the run (live_model.h).
+  Real matrix[kDof * kDof], contact[kDof * kDof];
+  for (std::int32_t i = 0; i < kDof * kDof; ++i)  // bound: 36
+    contact[i] = state.live.stiffness * state.contact_stiffness[i];
+  if (!factor(model, contact, matrix)) return {};
+  const Real k = model.params.coupling_N_per_m;
+  Real answer[3][kDof] = {};
+  for (std::int32_t i = 0; i < 3; ++i) {  // bound: 3
+    answer[i][i] = k;
+    cholesky_solve(matrix, answer[i], kDof);
+  }
+  const auto across = [&](int i, int j) { return -0.5 * k * (answer[i][j] + answer[j][i]); };
+  return {{k * max_of(0, 1 - answer[0][0]), k * max_of(0, 1 - answer[1][1]), k * max_of(0, 1 - answer[2][2])},
+          {across(1, 2), across(0, 2), across(0, 1)}};
 }
 
 }  // namespace palpate

@@ -53,4 +53,14 @@ Pose within_step(const Model& model, const State& state, const Pose& tool_w, std
 // Wrench of the coupling spring on the handle, about the handle's origin: pulls the handle towards the tool.
 Wrench coupling_wrench(const Model& model, const Pose& device_w, const Pose& tool_w) PALPATE_RT;
 
+// How the coupling's force answers a motion of the handle's origin, its turn held: coupling and contact in series,
+// Kc - Kc^2 [(K_contact + Kc)^-1] of the translations. Symmetric, positive semi-definite and below Kc by construction;
+// zero without contact, where the coupling is held at its end, and for a device that holds forces
+// (ModelParams::local_period_s). Bound: one factor, three solves; 1,000 instructions.
+struct FeltStiffness {
+  Vec3 along;   // xx, yy, zz
+  Vec3 across;  // yz, xz, xy
+};
+FeltStiffness felt_stiffness(const Model& model, const State& state, const Scratch& scratch) PALPATE_RT;
+
 }  // namespace palpate

@@ -123,7 +123,7 @@ std::vector<DoctorItem> examine_profile(const std::string& device, const std::st
   if (!found) return {judged("device profile", false, error, "docs/devices.md says what a profile holds")};
   constexpr double kUsualPeriod_s = 1e-3;
   const double admitted = admissible_stiffness(found->damping_Ns_per_m, found->friction_N, found->encoder_step_m,
-                                               kUsualPeriod_s, found->delay_s)
+                                               kUsualPeriod_s, found->delay_s, found->local_Hz)
                               .value;
   return {judged("device profile", true,
                  fmt::format("{}: {:.4g} N, {:.4g} N m, admits {:.4g} N/m at 1 kHz", found->name, found->force_max_N,

@@ -11,6 +11,7 @@
 #include "sim_host/bake/scene_model.h"
 #include "sim_host/cli.h"
 #include "sim_host/cli_checks.h"
+#include "sim_host/feel/device_grid.h"
 #include "sim_host/feel/feel.h"
 #include "sim_host/feel/z_width.h"
 
@@ -22,7 +23,7 @@ struct FeelCommand {
   std::vector<std::string> scenes, manoeuvres;
   SceneOverlays overlays;
   FeelOptions options;
-  std::string csv, json, markdown, map;
+  std::string csv, json, markdown, map, grid;
 };
 
 void write_file(const std::string& path, const std::string& text) {
@@ -40,13 +41,17 @@ std::vector<Manoeuvre> wanted(const FeelCommand& command) {
   return list;
 }
 
-void feel_scene(const FeelCommand& command, const std::string& path, std::vector<FeelRun>& runs) {
+void feel_scene(const FeelCommand& command, const std::string& path, std::vector<FeelRun>& runs, std::string& grid) {
   const SceneModel compiled(path, command.overlays);
   if (!compiled.scene())
     throw std::runtime_error(path + ": an image names no device and no path; name the scene's .toml");
   SceneDesc scene = *compiled.scene();
   add_default_path(scene, compiled.model());
   const TouchPlace place = touch_place_of(compiled.model(), scene);
+  if (!command.grid.empty()) {
+    grid += grid_markdown(scene.name, device_grid(compiled.model(), scene, place));
+    return;
+  }
   for (const Manoeuvre manoeuvre : wanted(command)) {
     std::string rows;
     FeelListener listen;
@@ -65,7 +70,15 @@ int run(const FeelCommand& command) {
     fmt::print("wrote   {}\n", command.map);
   }
   std::vector<FeelRun> runs;
-  for (const std::string& path : command.scenes) feel_scene(command, path, runs);
+  std::string grid =
+      "| scene | b N s/m | tau ms | coupling N/m | felt N/mm | port mJ | hand mJ | runs that swing | with a fault | "
+      "runs "
+      "|\n|---|---|---|---|---|---|---|---|---|---|\n";
+  for (const std::string& path : command.scenes) feel_scene(command, path, runs, grid);
+  if (!command.grid.empty()) {
+    fmt::print("{}", grid);
+    write_file(command.grid, grid);
+  }
   if (runs.empty()) return kExitOk;
   fmt::print("{}", feel_table(runs));
   if (!command.json.empty()) write_file(command.json, feel_json(runs));
@@ -109,6 +122,10 @@ void add_feel_command(CLI::App& app, int& exit_code) {
   command->add_option("--csv", settings->csv, "folder for a table of every tick of every run");
   command->add_option("--json", settings->json, "write the figures (.json)")->check(ends_in({".json"}));
   command->add_option("--markdown", settings->markdown, "write them as a table (.md)")->check(ends_in({".md"}));
+  command
+      ->add_option("--grid", settings->grid,
+                   "write the worst over a grid of devices and hands instead (.md); a minute for each scene")
+      ->check(ends_in({".md"}));
   command->add_option("--map", settings->map, "draw which stiffness a device keeps passive (.svg or .png)")
       ->check(ends_in({".svg", ".png"}));
   command->footer(footer());

@@ -83,7 +83,9 @@ void run_feel_loop(const FeelSetup& setup, const FeelController& controller, con
     if (setup.joints) now.input.joints = setup.joints(now.time_s);
     controller(now.input, now.output);
     listen(now);
-    const DeviceCommand command{now.output.device_w.force_N, now.output.device_w.torque_Nm, CommandFlag::kEnable};
+    DeviceCommand command =
+        to_command({}, now.output, CommandFlag::kEnable, setup.plant.local_Hz > 0 ? kLocalValid_s : 0);
+    command.number = static_cast<std::uint32_t>(n + 1);
     for (int i = 0; i < substeps; ++i) plant.step(command);
   }
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hal/device/kinematics.h"
+
 namespace palpate {
 
 namespace {
@@ -85,7 +87,10 @@ void FeelMeters::add_steps(const FeelTick& tick) {
     figures_.alternation_run = std::max(figures_.alternation_run, swing_[i].longest());
   }
   figures_.alternations = turns;
-  const double step = force_.empty() ? 0 : norm(f - force_.back()) / params_.force_max_N;
+  const LocalModel local = local_model_in_device({}, last_, kLocalValid_s);
+  const Vec3 expected = local_force_N(last_.device_w.force_N, local, tick.output.handle_w_m);
+  const double step = force_.empty() ? 0 : norm(f - expected) / params_.force_max_N;
+  last_ = tick.output;
   if (step > figures_.step_share) figures_.step_share = step, figures_.step_at_s = tick.time_s;
 }
 

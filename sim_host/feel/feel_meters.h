@@ -15,7 +15,9 @@ struct FeelFigures {
   double force_max_N = 0;  // commanded
   double model_max_N = 0;  // of the object on the virtual tool
   double depth_max_m = 0;  // penetration told by the tick
-  double step_share = 0;   // largest change of the commanded force in a tick, of the device's largest force
+  // Largest change of the commanded force in a tick, beyond what the device made of the last one by the local model, of
+  // the device's largest force.
+  double step_share = 0;
   double step_at_s = 0;
   int alternations = 0;      // ticks in which the force swung back; see SwingMeter
   int alternation_run = 0;   // most of them in a row
@@ -64,6 +66,7 @@ class FeelMeters {
   FeelFigures figures_;
   SwingMeter swing_[3];
   std::vector<Vec3> force_, handle_;
+  Output last_;
   bool touching_ = false;
   double port_begin_J_ = 0, hand_begin_J_ = 0;
 };

@@ -21,6 +21,8 @@ FeelSetup setup_of(const BareDevice& device, double seconds) {
   plant.damping_N_s_per_m = device.damping_N_s_per_m;
   plant.friction_N = device.friction_N;
   plant.encoder_m = device.encoder_m;
+  plant.local_Hz = device.local_Hz;
+  plant.local_N_per_m = 1e9;
   plant.force_max_N = 1e9;
   plant.hand_mass_kg = plant.hand_stiffness_N_per_m = plant.hand_damping_N_s_per_m = 0;
   setup.path = HandPath({{0, {{device.start_m, 0, 0}, {}}}, {seconds, {{device.start_m, 0, 0}, {}}}});
@@ -33,6 +35,8 @@ void let_go(const BareDevice& device, double stiffness_N_per_m, double seconds, 
       setup_of(device, seconds),
       [&](const Input& input, Output& output) {
         output.device_w.force_N = -stiffness_N_per_m * input.pose_w.position_m;
+        output.handle_w_m = input.pose_w.position_m;
+        output.felt_along_N_per_m = {stiffness_N_per_m, stiffness_N_per_m, stiffness_N_per_m};
       },
       listen);
 }
@@ -69,7 +73,9 @@ double measured_limit_N_per_m(const BareDevice& device) {
 }
 
 double rule_limit_N_per_m(const BareDevice& device) {
-  return admissible_stiffness(device.damping_N_s_per_m, device.friction_N, 0, device.period_s, device.delay_s).value;
+  return admissible_stiffness(device.damping_N_s_per_m, device.friction_N, 0, device.period_s, device.delay_s,
+                              device.local_Hz)
+      .value;
 }
 
 Drawing z_width_plot() {
@@ -86,6 +92,16 @@ Drawing z_width_plot() {
     }
     curves.push_back(std::move(measured));
     curves.push_back(std::move(rule));
+  }
+  for (const double delay_s : {0.0, 3e-3}) {
+    PlotCurve local{fmt::format("{:g} ms, local model at 10 kHz", 1e3 * delay_s), {}, {}};
+    for (const double damping : {0.05, 0.25, 0.5, 1.0, 1.5, 2.0, 2.5}) {
+      BareDevice device{0.2, damping, delay_s};
+      device.local_Hz = 1e4;
+      local.x.push_back(damping);
+      local.y.push_back(1e-3 * measured_limit_N_per_m(device));
+    }
+    curves.push_back(std::move(local));
   }
   return line_plot(curves,
                    {"Z-width of a bare device of 0.2 kg at 1 kHz", "damping of the device (N s/m)",

@@ -16,6 +16,7 @@ struct BareDevice {
   double friction_N = 0;
   double encoder_m = 0;
   double start_m = 0.01;  // where it is let go
+  double local_Hz = 0;    // it evaluates the local contact model so often; 0: it holds forces
 };
 
 // Whether a two-sided spring (force -K x of the sampled position) comes to rest after the mass is pulled aside: the
@@ -26,7 +27,8 @@ bool rests(const BareDevice& device, double stiffness_N_per_m, double seconds = 
 // The largest stiffness that settles, to 0.2 %.
 double measured_limit_N_per_m(const BareDevice& device);
 // 2b / (T + 2 tau): Colgate & Schenkel 1997 for tau = 0, Diolaiti et al. 2006 with delay. For a mass so heavy that
-// the oscillation at the limit is slow against the tick it is exactly where the motion neither grows nor decays.
+// the oscillation at the limit is slow against the tick it is exactly where the motion neither grows nor decays. With a
+// local model T is that of the device's own loop, and tau 0.
 double rule_limit_N_per_m(const BareDevice& device);
 
 // Limits against damping for several delays, measured and by rule.

@@ -24,6 +24,7 @@ bool are_finite(const Vectors&... v) noexcept {
 }
 
 StateFault check_poses(const State& state) noexcept {
+  if (!is_pose(state.told_w)) return {"told_w"};
   if (!is_pose(state.device_w) || !is_pose(state.device_previous_w)) return {"device_w"};
   if (!is_pose(state.tool_w) || !is_pose(state.tool_previous_w)) return {"tool_w"};
   for (const double k : state.contact_stiffness)

@@ -214,6 +214,7 @@ LoopOptions loop_options(const Model& model, const Arguments& arguments, Transpo
   const bool ride_through = transport == TransportKind::kLoopback && !arguments.virtual_time();
   options.ride_through_ticks = ride_through ? kRideThroughTicks : 0;
   options.link = link_limits(model.params);
+  options.local_valid_s = local_valid_s(model.params);
   if (!arguments.virtual_time()) options.phase_ns = slot_phase_ns(options.deadline.period_ns);
   // Long enough for the ramp, with room for ticks that come late.
   options.stop_ticks = static_cast<std::uint32_t>(3.0 * model.params.ramp_out_s / period_s) + 20;

@@ -68,6 +68,7 @@ PlantOptions plant_of(const SceneDesc& scene) {
   plant.damping_Nm_s_per_rad = device.damping_Nms_per_rad;
   plant.friction_Nm = device.friction_Nm;
   plant.encoder_m = device.encoder_step_m;
+  plant.local_Hz = device.local_Hz;
   plant.force_max_N = device.force_max_N;
   plant.torque_max_Nm = device.torque_max_Nm;
   plant.hand_stiffness_N_per_m = hand.hand_stiffness_N_per_m;

@@ -23,4 +23,6 @@
   X(tremor_m)                    \
   X(tremor_rad)                  \
   X(tremor_Hz)                   \
+  X(local_Hz)                    \
+  X(local_N_per_m)               \
   X(period_s)

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "rt_core/contact/contact.h"
+#include "rt_core/contact/contact_stiffness.h"
 #include "rt_core/safety/hand_energy.h"
 #include "rt_core/tick.h"
 #include "tests/support/roomy.h"
@@ -48,6 +49,36 @@ TEST(WithinStep, BoundsWhatTheToolDoesByItself) {
   EXPECT_NEAR(within_step(model, *state, at({0.01, 0, 0}), status).position_m.x, own_m + 0.002, 1e-15);
   state->safety.swings = 1;
   EXPECT_NEAR(within_step(model, *state, at({0.01, 0, 0}), status).position_m.x, own_m / 5 + 0.002, 1e-15);
+}
+
+// Of a contact that pushes along one slanted direction: the springs in series along it, nothing across.
+TEST(FeltStiffness, IsCouplingAndContactInSeries) {
+  Model model;
+  model.params = tiny_params();  // 1500 N/m
+  model.params.local_period_s = 1e-4;
+  const StatePtr state = roomy_state();
+  const ScratchPtr scratch = roomy_scratch();
+  scratch->status = 0;
+  scratch->held_by_hand = scratch->contact_count = 1;
+  const Vec3 n = unit_or({1, 2, 3}, {});
+  ContactStiffness contact;
+  add_spring(contact, 3000, n, {});
+  store(contact, state->contact_stiffness);
+  const FeltStiffness felt = felt_stiffness(model, *state, *scratch);
+  const double series = 1500.0 * 3000 / 4500;
+  EXPECT_NEAR(norm(felt.along - series * Vec3{n.x * n.x, n.y * n.y, n.z * n.z}), 0, 1e-9);
+  EXPECT_NEAR(norm(felt.across - series * Vec3{n.y * n.z, n.x * n.z, n.x * n.y}), 0, 1e-9);
+  state->live.stiffness = 2;  // contact of 6000 N/m, found in units of two newtons
+  EXPECT_NEAR(felt_stiffness(model, *state, *scratch).along.z, 1500.0 * 6000 / 7500 * n.z * n.z, 1e-9);
+  state->live.stiffness = 1;
+  scratch->status = Status::kForceClamped;  // the force is the device's largest, wherever the handle goes
+  EXPECT_EQ(felt_stiffness(model, *state, *scratch).along, Vec3{});
+  scratch->status = 0;
+  scratch->contact_count = 0;
+  EXPECT_EQ(felt_stiffness(model, *state, *scratch).along, Vec3{});
+  scratch->contact_count = 1;
+  model.params.local_period_s = 0;  // a device that holds forces
+  EXPECT_EQ(felt_stiffness(model, *state, *scratch).along, Vec3{});
 }
 
 // A wall of 100 N/mm, and a hand that goes 50 mm behind it and back at 0.2 m/s: the wall is pressed with what the

@@ -53,6 +53,7 @@ TEST(BusBudget, TheProjectsNodeFitsAtOneKilohertz) {
   EXPECT_NEAR(fd.used_us, 83.6 + 107.6 + 31 + 107.6, 1e-9);
   EXPECT_NEAR(fd.available_us, 900, 1e-9);
   EXPECT_TRUE(fd.fits);
+  EXPECT_NEAR(check_bus_budget(haptic_node_budget(true, 1, true)).used_us, 139.6 + 107.6 + 31 + 139.6, 1e-9);
   const BusVerdict classic = check_bus_budget(haptic_node_budget(false));
   EXPECT_NEAR(classic.used_us, 4 * 135 + 31 + 135, 1e-9);
   EXPECT_TRUE(classic.fits);

@@ -66,6 +66,10 @@ TEST(Codec, RoundTripsEveryMessage) {
   Command command_back;
   EXPECT_EQ(decode(encoded<Command, kCommandBytes>(command), 1, command_back), DecodeResult::kOk);
   EXPECT_EQ(command_back, command);
+  const LocalCommand local{7, 6, 1, {1, -2, 3}, {4, 5, -6}, {8388607, 0, 200000, -150, 42, -8388608}, {-1, 2, 3}, 30};
+  LocalCommand local_back;
+  EXPECT_EQ(decode(encoded<LocalCommand, kLocalCommandBytes>(local), 1, local_back), DecodeResult::kOk);
+  EXPECT_EQ(local_back, local);
   const ClassicForce force{255, {-32768, 32767, -1}};
   ClassicForce force_back;
   EXPECT_EQ(decode(encoded<ClassicForce, 8>(force), 1, force_back), DecodeResult::kOk);
@@ -107,6 +111,7 @@ void expect_every_bit_guarded(const Message& message) {
 TEST(Codec, EverySingleBitErrorIsDetected) {
   expect_every_bit_guarded<Status, kStatusBytes>(sample_status());
   expect_every_bit_guarded<Command, kCommandBytes>(Command{});
+  expect_every_bit_guarded<LocalCommand, kLocalCommandBytes>(LocalCommand{});
   expect_every_bit_guarded<ClassicForce, 8>({3, {1, 2, 3}});
   expect_every_bit_guarded<ClassicTorque, 8>({3, 1, {1, 2, 3}});
   expect_every_bit_guarded<ClassicPosition, 8>({3, {1, 2, 3}});

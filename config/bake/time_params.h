@@ -1,0 +1,26 @@
+// What of a scene's parameters follows from times: the device's own loop, the damping of its coupling, and how the body
+// relaxes from tick to tick.
+#pragma once
+
+#include <cmath>
+
+#include "config/scene/scene.h"
+#include "rt_core/model.h"
+
+namespace palpate {
+
+// Needs p.coupling_N_per_m.
+inline void set_times(const SceneDesc& scene, ModelParams& p) {
+  const DeviceDesc& d = scene.device;
+  p.local_period_s = d.local_Hz > 0 ? 1 / d.local_Hz : 0;
+  p.encoder_step_m = d.smooth_encoder ? d.encoder_step_m : 0;
+  p.encoder_step_rad = d.smooth_encoder ? d.encoder_step_rad : 0;
+  const double late_s = d.local_Hz > 0 ? 0.5 * p.local_period_s : 0.5 * d.period_s + d.delay_s;
+  p.coupling_Ns_per_m = is_auto(d.coupling_Ns_per_m) ? p.coupling_N_per_m * late_s : d.coupling_Ns_per_m;
+  const Vec3 share = scene.material.relaxation_share, time_s = scene.material.relaxation_s;
+  const auto kept = [&](double s) { return std::exp(-d.period_s / s); };
+  p.relax_share_1 = share.x, p.relax_share_2 = share.y, p.relax_share_3 = share.z;
+  p.relax_kept_1 = kept(time_s.x), p.relax_kept_2 = kept(time_s.y), p.relax_kept_3 = kept(time_s.z);
+}
+
+}  // namespace palpate

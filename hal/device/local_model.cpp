@@ -1,0 +1,40 @@
+#include "hal/device/local_model.h"
+
+namespace palpate {
+
+namespace {
+
+// No principal minor of K + small I is below zero.
+bool is_semi_definite(Vec3 d, Vec3 o, double small) noexcept {
+  const double x = d.x + small, y = d.y + small, z = d.z + small;
+  const double xy = x * y - o.z * o.z, xz = x * z - o.y * o.y, yz = y * z - o.x * o.x;
+  const double all = x * yz - o.z * (o.z * z - o.x * o.y) + o.y * (o.z * o.x - y * o.y);
+  return x >= 0 && y >= 0 && z >= 0 && xy >= 0 && xz >= 0 && yz >= 0 && all >= 0;
+}
+
+}  // namespace
+
+LocalModel bounded_model(const LocalModel& model, double most_N_per_m) noexcept {
+  const Vec3 d = model.along_N_per_m, o = model.across_N_per_m;
+  const bool is_number = is_finite(model.point_m) && is_finite(d) && is_finite(o);
+  if (!is_number || !(model.valid_s > 0 && model.valid_s <= kLocalValid_s)) return {};
+  if (!is_semi_definite(d, o, 1e-6 * max_of(d.x + d.y + d.z, 0) + 1e-9)) return {};
+  // The largest eigenvalue is at most the Frobenius norm, and equal to it for the one stiff direction of a contact.
+  const double size = square_root(squared_norm(d) + 2 * squared_norm(o));
+  const double scale = size > most_N_per_m ? most_N_per_m / size : 1;
+  LocalModel bounded = model;
+  bounded.along_N_per_m = scale * d;
+  bounded.across_N_per_m = scale * o;
+  return bounded;
+}
+
+Vec3 local_force_N(Vec3 force_N, const LocalModel& model, Vec3 position_m) noexcept {
+  const Vec3 d = model.along_N_per_m, o = model.across_N_per_m, x = position_m - model.point_m;
+  const Vec3 change{d.x * x.x + o.z * x.y + o.y * x.z, o.z * x.x + d.y * x.y + o.x * x.z,
+                    o.y * x.x + o.x * x.y + d.z * x.z};
+  const Vec3 force = force_N - change, sense = unit_or(force_N, {});
+  const double back = min_of(0, dot(force, sense));
+  return force - back * sense;
+}
+
+}  // namespace palpate
