@@ -245,7 +245,7 @@ class Watch {
 
   void tell_live() {
     const LiveSettings before = live_;
-    if (options_.companion.live) live_ = options_.companion.live().value_or(live_);
+    if (options_.companion.live) options_.companion.live(live_);
     settings_.poll(live_);
     if (!(live_ == before)) link_.mailbox().set_live(live_);
   }

@@ -26,7 +26,7 @@ struct RunCompanion {
   std::function<void(const TickRecord&)> tick;          // of every record, on the recorder's thread or the run's
   std::function<bool()> goes_on;                        // asked at every look; false ends the run in order
   std::function<std::optional<JointCommand>()> joints;  // asked at every look; something replaces the script
-  std::function<std::optional<LiveSettings>()> live;    // asked at every look; something is what is wanted from now on
+  std::function<void(LiveSettings&)> live;              // asked at every look: may change what is wanted
   int hand_fd = -1;                                     // memory that pulls the simulated hand; -1: none
 };
 

@@ -34,7 +34,7 @@ StartedRun::StartedRun(RunOptions options, bool mouse) : mouse_(mouse), has_hand
     if (closing < 0 && !mouse_) return std::nullopt;
     return all_fingers(std::max(0.0f, closing));
   };
-  companion.live = [this] { return steering_.take_settings(); };
+  companion.live = [this](LiveSettings& wanted) { steering_.apply_settings(wanted); };
   if (has_hand_) companion.hand_fd = steering_.fd();
   thread_ = std::thread([this, options] { run(options); });
   while (!begun_.load() && !ended_.load()) std::this_thread::sleep_for(std::chrono::milliseconds(2));

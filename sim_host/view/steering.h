@@ -3,9 +3,9 @@
 
 #include <atomic>
 #include <mutex>
-#include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "hal/system/shared_memory.h"
 #include "rt_core/live.h"
@@ -28,15 +28,16 @@ class Steering {
   void close_to(double closing) { closing_.store(static_cast<float>(closing)); }
   // Below 0: nobody asked yet.
   float closing() const { return closing_.load(); }
-  // What is wanted of the run's live settings from now on.
-  void set(const LiveSettings& wanted) {
+  // One of the run's live settings is to be this; the others stay as anybody wanted them.
+  void set(float LiveSettings::*which, float value) {
     const std::lock_guard lock(mutex_);
-    wanted_ = wanted;
+    asked_.emplace_back(which, value);
   }
-  // Told once; nothing when nothing new is wanted.
-  std::optional<LiveSettings> take_settings() {
+  // What was asked since the last time.
+  void apply_settings(LiveSettings& wanted) {
     const std::lock_guard lock(mutex_);
-    return std::exchange(wanted_, std::nullopt);
+    for (const auto& [which, value] : asked_) wanted.*which = value;
+    asked_.clear();
   }
   // For the simulated device (palpate-device --hand-fd).
   int fd() const { return memory_.fd(); }
@@ -45,7 +46,7 @@ class Steering {
   SharedMemory memory_;
   HandTargetWriter writer_;
   std::mutex mutex_;
-  std::optional<LiveSettings> wanted_;
+  std::vector<std::pair<float LiveSettings::*, float>> asked_;
   std::atomic<float> closing_{-1};
   std::atomic<std::uint64_t> pulls_{0};
 };

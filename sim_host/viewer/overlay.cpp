@@ -75,7 +75,11 @@ class Overlay {
     const std::string what = fmt::format("{:.2f} N", norm(force_N));
     const ImVec2 room = extent(unit_, what);
     const float reach = 0.45f * unit_ + 0.5f * (std::abs(dx) * room.x + std::abs(dy) * room.y) / length;
-    const ImVec2 middle{tip.x + dx / length * reach, tip.y + dy / length * reach};
+    ImVec2 middle{tip.x + dx / length * reach, tip.y + dy / length * reach};
+    const Bar bar = legend_bar();
+    const float nearest = bar.left - 1.2f * unit_ - 0.5f * room.x;  // not under the colours
+    if (middle.y > bar.top - 3 * unit_ && middle.y < bar.top + bar.height + 2 * unit_)
+      middle.x = std::min(middle.x, nearest);
     for (const ImVec2 other : placed_)
       if (std::abs(other.y - middle.y) < unit_ && std::abs(other.x - middle.x) < room.x) return;
     placed_.push_back(middle);
@@ -94,9 +98,17 @@ class Overlay {
     }
   }
 
+  struct Bar {
+    float left, top, height;
+  };
+  Bar legend_bar() const {
+    const float height = std::min(0.42f * size_.y, 22 * unit_);
+    return {low_.x + size_.x - 4.4f * unit_, low_.y + 0.5f * (size_.y - height), height};
+  }
+
   void colour_legend() {
-    const float height = std::min(0.42f * size_.y, 22 * unit_), width = 1.0f * unit_;
-    const float left = low_.x + size_.x - 4.4f * unit_, top = low_.y + 0.5f * (size_.y - height);
+    const auto [left, top, height] = legend_bar();
+    const float width = 1.0f * unit_;
     constexpr int kSteps = 64;
     for (int i = 0; i < kSteps; ++i) {
       const auto y = [&](int k) { return top + height * static_cast<float>(k) / kSteps; };

@@ -228,18 +228,16 @@ void event_marks(ImVec2 low, ImVec2 high, const PanelScene& scene, double first_
 // Live settings, as the run has them now; a slider that is moved says what is wanted.
 void settings_block(const PanelScene& scene) {
   const SettingsState& now = scene.frame->state->live;
-  LiveSettings wanted = {static_cast<float>(now.stiffness), static_cast<float>(now.friction),
-                         static_cast<float>(now.force_limit), static_cast<float>(now.coupling)};
-  bool moved = false;
   ImGui::PushItemWidth(0.5f * ImGui::GetContentRegionAvail().x);
-#define PALPATE_FIELD(name, lowest, highest, key, meaning)                                          \
-  moved |= ImGui::SliderFloat(slider_name(#name).c_str(), &wanted.name, static_cast<float>(lowest), \
-                              static_cast<float>(highest), "x %.2f", ImGuiSliderFlags_AlwaysClamp); \
+#define PALPATE_FIELD(name, lowest, highest, key, meaning)                                                           \
+  float name = static_cast<float>(now.name);                                                                         \
+  if (ImGui::SliderFloat(slider_name(#name).c_str(), &name, static_cast<float>(lowest), static_cast<float>(highest), \
+                         "x %.2f", ImGuiSliderFlags_AlwaysClamp))                                                    \
+    scene.steering->set(&LiveSettings::name, name);                                                                  \
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", meaning);
   PALPATE_LIVE_SETTINGS(PALPATE_FIELD)
 #undef PALPATE_FIELD
   ImGui::PopItemWidth();
-  if (moved) scene.steering->set(wanted);
 }
 
 }  // namespace

@@ -152,8 +152,8 @@ TEST_F(RunVirtual, LiveSettingsAreRecordedAndReplayed) {
   std::string answer, refusal;
   std::thread asker;
   options_.companion.look = std::chrono::milliseconds(10);
-  options_.companion.live = [&]() -> std::optional<LiveSettings> {
-    if (++look == 50) return LiveSettings{0.5f, 1, 1, 1};
+  options_.companion.live = [&](LiveSettings& wanted) {
+    if (++look == 50) wanted.stiffness = 0.5f;
     if (look == 90) {
       asker = std::thread([&] {
         answer = ask_run(getpid(), "friction=0 coupling=0.5");
@@ -166,7 +166,6 @@ TEST_F(RunVirtual, LiveSettingsAreRecordedAndReplayed) {
       // It waits for the run's looks; give it the time to ask.
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }
-    return std::nullopt;
   };
   options_.pace = true;
   const RunResult result = run_session(options_);
