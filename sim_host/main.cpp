@@ -59,6 +59,9 @@ int main(int argc, char** argv) {
   palpate::add_view_command(app, exit_code);
   palpate::add_grasp_command(app, exit_code);
   palpate::add_feel_command(app, exit_code);
+  palpate::add_compare_command(app, exit_code);
+  palpate::add_fit_command(app, exit_code);
+  palpate::add_report_command(app, exit_code);
   palpate::add_doctor_command(app, exit_code);
   palpate::add_device_test_command(app, exit_code);
   if (argc == 1) {

@@ -23,9 +23,7 @@ namespace {
 constexpr std::array<double, 5> kDepths = {0.125, 0.25, 0.5, 0.75, 1};  // of the deepest
 // Of what the device renders: a press ends there. Deeper, nobody feels it.
 constexpr double kForces = 3;
-// Edges of the elements under the ball, of the contact's radius at the deepest; and how far they reach, of that radius.
-// 0.3 instead changes the forces on a ring by 0.0 to 0.7 % (2026-11-22).
-constexpr double kEdgeShare = 0.45, kReachShare = 1.2;
+constexpr double kReachShare = 1.2;  // how far the fine elements reach, of the contact's radius at the deepest
 // A check in per cent: penetration left, of a facet, residual, and steps of several facets. A tube's forces change by
 // 0.6 % at most from elements of 0.3 radii, 1e-3, 1e-6 and steps of one facet, in a twentieth of the time (2026-11-22).
 constexpr double kGapTolerance = 5e-3, kResidualTolerance = 1e-4, kStepFacets = 3;
@@ -117,10 +115,11 @@ std::vector<CheckPress> check_places(const SceneDesc& scene, const ImageContents
   return presses;
 }
 
-void press_elements(const SceneDesc& scene, const ImageContents& image, const TetMesh& mesh, CheckPress& press) {
+int press_elements(const SceneDesc& scene, const ImageContents& image, const TetMesh& mesh, CheckPress& press,
+                   double edge_share) {
   const double patch = std::min(contact_radius_m(press.radius_m, press.depth_m.back()),
                                 pressed_radius_m(image.params, press.radius_m, expected_N(scene, image, press)));
-  const Refinement zone{press.place_m, kReachShare * patch, kEdgeShare * patch};
+  const Refinement zone{press.place_m, kReachShare * patch, edge_share * patch};
   const TetMesh fine = refine_elastic_mesh(scene, image, mesh, {&zone, 1});
   const fem::StrainMesh<3> solid = elastic::solid_mesh(fine, scene.source.where("body.shape"));
   const std::vector<bool> fixed = elastic::fixed_components(supports_of(scene, fine));
@@ -148,10 +147,13 @@ void press_elements(const SceneDesc& scene, const ImageContents& image, const Te
     press.slides = !state.converged || !(norm(force - along * press.normal) <= kSlides * along);
     if (press.slides || (along > most_N && !press.reference_N.empty())) break;
     press.reference_N.push_back(along);
+    press.force_w_N.push_back(force);
     if (along > most_N) break;
   }
   if (press.slides && !press.reference_N.empty()) press.reference_N.pop_back();
   press.depth_m.resize(press.reference_N.size());
+  press.force_w_N.resize(press.reference_N.size());
+  return solid.node_count();
 }
 
 ImageContents with_ball(const SceneDesc& scene, const ImageContents& image, double radius_m) {

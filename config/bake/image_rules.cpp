@@ -49,6 +49,16 @@ Model model_of(const ImageContents& image) {
   return model;
 }
 
+ImageContents contents_of(const Model& model) {
+  ImageContents image;
+  image.name = model.name;
+  image.params = model.params;
+#define PALPATE_FIELD(type, name, count, frame, meaning) image.name.assign(model.name.begin(), model.name.end());
+  PALPATE_MODEL_ARRAYS(PALPATE_FIELD)
+#undef PALPATE_FIELD
+  return image;
+}
+
 void refuse(const SceneDesc& scene, const ImageResult& result) {
   if (result.error == ImageError::kNone) return;
   const bool hand = scene.articulation == Articulation::kHand;

@@ -13,6 +13,8 @@ namespace palpate {
 
 // Views of what has been compiled so far; valid while `image` lives unchanged.
 Model model_of(const ImageContents& image);
+// A copy of an image's contents, to bake on.
+ImageContents contents_of(const Model& model);
 
 // Throws the ConfigError of the scene's key that stands behind what the loader refuses; nothing for kNone.
 void refuse(const SceneDesc& scene, const ImageResult& result);

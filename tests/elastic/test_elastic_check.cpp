@@ -5,6 +5,7 @@
 
 #include "config/bake/elastic_check.h"
 #include "config/bake/elastic_mesh.h"
+#include "config/bake/image_rules.h"
 #include "config/bake/parallel.h"
 #include "config/scene/config_error.h"
 #include "rt_core/status.h"
@@ -16,16 +17,6 @@ namespace {
 std::string with_checks(std::string scene, const std::string& keys) {
   const std::string table = "[body.elastic]\n";
   return scene.insert(scene.find(table) + table.size(), keys);
-}
-
-// What the baker would press into, from an image's arrays.
-ImageContents contents_of(const Model& model) {
-  ImageContents out;
-  out.params = model.params;
-#define PALPATE_COPY(type, name, count, frame, meaning) out.name.assign(model.name.begin(), model.name.end());
-  PALPATE_MODEL_ARRAYS(PALPATE_COPY)
-#undef PALPATE_COPY
-  return out;
 }
 
 // The arch of the tick's tests, whose finer reference is known: a quarter in H27, 5175 nodes, 1.3 mm at the contact.
