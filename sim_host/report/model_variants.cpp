@@ -49,24 +49,45 @@ void response(SceneDesc& scene, ContactLaw law) {
   scene.elastic = {};
   scene.fem = {};
 }
-void tip(SceneDesc& scene, const PressPlace&) { response(scene, ContactLaw::kTool); }
-void tip_parabola(SceneDesc& scene, const PressPlace&) {
+// Of the ball's radius: the tip's law has no deeper one where tip and body have an effective radius below the ball's,
+// and goes on by its tangent.
+constexpr double kTipDepthShare = 0.78;
+
+// Principal radii at the top of bodies whose curvature the tip's law does not find by itself.
+void curve_at_top(SceneDesc& scene, const PressPlace& press) {
+  if (!(press.normal.y > 1 - 1e-9)) return;
+  const BodyDesc& body = scene.body;
+  const Vec3 h = body.half_axes_m;
+  double &one = scene.tip.body_radius_1_m, &two = scene.tip.body_radius_2_m;
+  if (body.shape == BodyShape::kEllipsoid || body.shape == BodyShape::kHalfShell)
+    one = h.x * h.x / h.y, two = h.z * h.z / h.y;
+  if (body.axis != BodyAxis::kZ) return;
+  if (body.shape == BodyShape::kRing) one = body.radius_m, two = 0.5 * body.wall_m;
+  if (body.shape == BodyShape::kHollowCylinder) one = body.radius_m, two = 0;  // 0: flat
+}
+void tip(SceneDesc& scene, const PressPlace& press) {
   response(scene, ContactLaw::kTool);
+  scene.contact.max_depth_m = std::min(scene.contact.max_depth_m, kTipDepthShare * press.radius_m);
+  curve_at_top(scene, press);
+}
+void tip_parabola(SceneDesc& scene, const PressPlace& press) {
+  tip(scene, press);
   scene.tip.sphere = SphereLaw::kParabola;
 }
-void layer(SceneDesc& scene, const PressPlace&) {
-  response(scene, ContactLaw::kTool);
+void layer(SceneDesc& scene, const PressPlace& press) {
+  tip(scene, press);
   const bool standing = scene.body.shape == BodyShape::kCylinder && scene.body.axis == BodyAxis::kY;
   if (!standing && scene.body.shape != BodyShape::kBox)
     throw ConfigError("a layer is a box or a standing cylinder, as thick everywhere");
   scene.layer.thickness_m = standing ? scene.body.height_m : scene.body.size_m.y;
 }
-void series(SceneDesc& scene, const PressPlace&) {
-  response(scene, ContactLaw::kTool);
+void series(SceneDesc& scene, const PressPlace& press) {
+  tip(scene, press);
   scene.series.c0_m_per_N = scene.series.c1_m_per_N2 = kAuto;
 }
-void table(SceneDesc& scene, const PressPlace&) {
-  response(scene, ContactLaw::kTable);
+void table(SceneDesc& scene, const PressPlace& press) {
+  tip(scene, press);
+  scene.contact.law = ContactLaw::kTable;
   scene.table.source = TableSource::kFem;
 }
 void points(SceneDesc& scene, ContactLaw law) {

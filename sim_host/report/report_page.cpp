@@ -81,7 +81,7 @@ std::string run_row(const ModelRun& run) {
   } else {
     row += "<td colspan=7></td>";
   }
-  row += fmt::format("<td>{:.2g}</td><td>{}</td><td>{:.1f}</td><td>{:.1f}</td><td>{:.2f}</td><td>{:.2f}</td></tr>\n",
+  row += fmt::format("<td>{:.2f}</td><td>{}</td><td>{:.1f}</td><td>{:.1f}</td><td>{:.2f}</td><td>{:.2f}</td></tr>\n",
                      1e3 * run.step_N, run.count.counted ? thousands(run.count.worst) : "-", run.p50_us, run.p999_us,
                      static_cast<double>(run.image_bytes) / 1e6, run.bake_s);
   return row;
@@ -116,7 +116,8 @@ std::string stage_table(const CaseReport& report) {
 
 std::string case_section(const CaseReport& report) {
   std::string text = fmt::format(
-      "<h2 id=\"{0}\">{0}</h2>\n<p>{1}</p><p class=note>Ball of {2:.3g} mm at ({3:.4g}, {4:.4g}, {5:.4g}) mm, {6:.3g} "
+      "<h2 id=\"{0}\">{0}</h2>\n<p>{1}</p><p class=note>Ball of radius {2:.3g} mm at ({3:.4g}, {4:.4g}, {5:.4g}) mm, "
+      "{6:.3g} "
       "mm "
       "deep.",
       report.name, html(report.about), 1e3 * report.press.radius_m, 1e3 * report.press.place_m.x,
@@ -189,7 +190,7 @@ std::string report_markdown(const std::vector<CaseReport>& cases, const ReportSt
   for (const CaseReport& report : cases) {
     if (!report.reference) continue;
     text += fmt::format(
-        "\n### {}\n{} Ball of {:.3g} mm, {:.3g} mm deep; the reference's meshes differ by {} %.\n\n"
+        "\n### {}\n{} Ball of radius {:.3g} mm, {:.3g} mm deep; the reference's meshes differ by {} %.\n\n"
         "| model | force RMS / largest, % | stiffness RMS, % | direction, degrees | path not felt, % | step, mN | "
         "worst "
         "tick, instructions | image, MB | bake, s |\n|---|---|---|---|---|---|---|---|---|\n",
@@ -198,7 +199,7 @@ std::string report_markdown(const std::vector<CaseReport>& cases, const ReportSt
     for (const ModelRun& run : report.runs) {
       if (!run.refused.empty() || !run.error) continue;
       const CurveError& e = *run.error;
-      text += fmt::format("| {} | {} / {} | {} | {:.1f} | {} | {:.2g} | {} | {:.2f} | {:.1f} |\n", run.name,
+      text += fmt::format("| {} | {} / {} | {} | {:.1f} | {} | {:.2f} | {} | {:.2f} | {:.1f} |\n", run.name,
                           per_cent(e.force_rms), per_cent(e.force_largest), per_cent(e.stiffness_rms),
                           e.direction_rad * 180 / kPi, per_cent(e.force_unnoticed, 0), 1e3 * run.step_N,
                           run.count.counted ? thousands(run.count.worst) : "-",

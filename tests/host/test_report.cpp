@@ -184,7 +184,7 @@ TEST(Report, RunsAModelAndKeepsItsFigures) {
   const ModelRun& run = report.runs[0];
   ASSERT_EQ(run.refused, "");
   ASSERT_TRUE(run.error.has_value());
-  // Small-strain theory of the layer against large strain; 2.2 to 5.1 % on 2026-11-22.
+  // Small-strain theory of the layer against large strain; 3.2 % at most on 2026-11-22.
   EXPECT_LT(std::abs(run.error->force_largest), 0.1);
   EXPECT_GT(run.hash, 0u);
   const ModelRun back = run_of_json(run_json(run));
