@@ -66,9 +66,6 @@ inline constexpr std::int32_t kStepHalvings = 4;
 inline constexpr std::int32_t kMaxSoftModes = 10;
 // Its linear modes: each costs 3 multiply-adds a vertex and pair of regions. Refused at bake.
 inline constexpr std::int32_t kMaxLinearModes = 64;
-// Linearisations of an elastic body's energy and surface in one tick; more converge over the next ticks. What is left
-// is in residual_m; Status::kNotConverged above its tolerance.
-inline constexpr std::int32_t kElasticLinearisations = 2;
 // A lost region keeps its identity this long and this close, so a bounce does not lose its friction history.
 inline constexpr std::int32_t kRegionMemoryTicks = 50;
 inline constexpr double kRegionMemoryDistance_m = 2e-3;

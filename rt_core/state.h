@@ -251,8 +251,10 @@ struct SettingsState {
   X(std::int32_t, moved, 0, "1: some amplitude is not zero") \
   X(std::int32_t, reserved, 0, "-")                          \
   X(double, swept_m, 0, "no place of the surface moved farther in the last tick")
-#define PALPATE_ELASTIC_POOLS(X) \
-  X(double, soft_rootJ, model.params.elastic_soft, soft_rootJ.size(), "amplitudes of the soft modes")
+#define PALPATE_ELASTIC_POOLS(X)                                                                      \
+  X(double, soft_rootJ, model.params.elastic_soft, soft_rootJ.size(), "amplitudes of the soft modes") \
+  X(double, step_rootJ, model.params.elastic_soft, step_rootJ.size(),                                 \
+    "their last change, with which the next tick begins")
 
 // Shape of an elastic body: where the next tick begins.
 struct ElasticFields {

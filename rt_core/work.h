@@ -36,10 +36,8 @@ namespace palpate {
   X(tip_laws, kSolve, 190, "laws of tips evaluated")                                     \
   X(region_pairs, kSolve, 13, "pairs of regions coupled, per evaluation")                \
   X(region_cubes, kSolve, 2, "entries eliminated by the regions' Newton steps")          \
-  X(looks_again, kSolve, 200, "boxes and triangles of the surface looked at again")      \
   X(linearised, kSolve, 3300, "linearisations of an elastic body")                       \
   X(linked, kSolve, 28, "its modes between rows of regions")                             \
-  X(shown_again, kSolve, 54, "terms of its vertices summed up")                          \
   X(soft_pairs_again, kSolve, 4, "entries of its energy summed up")                      \
   X(gathered, kSolve, 4, "vectors of eight gathered from a body's compliance")           \
   X(vectors, kSolve, 5.6, "vectors of four or eight multiplied and added")               \

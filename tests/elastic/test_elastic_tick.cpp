@@ -120,6 +120,25 @@ TEST_F(ArchInTick, StillToolGetsAStillForce) {
   EXPECT_LT(change_while_held_N(bench, kTop + Vec3{3e-3, -4e-3, 2e-3}, 20), 1e-9);
 }
 
+// One linearisation a tick, around where the body goes: on the way at 20 and at 200 mm/s the force is that of the tool
+// standing there.
+TEST_F(ArchInTick, FastPressIsTheStillOne) {
+  for (const double step_m : {2e-5, 2e-4}) {
+    Bench moving(scene().model()), standing(scene().model());
+    double worst = 0;
+    for (int i = 1; i * step_m < 5e-3; ++i) {
+      const Vec3 at = kTop - Vec3{0, i * step_m, 0};
+      const double force = moving.tick_at({at, {}}, {}).contact_w.force_N.y;
+      if (std::fmod(i * step_m + 1e-6, 1e-3) > 2e-6) continue;
+      move_to(standing, at + Vec3{0, 1e-3, 0}, at);
+      for (int k = 0; k < 40; ++k) standing.tick_at({at, {}}, {});
+      worst = std::max(worst, std::abs(force / standing.output.contact_w.force_N.y - 1));
+    }
+    RecordProperty("at_" + std::to_string(std::lround(1e6 * step_m)) + "_mm_per_s", std::to_string(100 * worst) + " %");
+    EXPECT_LT(worst, 0.002);
+  }
+}
+
 // Sliding over facets and their edges at 100 mm/s.
 TEST_F(ArchInTick, ForceOfASlideHasNoSteps) {
   Bench bench(scene().model());

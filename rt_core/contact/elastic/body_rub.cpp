@@ -6,35 +6,28 @@ namespace {
 
 using namespace elastic_layout;
 
-// How the material at the foot moves along both axes by each amplitude.
-void show_sweep(const Model& model, const Real* y, const ElasticRow& row, RubAxis (&axis)[2]) PALPATE_RT {
+// How the material at the foot moves by each amplitude.
+void show_sweep(const Model& model, const Real* y, const ElasticRow& row, Vec3* sweep_w) PALPATE_RT {
   const std::int32_t soft = model.params.elastic_soft;
   const Triangle& triangle = model.triangle[static_cast<std::size_t>(row.foot.triangle)];
   const float* block[3];
   for (int k = 0; k < 3; ++k) block[k] = vertex_block(model, triangle.vertex[k]);  // bound: 3
-  struct Along {
-    Real of[2];
-  };
-  const auto along = [&](std::int32_t term) PALPATE_RT -> Along {
+  const auto moved = [&](std::int32_t term) PALPATE_RT -> Double4 {
     Double4 u{};
     for (int k = 0; k < 3; ++k) u += splat4(row.foot.weight[k]) * widen4(block[k] + kTermFloats * term);  // bound: 3
-    const Vec3 moved{u[0], u[1], u[2]};
-    return {{dot(moved, axis[0].unit_w), dot(moved, axis[1].unit_w)}};
+    return u;
   };
-  for (std::int32_t a = 0; a < soft; ++a) {
-    const Along g = along(a);
-    for (int i = 0; i < 2; ++i) axis[i].sweep[a] = g.of[i];  // bound: 2
-  }
+  Double4 sweep[kMaxSoftModes];
+  for (std::int32_t a = 0; a < soft; ++a) sweep[a] = moved(a);
   std::int32_t pair = soft;
   for (std::int32_t a = 0; a < soft; ++a) {  // bound: pairs
     for (std::int32_t b = a; b < soft; ++b, ++pair) {
-      const Along g = along(pair);
-      for (int i = 0; i < 2; ++i) {  // bound: 2
-        axis[i].sweep[a] += g.of[i] * y[b];
-        axis[i].sweep[b] += g.of[i] * y[a];
-      }
+      const Double4 u = moved(pair);
+      sweep[a] += splat4(y[b]) * u;
+      sweep[b] += splat4(y[a]) * u;
     }
   }
+  for (std::int32_t a = 0; a < soft; ++a) sweep_w[a] = {sweep[a][0], sweep[a][1], sweep[a][2]};
 }
 
 }  // namespace
@@ -50,9 +43,12 @@ BodyRub begin_rub(const Region& region, Vec3 motion_w) PALPATE_RT {
   return rub;
 }
 
-void aim_rub(const Model& model, const Real* y, const FrictionParameters& law, const ElasticRow& row, Real force_N,
-             bool is_first, BodyRub& rub) PALPATE_RT {
+void aim_rub(const Model& model, const State& state, const Real* y, const FrictionParameters& law,
+             const ElasticRow& row, Real force_N, BodyRub& rub) PALPATE_RT {
   if (!rub.is_on) return;
+  const std::int32_t soft = model.params.elastic_soft;
+  show_sweep(model, y, row, rub.sweep_w);
+  for (std::int32_t a = 0; a < soft; ++a) rub.moved_w += state.elastic.step_rootJ[a] * rub.sweep_w[a];
   const Vec3 n = row.foot.normal_w, trial = tangential_part(rub.stretch_w - rub.moved_w, n);
   const Real length = norm(trial);
   const Vec3 any = tangential_part(axis_off(n), n);
@@ -61,16 +57,15 @@ void aim_rub(const Model& model, const Real* y, const FrictionParameters& law, c
   rub.axis[0].force_N = rub.spring_N_per_m * length;
   rub.axis[1].force_N = 0;
   rub.axis[0].stiffness_N_per_m = rub.axis[1].stiffness_N_per_m = rub.spring_N_per_m;
-  if (!is_first) {
-    const Real sticking = static_limit_N(law, force_N);
-    const Real sliding = is_presliding(law.law) ? sticking : sliding_limit_N(law, force_N);
-    if (rub.axis[0].force_N > (rub.slides ? sliding : sticking)) {
-      rub.axis[0].force_N = sliding;
-      rub.axis[0].stiffness_N_per_m = 0;
-      rub.axis[1].stiffness_N_per_m = sliding / length;
-    }
+  const Real sticking = static_limit_N(law, force_N);
+  const Real sliding = is_presliding(law.law) ? sticking : sliding_limit_N(law, force_N);
+  if (rub.axis[0].force_N > (rub.slides ? sliding : sticking)) {
+    rub.axis[0].force_N = sliding;
+    rub.axis[0].stiffness_N_per_m = 0;
+    rub.axis[1].stiffness_N_per_m = sliding / length;
   }
-  show_sweep(model, y, row, rub.axis);
+  for (RubAxis& axis : rub.axis)  // bound: 2 soft
+    for (std::int32_t a = 0; a < soft; ++a) axis.sweep[a] = dot(axis.unit_w, rub.sweep_w[a]);
 }
 
 SurfaceUnderRub surface_under(const BodyRub& rub) PALPATE_RT {

@@ -20,20 +20,21 @@ struct RubAxis {
 };
 
 struct BodyRub {
-  bool is_on = false;       // the region has a memory of friction
-  bool slides = false;      // did in the last tick
-  Vec3 stretch_w;           // of the spring, had the surface held still: the last tick's and what the tool moved
-  Vec3 moved_w;             // by the surface, in the linearisations so far
-  Real spring_N_per_m = 0;  // of the last tick
-  RubAxis axis[2];          // along the spring's stretch; across it
+  bool is_on = false;           // the region has a memory of friction
+  bool slides = false;          // did in the last tick
+  Vec3 stretch_w;               // of the spring, had the surface held still: the last tick's and what the tool moved
+  Vec3 moved_w;                 // by the surface
+  Real spring_N_per_m = 0;      // of the last tick
+  Vec3 sweep_w[kMaxSoftModes];  // dx/dp of the material at the foot
+  RubAxis axis[2];              // along the spring's stretch; across it
 };
 
 // Before the first linearisation. `motion_w`: of the tool's material since the last tick.
 BodyRub begin_rub(const Region& region, Vec3 motion_w) PALPATE_RT;
-// Axes, forces and stiffnesses for the next linearisation. In the first one the tip sticks, whatever the force: only
-// the body's answer tells whether it slips. Later ones decide by the law at `force_N` on the region.
-void aim_rub(const Model& model, const Real* y, const FrictionParameters& law, const ElasticRow& row, Real force_N,
-             bool is_first, BodyRub& rub) PALPATE_RT;
+// Axes, forces and stiffnesses for the linearisation. Whether the tip slips is decided where the body goes if it moves
+// on as in the last tick, at that tick's force.
+void aim_rub(const Model& model, const State& state, const Real* y, const FrictionParameters& law,
+             const ElasticRow& row, Real force_N, BodyRub& rub) PALPATE_RT;
 
 // What the surface under a region did in this tick, and gives under the spring, along and across the stretch.
 SurfaceUnderRub surface_under(const BodyRub& rub) PALPATE_RT;

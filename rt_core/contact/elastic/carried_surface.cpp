@@ -39,22 +39,48 @@ CarriedVertex carry(const Model& model, const Real* y, std::int32_t vertex) PALP
 // The last Newton step to a foot: its square over a radius of a centimetre is beyond rounding.
 constexpr Real kStillCarried_m = 1e-9;
 
-// A triangle with its corners carried along.
+// A triangle with its corners carried along; a neighbour takes over the two corners they share.
 struct CarriedTriangle {
+  const Model& model;
+  const Real* y;
+  std::int32_t* shown;
+  std::int32_t triangle = -1;
   CarriedVertex vertex[3];
   foot::Corners corners;
-};
-CarriedTriangle carried_triangle(const Model& model, const Real* y, std::int32_t triangle) PALPATE_RT {
-  const auto index = static_cast<std::size_t>(triangle);
-  CarriedTriangle out;
-  for (int k = 0; k < 3; ++k) {  // bound: 3
-    const Vec3 normal = model.corner_normal[index].normal[k];
-    out.vertex[k] = carry(model, y, model.triangle[index].vertex[k]);
-    out.corners.v[k] = out.vertex[k].position_w;
-    out.corners.u[k] = unit_or(out.vertex[k].carried(normal), normal);
+
+  void move_to(std::int32_t next) PALPATE_RT {
+    if (next == triangle) return;
+    const Triangle& t = model.triangle[static_cast<std::size_t>(next)];
+    CarriedVertex old[3] = {vertex[0], vertex[1], vertex[2]};
+    for (int k = 0; k < 3; ++k) {  // bound: 3 x 3
+      const CarriedVertex* known = nullptr;
+      for (int i = 0; triangle >= 0 && i < 3; ++i)
+        if (model.triangle[static_cast<std::size_t>(triangle)].vertex[i] == t.vertex[k]) known = old + i;
+      vertex[k] = known != nullptr ? *known : carry(model, y, t.vertex[k]);
+      *shown += known != nullptr ? 0 : terms(model.params.elastic_soft);
+      corners.v[k] = vertex[k].position_w;
+    }
+    triangle = next;
   }
-  return out;
-}
+  void turn_normals() PALPATE_RT {
+    for (int k = 0; k < 3; ++k) {  // bound: 3
+      const Vec3 normal = model.corner_normal[static_cast<std::size_t>(triangle)].normal[k];
+      corners.u[k] = unit_or(vertex[k].carried(normal), normal);
+    }
+  }
+  // Over the facets to the one that the centre is above, as flat ones tell: a triangle so left behind costs a fifth of
+  // one left by Newton's steps. Above a convex edge the facets on both sides send it across.
+  void walk_below(Vec3 centre_w) PALPATE_RT {
+    std::int32_t left = -1;
+    for (std::int32_t i = 0; i < kFootWalk; ++i) {  // bound: kFootWalk
+      const int edge = foot::edge_to_cross(foot::place_on(corners, centre_w, 0.0));
+      const std::int32_t next = edge < 0 ? -1 : foot::across(model, triangle, edge);
+      if (next < 0 || next == left) return;
+      left = triangle;
+      move_to(next);
+    }
+  }
+};
 
 // What a change of each corner's 12 numbers (displacement, deformation gradient) does to the travel.
 struct TravelSlope {
@@ -229,21 +255,25 @@ Vec3 CarriedSurface::displacement(std::int32_t vertex) const PALPATE_RT {
   return carry(model, y, vertex).position_w - rest;
 }
 
-void CarriedSurface::place(const RoundTip& tip, std::int32_t triangle, Vec3 near_w, ElasticRow& row) const PALPATE_RT {
-  CarriedTriangle last;
+void CarriedSurface::place(const RoundTip& tip, std::int32_t triangle, Real nearer_m,
+                           ElasticRow& row) const PALPATE_RT {
+  CarriedTriangle last{model, y, shown, -1, {}, {}};
   row.tip = tip;
   row.along_1_per_m = 0;
-  const Vec3 centre_w = tip.centre_w();
+  const Vec3 centre_w = row.placed_w = tip.centre_w();
+  last.move_to(triangle);
+  last.walk_below(centre_w);
   row.foot = foot::search(
       model,
-      [this, &last](std::int32_t t) PALPATE_RT {
-        last = carried_triangle(model, y, t);
-        *shown += 3 * terms(model.params.elastic_soft);
+      [&last](std::int32_t t) PALPATE_RT {
+        last.move_to(t);
+        last.turn_normals();
         return last.corners;
       },
-      centre_w, triangle, near_w, kStillCarried_m);
+      centre_w, last.triangle, centre_w, kStillCarried_m);
   if (row.foot.state == FootState::kFound) {
     row.travel_m = tip.margin_m - row.foot.height_m;
+    if (!(row.travel_m + nearer_m > 0)) return;
     show_modes(model, y, travel_slope(model, row, last), row);
     if (!tip.is_ball()) {
       slide_along(last.corners, row);
@@ -251,6 +281,7 @@ void CarriedSurface::place(const RoundTip& tip, std::int32_t triangle, Vec3 near
     }
   } else if (place_on_facet(centre_w, triangle, row)) {
     row.travel_m = tip.margin_m - row.foot.height_m;
+    if (!(row.travel_m + nearer_m > 0)) return;
     row.rise = row.foot.normal_w;
     show_modes(model, y, facet_slope(row), row);
   } else {

@@ -3,7 +3,8 @@
 // is least where V' + sum F_k pull_k = 0. Around the last amplitudes that is linear in the forces,
 //   dp = -H^-1 (V' + sum F_k pull_k),   H = V'' + sum F_k turn_k,
 // so every region has one far field more, pull H^-1 pull, and its depth is that on the body let go: the tips' solver
-// with their exact laws does the rest. kElasticLinearisations of it a tick; a hold ends where rounding does.
+// with their exact laws does the rest. One linearisation a tick, around where the body goes if it moves on as in the
+// last tick: of a steady motion only its change is left to it, and a hold ends where rounding does.
 #include "rt_core/contact/contact.h"
 #include "rt_core/contact/elastic/linearised.h"
 #include "rt_core/contact/regions.h"
@@ -17,7 +18,7 @@ namespace {
 
 using namespace elastic_layout;
 
-// What one linearisation may move the surface under a tip beyond the one before: above it the tick says so.
+// What one more linearisation would move the surface under a tip: above it the tick says so.
 constexpr Real kElasticTolerance_m = 2e-5;
 
 // Shifts and forces of the regions.
@@ -38,26 +39,12 @@ void solve_forces(const ElasticLoad& load, Scratch& scratch, Real* force_N) PALP
     force_N[r] = region_at(load.region[r], scratch.system.shift_m[r]).force_N;
 }
 
-// Every row at the new amplitudes, from where it was.
-void place_again(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
-  const CarriedSurface surface = look(model, state, scratch, scratch.work.soft_pairs_again, scratch.work.shown_again);
-  for (std::int32_t i = 0; i < scratch.contact_count; ++i) {  // bound: kMaxPieces
-    const Contact& contact = scratch.contact[i];
-    ElasticRow& row = work_of(scratch).row[contact.piece];
-    const ElasticRow before = row;
-    surface.place(before.tip, before.foot.triangle, before.foot.foot_w, row);
-    if (row.foot.triangle < 0) row = before;
-    state.point[contact.point].closest_w = row.foot.foot_w;
-    state.point[contact.point].triangle = row.foot.triangle;
-  }
-}
-
 // How far the tick moved any place of the surface at most.
-Real swept_m(const Model& model, const State& state, const ElasticWork& work) PALPATE_RT {
-  Real y[kMaxTerms], sum = 0;
-  soft_products(model.params.elastic_soft, state.elastic.soft_rootJ.data(), y);
+Real swept_m(const Model& model, const State& state, ElasticWork& work) PALPATE_RT {
+  Real sum = 0;
+  soft_products(model.params.elastic_soft, state.elastic.soft_rootJ.data(), work.y);
   for (std::int32_t t = 0; t < terms(model.params.elastic_soft); ++t)  // bound: terms
-    sum += abs_of(y[t] - work.y_begun[t]) * work.reach_m[t];
+    sum += abs_of(work.y[t] - work.y_begun[t]) * work.reach_m[t];
   return sum;
 }
 
@@ -73,22 +60,19 @@ void solve(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   state.elastic.moved = 1;
   ElasticLoad load;
   Linearised body(model, state, scratch, load);
-  Real force_N[kMaxRegions], moved_m = 0;
-  for (std::int32_t r = 0; r < regions; ++r) force_N[r] = state.region[scratch.rows.slot[r]].normal_force_N;
-  for (std::int32_t i = 0; i < kElasticLinearisations; ++i) {  // bound: kElasticLinearisations
-    const std::int32_t looked = scratch.surface_work;
-    if (i > 0) place_again(model, state, scratch);
-    scratch.work.looks_again += scratch.surface_work - looked;
-    scratch.work.linearised += 1;
-    scratch.work.linked += regions * (regions + 1) / 2 * (model.params.elastic_linear + model.params.elastic_soft);
-    body.prepare(force_N);
-    body.gather();
-    solve_forces(load, scratch, force_N);
-    moved_m = body.step(force_N);
-  }
-  if (!(moved_m <= kElasticTolerance_m)) scratch.status |= Status::kNotConverged;
+  Real before_N[kMaxRegions];
+  for (std::int32_t r = 0; r < regions; ++r) before_N[r] = state.region[scratch.rows.slot[r]].normal_force_N;
+  scratch.work.linearised += 1;
+  scratch.work.linked += regions * (regions + 1) / 2 * (model.params.elastic_linear + model.params.elastic_soft);
+  body.prepare(before_N);
+  body.gather(before_N);
+  Real force_N[kMaxRegions];
+  solve_forces(load, scratch, force_N);
+  const Real left_m = body.step(force_N);
+  scratch.work.soft_pairs_again += soft_work(pairs(model.params.elastic_soft)) / 2;
+  if (!(left_m <= kElasticTolerance_m)) scratch.status |= Status::kNotConverged;
   if (work_of(scratch).energy.is_outside) scratch.status |= Status::kDepthBeyondRange;
-  scratch.residual_m = max_of(scratch.residual_m, moved_m);
+  scratch.residual_m = max_of(scratch.residual_m, left_m);
   body.yield_to_rubs();
   state.elastic.swept_m = swept_m(model, state, work_of(scratch));
   scratch.energy_J += body.energy_J() + body.linear_energy_J(force_N);
@@ -145,22 +129,19 @@ void create_work(const Model& model, void* block) noexcept {
 }
 
 // A tip stands on the carried surface after kFootWalk triangles at worst, or on its facet; found twice in a tick that
-// loses it, and placed again for every linearisation but the first.
+// loses it.
 void add_most_work(const Model& model, const SceneSizes& n, Work& work) noexcept {
-  const std::int32_t soft = model.params.elastic_soft, pair = pairs(soft), again = kElasticLinearisations - 1;
+  const std::int32_t soft = model.params.elastic_soft, pair = pairs(soft);
   const std::int32_t place = (3 * (kFootWalk + 2) + 1) * terms(soft) + kSlideWork;
   add_most_points(model, n, work);
   work.queries += 2 * n.points;  // a capsule asks three times
-  add_most_regions(n, kElasticLinearisations * TipLaws::kIterations, work);
+  add_most_regions(n, TipLaws::kIterations, work);
   work.shown += n.points * (2 * place + terms(soft));
   work.soft_pairs += soft_work(pair);
-  work.tip_laws +=
-      kElasticLinearisations * (kSeriesIterations + 1 + TipLaws::kIterations * (kStepHalvings + 1)) * n.contacts;
-  work.linearised += kElasticLinearisations;
-  work.linked += kElasticLinearisations * n.regions * (n.regions + 1) / 2 * (model.params.elastic_linear + soft);
-  work.shown_again += again * n.contacts * place;
-  work.soft_pairs_again += again * soft_work(pair);
-  work.looks_again += surface_work_share(model.params) + kMaxQueryWork;
+  work.tip_laws += (kSeriesIterations + 1 + TipLaws::kIterations * (kStepHalvings + 1)) * n.contacts;
+  work.linearised += 1;
+  work.linked += n.regions * (n.regions + 1) / 2 * (model.params.elastic_linear + soft);
+  work.soft_pairs_again += soft_work(pair) / 2;
 }
 
 }  // namespace

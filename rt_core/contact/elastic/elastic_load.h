@@ -22,6 +22,7 @@ struct ElasticLoad : TipLaws {
   Real per_curvature[kMaxPieces];
   TipRegion tips_of[kMaxRegions];
   FarField own[kMaxRegions];  // c and c1 of the region, without the modes
+  const Real* before_N;       // the last tick's forces, of all regions
 
   std::int32_t at(std::int32_t r, std::int32_t k) const PALPATE_RT {
     return static_cast<std::int32_t>(region[r].tip - tip) + k;
@@ -49,6 +50,18 @@ struct ElasticLoad : TipLaws {
     // Never steeper than 45 degrees: far beyond the range the second power of the force is no physics.
     const Real length = norm(aside), share = length > f ? f / length : 1.0;
     return {point, energy, stands.tip.centre_w(), share * aside, e > tip[i].local.tip->depth_max_m};
+  }
+  // What the last forces ask for; a new region as if it were alone.
+  Real start(std::int32_t r) const PALPATE_RT { return before_N[r] > 0 ? shift_under(before_N, r) : TipLaws::start(r); }
+  // As the tips' own, which have a pair's second order besides.
+  Real shift_under(const Real* force, std::int32_t i) const PALPATE_RT {
+    Real shift = far_shift_m(region[i].far, force[i]);
+    const Real* c = coupling.c_m_per_N + i * n;
+    for (std::int32_t j = 0; j < n; ++j) shift += j == i ? 0.0 : c[j] * force[j];  // bound: regions
+    return shift;
+  }
+  Real curvature(const Real* force, std::int32_t i, std::int32_t j) const PALPATE_RT {
+    return i == j ? far_slope_m_per_N(region[i].far, force[i]) : coupling.c_m_per_N[i * n + j];
   }
   Real coupling_J(std::int32_t r, Real force_N, Real) const PALPATE_RT { return far_energy_J(own[r], force_N); }
 };

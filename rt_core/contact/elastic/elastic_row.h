@@ -25,7 +25,8 @@ struct RoundTip {
 
 struct ElasticRow {
   SmoothFoot foot;                                 // on the carried surface
-  RoundTip tip;                                    // where the next linearisation takes it
+  RoundTip tip;                                    // where the next tick takes it
+  Vec3 placed_w;                                   // its centre here
   Real along_1_per_m;                              // curvature of the body along a capsule's axis
   Real travel_m;                                   // how far the carried surface and the tip overlap; < 0 apart
   Real pull[kMaxSoftModes];                        // d travel / d p
@@ -47,11 +48,12 @@ struct CarriedSurface {
 
   // Displacement of a vertex.
   Vec3 displacement(std::int32_t vertex) const PALPATE_RT;
-  // Puts the tip on the surface, starting at `triangle` below `near_w`. A capsule moves along its axis by one step to
+  // Puts the tip on the surface, starting at `triangle`. A capsule moves along its axis by one step to
   // where it is deepest, and the travel is that of there, to second order. Beyond a sharp
   // edge, and below the focal surface, on the facet nearest to the centre as it was before the body moved; with
   // foot.triangle -1 where the tick's share of surface work is used up.
-  void place(const RoundTip& tip, std::int32_t triangle, Vec3 near_w, ElasticRow& row) const PALPATE_RT;
+  // A tip that is still apart when the surface comes `nearer_m` towards it gets its foot and travel alone.
+  void place(const RoundTip& tip, std::int32_t triangle, Real nearer_m, ElasticRow& row) const PALPATE_RT;
 
  private:
   bool place_on_facet(Vec3 centre_w, std::int32_t triangle, ElasticRow& row) const PALPATE_RT;

@@ -18,17 +18,38 @@ Real most_moved_m(const Model& model, const ElasticWork& work) PALPATE_RT {
   return sum;
 }
 
+// How far a surface let go moves at most, and as much again for what its normals turn.
+Real most_let_go_m(const Model& model, const ElasticWork& work, const Real* step) PALPATE_RT {
+  const std::int32_t soft = model.params.elastic_soft;
+  Real sum = 0;
+  std::int32_t pair = soft;
+  for (std::int32_t a = 0; a < soft; ++a) {  // bound: pairs
+    sum += abs_of(step[a]) * work.reach_m[a];
+    for (std::int32_t b = a; b < soft; ++b, ++pair)
+      sum += (abs_of(step[a] * work.y[b]) + abs_of(step[b] * work.y[a])) * work.reach_m[pair];
+  }
+  return 2 * sum;
+}
+
+// The body where it goes if it moves on as in the last tick.
+CarriedSurface look_ahead(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
+  const std::int32_t soft = model.params.elastic_soft;
+  soft_products(soft, state.elastic.soft_rootJ.data(), work_of(scratch).y_begun);
+  for (std::int32_t a = 0; a < soft; ++a) state.elastic.soft_rootJ[a] += state.elastic.step_rootJ[a];
+  return look(model, state, scratch, scratch.work.soft_pairs, scratch.work.shown);
+}
+
 class Finder {
  public:
-  Finder(const Model& model, State& state, Scratch& scratch) PALPATE_RT
-      : model_(model),
-        state_(state),
-        scratch_(scratch),
-        work_(work_of(scratch)),
-        surface_(look(model, state, scratch, scratch.work.soft_pairs, scratch.work.shown)),
-        box_(root_box(model)),
-        moved_m_(most_moved_m(model, work_)) {
+  Finder(const Model& model, State& state, Scratch& scratch) PALPATE_RT : model_(model),
+                                                                          state_(state),
+                                                                          scratch_(scratch),
+                                                                          work_(work_of(scratch)),
+                                                                          surface_(look_ahead(model, state, scratch)),
+                                                                          box_(root_box(model)),
+                                                                          moved_m_(most_moved_m(model, work_)) {
     let_go(model, work_.energy, let_go_);
+    nearer_m_ = most_let_go_m(model, work_, let_go_);
   }
 
   void visit(std::int32_t index) PALPATE_RT {
@@ -39,8 +60,9 @@ class Finder {
     ElasticRow& row = work_.row[piece_of(index)];
     if (touched) {
       tip.come_near(point.closest_w);
-      surface_.place(tip, point.triangle, point.closest_w, row);
-      if (row.foot.triangle >= 0 && free_depth(row) > 0) return keep(index, row);
+      surface_.place(tip, point.triangle, nearer_m_, row);
+      // Lifted off: looked for from the next tick on.
+      if (row.foot.triangle >= 0) return free_depth(row) > 0 ? keep(index, row) : let_lift(point, row, 0);
     }
     search(tip, point, row);
     if (row.foot.triangle < 0) {
@@ -48,13 +70,8 @@ class Finder {
       point.gap_m = point.gap_bound_m = 0;
       return;
     }
-    const Real depth = free_depth(row);
-    point.closest_w = row.foot.foot_w;
-    point.normal_w = row.foot.normal_w;
-    point.triangle = row.foot.triangle;
-    point.gap_m = -depth;
-    point.gap_bound_m = min_of(reach_m_, -depth);
-    if (depth > 0) keep(index, row);
+    if (free_depth(row) > 0) return keep(index, row);
+    let_lift(point, row, reach_m_);
   }
 
  private:
@@ -63,6 +80,7 @@ class Finder {
   }
   // On the body let go; or as it stands, where friction or another finger holds it towards the tip.
   Real free_depth(const ElasticRow& row) const PALPATE_RT {
+    if (!(row.travel_m + nearer_m_ > 0)) return row.travel_m + nearer_m_;
     return row.travel_m + max_of(dot(row.pull, let_go_, model_.params.elastic_soft), 0.0);
   }
 
@@ -107,7 +125,15 @@ class Finder {
     tip.come_near(best.closest_w + moved);
     reach_m_ = bound - tip.margin_m - norm(tip.half_axis_w) / 3 - model_.params.smooth_slack_m -
                (state_.elastic.moved != 0 ? moved_m_ + norm(moved) : 0.0);
-    surface_.place(tip, best.triangle, tip.is_ball() ? tip.centre_w() : best.closest_w + moved, row);
+    surface_.place(tip, best.triangle, nearer_m_, row);
+  }
+
+  void let_lift(PointState& point, const ElasticRow& row, Real bound_m) const PALPATE_RT {
+    point.closest_w = row.foot.foot_w;
+    point.normal_w = row.foot.normal_w;
+    point.triangle = row.foot.triangle;
+    point.gap_m = -free_depth(row);
+    point.gap_bound_m = min_of(bound_m, point.gap_m);
   }
 
   void keep(std::int32_t index, const ElasticRow& row) PALPATE_RT {
@@ -118,7 +144,9 @@ class Finder {
     contact.row = contact.point = index;
     contact.piece = tool_point.piece;
     contact.previous = point.region;
-    contact.position_w = point.closest_w = row.foot.foot_w;
+    contact.position_w = row.foot.foot_w;
+    // A capsule: below where its axis was found to be deepest, with which the next tick begins.
+    point.closest_w = row.foot.foot_w + (row.tip.centre_w() - row.placed_w);
     contact.normal_w = point.normal_w = row.foot.normal_w;
     contact.depth_m = free_depth(row);
     contact.weight = tool_point.weight;
@@ -135,6 +163,7 @@ class Finder {
   const Box box_;
   const Real moved_m_;
   Real let_go_[kMaxSoftModes];
+  Real nearer_m_;  // no place of the body let go comes nearer than by this
   Real reach_m_ = 0;
 };
 
@@ -159,8 +188,6 @@ void find_elastic_tips(const Model& model, State& state, Scratch& scratch) PALPA
     return;
   }
   Finder finder(model, state, scratch);
-  ElasticWork& work = work_of(scratch);
-  for (std::int32_t t = 0; t < terms(model.params.elastic_soft); ++t) work.y_begun[t] = work.y[t];  // bound: terms
   for (const ToolPiece& piece : model.piece) {  // bound: kMaxPieces, one point each at most
     if (piece.point_count > 0) finder.visit(piece.first_point);
   }

@@ -151,8 +151,7 @@ Linearised::Linearised(const Model& model, State& state, Scratch& scratch, Elast
 
 void Linearised::aim_rubs(const Real* force_N) PALPATE_RT {
   for (std::int32_t r = 0; r < regions(); ++r)  // bound: kMaxRegions
-    aim_rub(model_, work_.y, friction_, *leading_[r], force_N[r], is_first_, work_.rub[r]);
-  is_first_ = false;
+    aim_rub(model_, state_, work_.y, friction_, *leading_[r], force_N[r], work_.rub[r]);
 }
 
 void Linearised::prepare(const Real* force_N) PALPATE_RT {
@@ -173,11 +172,12 @@ void Linearised::prepare(const Real* force_N) PALPATE_RT {
     answer(factor_, leading_[r]->pull, n_, moved_[r]);
 }
 
-void Linearised::gather() PALPATE_RT {
+void Linearised::gather(const Real* before_N) PALPATE_RT {
   std::int32_t next = 0;
   load_.n = regions();
   load_.region = load_.tips_of;
   load_.evaluated = &scratch_.work.tip_laws;
+  load_.before_N = before_N;
   load_.coupling = {scratch_.system.compliance_m_per_N, nullptr};
   for (std::int32_t r = 0; r < load_.n; ++r) {  // bound: kMaxPieces tips
     const RegionRows rows = rows_of(scratch_, r);
@@ -202,16 +202,41 @@ Real Linearised::step(const Real* force_N) PALPATE_RT {
   }
   const Real length = square_root(dot(delta, delta, n_)), longest = kLongestStep * model_.params.elastic_radius_rootJ;
   const Real share = length <= longest ? 1.0 : longest / length;
-  Real moved = 0, energy = work_.energy.energy_J;
-  for (std::int32_t r = 0; r < regions(); ++r) moved = max_of(moved, share * abs_of(dot(leading_[r]->pull, delta, n_)));
-  for (std::int32_t a = 0; a < n_; ++a) {  // bound: soft^2
+  auto& p = state_.elastic.soft_rootJ;
+  for (std::int32_t a = 0; a < n_; ++a) {  // bound: soft
     const Real d = share * delta[a];
-    energy += d * (work_.energy.slope[a] + 0.5 * share * dot(work_.energy.curvature + a * n_, delta, n_));
-    state_.elastic.soft_rootJ[a] += is_finite(d) ? d : 0.0;
+    p[a] += is_finite(d) ? d : 0.0;
+    state_.elastic.step_rootJ[a] = share < 1 ? 0.0 : p[a] - work_.y_begun[a];
   }
   for (std::int32_t r = 0; r < regions(); ++r) sweep(share, delta, r);  // bound: kMaxRegions
-  energy_J_ = energy;
-  return moved;
+  return left_m(force_N, share, delta);
+}
+
+// V' + sum F pull - friction where the step ended, and what H^-1 of it moves.
+Real Linearised::left_m(const Real* force_N, Real share, const Real* delta) PALPATE_RT {
+  Real y[kMaxTerms], left[kMaxSoftModes];
+  soft_products(n_, state_.elastic.soft_rootJ.data(), y);
+  energy_J_ = soft_slope(model_, state_.elastic.soft_rootJ.data(), y, left);
+  for (std::int32_t r = 0; r < regions(); ++r) {  // bound: kMaxRegions pairs
+    const ElasticRow& row = *leading_[r];
+    std::int32_t pair = 0;
+    for (std::int32_t a = 0; a < n_; ++a) {
+      left[a] += force_N[r] * row.pull[a];
+      for (std::int32_t b = a; b < n_; ++b, ++pair) {
+        const Real turn = force_N[r] * share * row.turn[pair];
+        left[a] += turn * delta[b];
+        if (a != b) left[b] += turn * delta[a];
+      }
+    }
+    if (!work_.rub[r].is_on) continue;
+    for (const RubAxis& axis : work_.rub[r].axis) {  // bound: 2
+      const Real rubs_N = axis.force_N - axis.stiffness_N_per_m * share * dot(axis.sweep, delta, n_);
+      for (std::int32_t a = 0; a < n_; ++a) left[a] -= rubs_N * axis.sweep[a];
+    }
+  }
+  Real most = 0;
+  for (std::int32_t r = 0; r < regions(); ++r) most = max_of(most, abs_of(dot(moved_[r], left, n_)));
+  return most;
 }
 
 // How far the surface under a region went along.

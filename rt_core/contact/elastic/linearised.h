@@ -25,7 +25,7 @@ inline Real dot(const Real* a, const Real* b, std::int32_t n) PALPATE_RT {
   return sum;
 }
 
-// One linearisation after the other: H's factor, and per region H^-1 pull of its deepest row.
+// The tick's linearisation: H's factor, and per region H^-1 pull of its deepest row.
 class Linearised {
  public:
   Linearised(const Model& model, State& state, Scratch& scratch, ElasticLoad& load) PALPATE_RT;
@@ -33,10 +33,11 @@ class Linearised {
   // `force_N`: of every region before.
   void prepare(const Real* force_N) PALPATE_RT;
   // Laws, depths and far fields of all regions, and what couples them.
-  void gather() PALPATE_RT;
-  // Moves the amplitudes under the forces found; returns how far that moved the surface under any region.
+  void gather(const Real* before_N) PALPATE_RT;
+  // Moves the amplitudes under the forces found; returns how far the next linearisation would move the surface under
+  // any region.
   Real step(const Real* force_N) PALPATE_RT;
-  // After the last step: what the surface gives under every friction.
+  // After the step: what the surface gives under every friction.
   void yield_to_rubs() PALPATE_RT;
   Real energy_J() const PALPATE_RT { return energy_J_; }
   Real linear_energy_J(const Real* force_N) const PALPATE_RT;
@@ -45,6 +46,7 @@ class Linearised {
   std::int32_t regions() const PALPATE_RT { return scratch_.rows.regions; }
   void aim_rubs(const Real* force_N) PALPATE_RT;
   void sweep(Real share, const Real* delta, std::int32_t r) PALPATE_RT;
+  Real left_m(const Real* force_N, Real share, const Real* delta) PALPATE_RT;
   void add_tip(Contact& contact, std::int32_t at) PALPATE_RT;
   void couple(std::int32_t r, std::int32_t j) PALPATE_RT;
 
@@ -55,7 +57,6 @@ class Linearised {
   ElasticWork& work_;
   const FrictionParameters friction_;
   const std::int32_t n_;
-  bool is_first_ = true;
   const ElasticRow* leading_[kMaxRegions];  // deepest of each region
   Real factor_[kMaxSoftModes * kMaxSoftModes];
   Real free_step_[kMaxSoftModes];

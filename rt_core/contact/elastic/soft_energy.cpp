@@ -39,11 +39,18 @@ void finish(std::int32_t soft, const Real* p, Part& part) PALPATE_RT {
 struct Continuation {
   Real f = 1, f1 = 0, f2 = 0, rho = 0;
 };
+// Returns f1 P / rho.
+Real add_slope(std::int32_t soft, const Real* p, const Part& part, Real degree, const Continuation& c, Real& energy_J,
+               Real* slope) PALPATE_RT {
+  energy_J += c.f * part.energy;
+  const Real along = c.rho > 0 ? part.energy * c.f1 / c.rho : 0.0;
+  for (std::int32_t a = 0; a < soft; ++a) slope[a] += c.f * degree * part.wp[a] + along * p[a];
+  return along;
+}
 void add_part(std::int32_t soft, const Real* p, const Part& part, Real degree, const Continuation& c,
               SoftEnergy& out) PALPATE_RT {
-  out.energy_J += c.f * part.energy;
-  const Real inverse = c.rho > 0 ? 1.0 / c.rho : 0.0, along = part.energy * c.f1 * inverse;
-  for (std::int32_t a = 0; a < soft; ++a) out.slope[a] += c.f * degree * part.wp[a] + along * p[a];
+  const Real along = add_slope(soft, p, part, degree, c, out.energy_J, out.slope);
+  const Real inverse = c.rho > 0 ? 1.0 / c.rho : 0.0;
   const Real bend = c.f * degree * (degree - 1), cross = c.f1 * degree * inverse,
              twice = (part.energy * c.f2 - along) * inverse * inverse;
   std::int32_t k = 0;
@@ -67,6 +74,28 @@ Continuation continued(Real degree, Real radius, Real rho) PALPATE_RT {
   return {value * s, p1 * s + value * s1, 2 * p1 * s1 + value * s2, rho};
 }
 
+// The cubic and the quartic part at amplitudes p.
+struct Parts {
+  Part third, fourth;
+  Real radius, rho;
+  bool is_outside;
+
+  Parts(const Model& model, const Real* p, const Real* y) PALPATE_RT : radius(model.params.elastic_radius_rootJ) {
+    const std::int32_t soft = model.params.elastic_soft, pair = pairs(soft);
+    Real square = 0;
+    for (std::int32_t a = 0; a < soft; ++a) square += p[a] * p[a];
+    rho = square_root(square);
+    is_outside = !(rho <= radius);
+    multiply(model.elastic_cubic.data(), p, soft, pair, third.w);
+    multiply(model.elastic_quartic.data(), y + soft, pair, pair, fourth.w);
+    finish(soft, p, third);
+    finish(soft, p, fourth);
+  }
+  Continuation continuation(Real degree) const PALPATE_RT {
+    return is_outside ? continued(degree, radius, rho) : Continuation{};
+  }
+};
+
 }  // namespace
 
 void soft_products(std::int32_t soft, const Real* p, Real* y) PALPATE_RT {
@@ -78,23 +107,26 @@ void soft_products(std::int32_t soft, const Real* p, Real* y) PALPATE_RT {
 }
 
 void soft_energy(const Model& model, const Real* p, const Real* y, SoftEnergy& out) PALPATE_RT {
-  const std::int32_t soft = model.params.elastic_soft, pair = pairs(soft);
-  Real square = 0;
-  for (std::int32_t a = 0; a < soft; ++a) square += p[a] * p[a];
-  out.energy_J = 0.5 * square;
+  const std::int32_t soft = model.params.elastic_soft;
+  const Parts parts(model, p, y);
+  out.energy_J = 0.5 * parts.rho * parts.rho;
   for (std::int32_t a = 0; a < soft; ++a) {  // bound: soft^2
     out.slope[a] = p[a];
     for (std::int32_t b = 0; b < soft; ++b) out.curvature[a * soft + b] = a == b ? 1.0 : 0.0;
   }
-  const Real rho = square_root(square), radius = model.params.elastic_radius_rootJ;
-  out.is_outside = !(rho <= radius);
-  Part third, fourth;
-  multiply(model.elastic_cubic.data(), p, soft, pair, third.w);
-  multiply(model.elastic_quartic.data(), y + soft, pair, pair, fourth.w);
-  finish(soft, p, third);
-  finish(soft, p, fourth);
-  add_part(soft, p, third, 3, out.is_outside ? continued(3, radius, rho) : Continuation{}, out);
-  add_part(soft, p, fourth, 4, out.is_outside ? continued(4, radius, rho) : Continuation{}, out);
+  out.is_outside = parts.is_outside;
+  add_part(soft, p, parts.third, 3, parts.continuation(3), out);
+  add_part(soft, p, parts.fourth, 4, parts.continuation(4), out);
+}
+
+Real soft_slope(const Model& model, const Real* p, const Real* y, Real* slope) PALPATE_RT {
+  const std::int32_t soft = model.params.elastic_soft;
+  const Parts parts(model, p, y);
+  Real energy_J = 0.5 * parts.rho * parts.rho;
+  for (std::int32_t a = 0; a < soft; ++a) slope[a] = p[a];
+  add_slope(soft, p, parts.third, 3, parts.continuation(3), energy_J, slope);
+  add_slope(soft, p, parts.fourth, 4, parts.continuation(4), energy_J, slope);
+  return energy_J;
 }
 
 }  // namespace palpate

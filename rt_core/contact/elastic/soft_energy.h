@@ -18,5 +18,7 @@ struct SoftEnergy {
 void soft_products(std::int32_t soft, const Real* p, Real* y) PALPATE_RT;
 // `y` from soft_products. Bound: pairs^2 multiply-adds.
 void soft_energy(const Model& model, const Real* p, const Real* y, SoftEnergy& out) PALPATE_RT;
+// V' alone, into slope[soft]; returns V. As dear as half of soft_energy.
+Real soft_slope(const Model& model, const Real* p, const Real* y, Real* slope) PALPATE_RT;
 
 }  // namespace palpate

@@ -69,9 +69,10 @@ TravelResult solve_travel(const TipRegion& region) PALPATE_RT {
     const Real rest = result.shift_m - far_shift_m(region.far, load.force_N);
     result.residual_m = abs_of(rest);
     result.evaluations = i + 1;
-    if (!(result.residual_m > 1e-15 * deepest)) break;
-    (rest > 0 ? high : low) = result.shift_m;
     const Real slope = 1.0 + far_slope_m_per_N(region.far, load.force_N) * load.tangent_N_per_m;
+    // Rounding of w comes back `slope` times over: where the body is much softer than the tip it never fell below.
+    if (!(result.residual_m > 1e-15 * deepest * max_of(slope, 1.0))) break;
+    (rest > 0 ? high : low) = result.shift_m;
     const Real newton = result.shift_m - rest / slope;
     result.shift_m = slope > 0 && newton > low && newton < high ? newton : 0.5 * (low + high);
     if (!(high - low > 1e-17)) break;
