@@ -28,7 +28,7 @@ constexpr int kStageTicks = 4000, kQueries = 2000;
 constexpr std::uint64_t kStageSeed = 1;
 constexpr double kReserve = 1.4, kReserveOfQuery = 1.25, kReserveOfAll = 0.12;
 // An elastic body's dearest ticks are rarer than a bake can search for, as its surface is elsewhere every tick: ten
-// million found a solve of half_shell_elastic 2.3 times, and rows of ring_elastic 1.6 times the dearest of the baker's
+// million found a solve of half_shell 2.3 times, and rows of ring 1.6 times the dearest of the baker's
 // (2026-11-22).
 constexpr double kReserveOfElasticRows = 1.8, kReserveOfElasticSolve = 2.2;
 double reserve_of(const Model& model, Stage stage) {

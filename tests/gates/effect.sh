@@ -20,7 +20,7 @@ methods=$(sed -n 's/^#define PALPATE_METHODS(X)//p' "$root/rt_core/laws.h" | gre
 "$palpate" bake "$root/config/scenes/heart_compass.toml" --set coupling.law=temporal_paper -o "$work/temporal.pal" \
   >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
 scenes="$images/tools_on_layer.pal $images/ellipsoid_mallet.pal $work/temporal.pal $images/grasp_cylinder_2.pal"
-scenes+=" $images/pinch_block.pal $images/ring_elastic.pal"
+scenes+=" $images/pinch_block.pal $images/ring.pal"
 
 # shellcheck disable=SC2086
 "$cxx" $flags -c "$root/tests/gates/output_hash.cpp" -o "$work/output_hash.o"

@@ -23,7 +23,7 @@ namespace {
 
 constexpr int kTicks = 100000;
 constexpr const char* kScenes[] = {"ellipsoid_mallet", "heart_compass",    "tools_on_cylinder",      "snap_in",
-                                   "pinch_block",      "grasp_cylinder_5", "hollow_cylinder_elastic"};
+                                   "pinch_block",      "grasp_cylinder_5", "hollow_cylinder"};
 
 // All the memory of a controller, allocated and touched before the first tick.
 struct Bench {
