@@ -155,7 +155,7 @@ class Reporter {
     if (!command_.again && fs::exists(path)) return run_of_json(text_of(path));
     fmt::print("{:<18}{:<16}", report.name, variant.name);
     std::fflush(stdout);
-    RunOptions options;
+    ModelRunOptions options;
     options.count = !command_.quick;
     const ModelRun made = run_model(variant, scene, p, report.reference ? &*report.reference : nullptr, options);
     write_file(path, run_json(made), false);

@@ -103,7 +103,7 @@ void time_ticks(const Model& model, const ReportPath& path, int repeats, ModelRu
 }
 
 void measure(const ModelVariant& variant, const SceneDesc& stated, const PressPlace& press,
-             const ReferenceCurve* reference, const RunOptions& options, ModelRun& run) {
+             const ReferenceCurve* reference, const ModelRunOptions& options, ModelRun& run) {
   const SceneDesc scene = scene_of(variant, stated, press);
   const double began = processor_s();
   const CompileResult baked = compile_scene(scene);
@@ -131,7 +131,7 @@ void measure(const ModelVariant& variant, const SceneDesc& stated, const PressPl
 }  // namespace
 
 ModelRun run_model(const ModelVariant& variant, const SceneDesc& stated, const PressPlace& press,
-                   const ReferenceCurve* reference, const RunOptions& options) {
+                   const ReferenceCurve* reference, const ModelRunOptions& options) {
   ModelRun run;
   run.name = variant.name;
   run.family = variant.family;

@@ -27,7 +27,7 @@ struct ModelRun {
   std::uint64_t hash = 0;  // of the state after the path
 };
 
-struct RunOptions {
+struct ModelRunOptions {
   bool count = true;  // instructions, by valgrind
   int repeats = 5;    // of the timed path
 };
@@ -36,6 +36,6 @@ struct RunOptions {
 inline constexpr double kReportStep_m = 2e-5;
 
 ModelRun run_model(const ModelVariant& variant, const SceneDesc& stated, const PressPlace& press,
-                   const ReferenceCurve* reference, const RunOptions& options);
+                   const ReferenceCurve* reference, const ModelRunOptions& options);
 
 }  // namespace palpate
