@@ -22,7 +22,7 @@ namespace palpate::test {
 namespace {
 
 constexpr int kTicks = 100000;
-constexpr const char* kScenes[] = {"ellipsoid_mallet", "heart_compass",    "tools_on_cylinder",      "snap_in",
+constexpr const char* kScenes[] = {"ellipsoid_mallet", "heart_compass",    "tools_on_cylinder", "snap_in",
                                    "pinch_block",      "grasp_cylinder_5", "hollow_cylinder"};
 
 // All the memory of a controller, allocated and touched before the first tick.
