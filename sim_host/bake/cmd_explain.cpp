@@ -51,7 +51,7 @@ void add_explain_command(CLI::App& app, int& exit_code) {
       "Arrays that hold nothing are left out. What is baked but read by nobody does not pass the project's tests.\n"
       "Examples:\n"
       "  palpate explain config/scenes/half_shell.toml\n"
-      "  palpate explain config/scenes/heart_compass.toml --set coupling.law=temporal_paper\n"
+      "  palpate explain config/scenes/heart_compass_paper.toml --set coupling.law=temporal_paper\n"
       "  palpate explain mallet.pal");
   command->callback([options, &exit_code] { exit_code = run_explain(*options); });
 }

@@ -86,7 +86,7 @@ TEST(Compile, ShippedScenesBakeOpenAndFit) {
 }
 
 TEST(Compile, SameSceneSameBytesWhereverItLies) {
-  const std::string path = PALPATE_SOURCE_DIR "/config/scenes/heart_compass.toml";
+  const std::string path = PALPATE_SOURCE_DIR "/config/scenes/heart_compass_paper.toml";
   std::ifstream stream(path);
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
   const std::vector<std::byte> first = compile_scene(load_scene(path)).bytes;

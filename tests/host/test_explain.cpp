@@ -24,7 +24,7 @@ std::string explained(const std::string& scene, const SceneOverlays& overlays = 
 }
 
 TEST(Explain, NamesStagesDataReadersMemoryAndBudget) {
-  const std::string text = explained("heart_compass");
+  const std::string text = explained("heart_compass_paper");
   for (std::int32_t i = 0; i < kStageCount; ++i) EXPECT_THAT(text, HasSubstr(stage_name(static_cast<Stage>(i))));
   EXPECT_THAT(text, HasSubstr("tool points with springs"));
   EXPECT_THAT(text, HasSubstr("nothing: the tool is rigid"));
@@ -34,7 +34,7 @@ TEST(Explain, NamesStagesDataReadersMemoryAndBudget) {
   EXPECT_THAT(text, Not(HasSubstr("a skeleton of")));
   SceneOverlays temporal;
   temporal.setting = {"coupling.law=temporal_paper"};
-  EXPECT_THAT(explained("heart_compass", temporal), HasSubstr("a skeleton of"));
+  EXPECT_THAT(explained("heart_compass_paper", temporal), HasSubstr("a skeleton of"));
 }
 
 TEST(Explain, KnowsTheMethods) {

@@ -117,7 +117,7 @@ TEST(PressEnergy, MalletLoopsReturnNoEnergy) {
 }
 
 TEST(PressEnergy, CompassLoopsReturnNoEnergy) {
-  const SceneModel scene(scene_path("heart_compass"));
+  const SceneModel scene(scene_path("heart_compass_paper"));
   const Vec3 start = scene.scene()->path.point.front().position_m;
   // Lowered until the first tip just touches: the loops' depths start there.
   const auto state = make_state(scene.model());
