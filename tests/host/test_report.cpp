@@ -177,7 +177,7 @@ TEST(Report, RunsAModelAndKeepsItsFigures) {
   report.name = "layer";
   report.reference = read_reference(PALPATE_SOURCE_DIR "/tests/accuracy/layer.reference.csv");
   report.press = report.reference->press;
-  RunOptions options;
+  ModelRunOptions options;
   options.count = false;
   options.repeats = 1;
   report.runs.push_back(run_model(*find_variant("tip_layer"), scene, report.press, &*report.reference, options));
