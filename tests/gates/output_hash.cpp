@@ -1,4 +1,5 @@
-// Plays the scripted hand in baked scenes and prints one hash of all outputs per scene: what effect.sh compares.
+// Plays the scripted hand in baked scenes, its last quarter with live settings, and prints one hash of all outputs per
+// scene: what effect.sh compares.
 // Usage: output_hash IMAGE...
 #include <cstdint>
 #include <cstdio>
@@ -21,7 +22,9 @@ std::uint64_t play(const Model& model) {
   ScriptedHand hand(model);
   OutputHash hash;
   for (int i = 0; i < kScriptTicks; ++i) {
-    tick(model, *state, *scratch, hand.next(output), output);
+    Input input = hand.next(output);
+    if (i >= 3 * kScriptTicks / 4) input.live.stiffness = input.live.friction = 0.5F;
+    tick(model, *state, *scratch, input, output);
     add(output, hash);
   }
   return hash.value();

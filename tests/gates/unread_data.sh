@@ -6,9 +6,16 @@ usage="usage: unread_data.sh PROGRAM ROOT PALPATE IMAGE_DIR"
 program=${1:?$usage} root=${2:?$usage} palpate=${3:?$usage} images=${4:?$usage}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-bake() { "$palpate" bake "$root/config/scenes/$1.toml" --set "$2" -o "$work/$3.pal" >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }; }
-bake heart_compass_paper coupling.law=temporal_paper temporal
-bake pinch_block contact.nodal.solver=gauss_seidel gauss_seidel
+# bake SCENE NAME SETTING...
+bake() {
+  local scene=$1 name=$2 set=()
+  shift 2
+  for setting in "$@"; do set+=(--set "$setting"); done
+  "$palpate" bake "$root/config/scenes/$scene.toml" "${set[@]}" -o "$work/$name.pal" >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
+}
+bake heart_compass_paper temporal coupling.law=temporal_paper
+bake pinch_block gauss_seidel contact.nodal.solver=gauss_seidel
+bake tools_on_layer relaxing 'body.material.relaxation_share=[0.2, 0.1, 0.1]' 'body.material.relaxation_s=[0.1, 1, 10]'
 shipped=()
 for scene in "$root"/config/scenes/*.toml; do shipped+=("$images/$(basename "$scene" .toml).pal"); done
 exec "$program" "$root" "${shipped[@]}" "$work"/*.pal

@@ -31,10 +31,11 @@ struct BodyRub {
 
 // Before the first linearisation. `motion_w`: of the tool's material since the last tick.
 BodyRub begin_rub(const Region& region, Vec3 motion_w) PALPATE_RT;
-// Axes, forces and stiffnesses for the linearisation. Whether the tip slips is decided where the body goes if it moves
-// on as in the last tick, at that tick's force.
-void aim_rub(const Model& model, const State& state, const Real* y, const FrictionParameters& law,
-             const ElasticRow& row, Real force_N, BodyRub& rub) PALPATE_RT;
+// Axes, forces and stiffnesses of a tip that sticks: only the body's answer tells whether it slips.
+void let_stick(const Model& model, const State& state, const Real* y, const ElasticRow& row, BodyRub& rub) PALPATE_RT;
+// Those of one that slips, if it does by the law at `force_N` where the answer `step` puts it. False: it sticks.
+bool let_slip(const FrictionParameters& law, Vec3 normal_w, Real force_N, const Real* step, std::int32_t soft,
+              BodyRub& rub) PALPATE_RT;
 
 // What the surface under a region did in this tick, and gives under the spring, along and across the stretch.
 SurfaceUnderRub surface_under(const BodyRub& rub) PALPATE_RT;

@@ -149,15 +149,29 @@ Linearised::Linearised(const Model& model, State& state, Scratch& scratch, Elast
   }
 }
 
-void Linearised::aim_rubs(const Real* force_N) PALPATE_RT {
-  for (std::int32_t r = 0; r < regions(); ++r)  // bound: kMaxRegions
-    aim_rub(model_, state_, work_.y, friction_, *leading_[r], force_N[r], work_.rub[r]);
+void Linearised::prepare(const Real* force_N) PALPATE_RT {
+  for (std::int32_t r = 0; r < regions(); ++r) {  // bound: kMaxContacts rows
+    leading_[r] = &work_.row[deepest_of(rows_of(scratch_, r)).piece];
+    let_stick(model_, state_, work_.y, *leading_[r], work_.rub[r]);
+  }
+  factorise(force_N);
 }
 
-void Linearised::prepare(const Real* force_N) PALPATE_RT {
-  for (std::int32_t r = 0; r < regions(); ++r)  // bound: kMaxContacts rows
-    leading_[r] = &work_.row[deepest_of(rows_of(scratch_, r)).piece];
-  aim_rubs(force_N);
+bool Linearised::slips(const Real* force_N) PALPATE_RT {
+  Real delta[kMaxSoftModes];
+  const Real share = find_step(force_N, delta);
+  for (std::int32_t a = 0; a < n_; ++a) delta[a] *= share;
+  bool some = false;
+  for (std::int32_t r = 0; r < regions(); ++r) {  // bound: kMaxRegions
+    const bool slips = let_slip(friction_, leading_[r]->foot.normal_w, force_N[r], delta, n_, work_.rub[r]);
+    some = some || slips;
+  }
+  slips_ = some;
+  if (some) factorise(force_N);
+  return some;
+}
+
+void Linearised::factorise(const Real* force_N) PALPATE_RT {
   Real h[kMaxSoftModes * kMaxSoftModes] = {};
   for (std::int32_t i = 0; i < n_ * n_; ++i) h[i] = work_.energy.curvature[i];  // bound: soft^2
   for (std::int32_t a = 0; a < n_; ++a) free_step_[a] = -work_.energy.slope[a];
@@ -194,19 +208,25 @@ void Linearised::gather(const Real* before_N) PALPATE_RT {
   }
 }
 
-Real Linearised::step(const Real* force_N) PALPATE_RT {
-  Real delta[kMaxSoftModes];
+// Returns the share of it that is taken.
+Real Linearised::find_step(const Real* force_N, Real* delta) const PALPATE_RT {
   for (std::int32_t a = 0; a < n_; ++a) {  // bound: soft x kMaxRegions
     delta[a] = free_step_[a];
     for (std::int32_t r = 0; r < regions(); ++r) delta[a] -= force_N[r] * moved_[r][a];
   }
   const Real length = square_root(dot(delta, delta, n_)), longest = kLongestStep * model_.params.elastic_radius_rootJ;
-  const Real share = length <= longest ? 1.0 : longest / length;
+  return length <= longest ? 1.0 : longest / length;
+}
+
+Real Linearised::step(const Real* force_N) PALPATE_RT {
+  Real delta[kMaxSoftModes];
+  const Real share = find_step(force_N, delta);
+  // What springs back from under a tip that slips does not go on: a column swung between the two every other tick.
   auto& p = state_.elastic.soft_rootJ;
   for (std::int32_t a = 0; a < n_; ++a) {  // bound: soft
     const Real d = share * delta[a];
     p[a] += is_finite(d) ? d : 0.0;
-    state_.elastic.step_rootJ[a] = share < 1 ? 0.0 : p[a] - work_.y_begun[a];
+    state_.elastic.step_rootJ[a] = share < 1 || slips_ ? 0.0 : p[a] - work_.y_begun[a];
   }
   for (std::int32_t r = 0; r < regions(); ++r) sweep(share, delta, r);  // bound: kMaxRegions
   return left_m(force_N, share, delta);

@@ -30,10 +30,12 @@ class Linearised {
  public:
   Linearised(const Model& model, State& state, Scratch& scratch, ElasticLoad& load) PALPATE_RT;
 
-  // `force_N`: of every region before.
+  // Every tip sticks. `force_N`: of every region before.
   void prepare(const Real* force_N) PALPATE_RT;
   // Laws, depths and far fields of all regions, and what couples them.
   void gather(const Real* before_N) PALPATE_RT;
+  // The step under the forces found. True: a tip slips under it, and the linearisation is made anew for that.
+  bool slips(const Real* force_N) PALPATE_RT;
   // Moves the amplitudes under the forces found; returns how far the next linearisation would move the surface under
   // any region.
   Real step(const Real* force_N) PALPATE_RT;
@@ -44,7 +46,8 @@ class Linearised {
 
  private:
   std::int32_t regions() const PALPATE_RT { return scratch_.rows.regions; }
-  void aim_rubs(const Real* force_N) PALPATE_RT;
+  void factorise(const Real* force_N) PALPATE_RT;
+  Real find_step(const Real* force_N, Real* delta) const PALPATE_RT;
   void sweep(Real share, const Real* delta, std::int32_t r) PALPATE_RT;
   Real left_m(const Real* force_N, Real share, const Real* delta) PALPATE_RT;
   void add_tip(Contact& contact, std::int32_t at) PALPATE_RT;
@@ -64,6 +67,7 @@ class Linearised {
   Real along_linear_[kMaxRegions][kMaxLinearModes];  // show_linear_modes()
   Real linear_[kMaxRegions][kMaxRegions];
   Real energy_J_ = 0;
+  bool slips_ = false;  // some tip does
 };
 
 }  // namespace palpate
