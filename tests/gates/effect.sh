@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Effect gate, a mutation test of the tick: what changes nothing must not be in the tick. Every statement of tick() and
-# of contact(), the phases of every contact method one method at a time, and the skeletons of `temporal_paper` coupling are
+# Effect gate, a mutation test of the tick: what changes nothing must not be in the tick. Every statement of tick(),
+# find_forces() and contact(), the phases of every contact method one method at a time, and the skeletons of
+# `temporal_paper` coupling are
 # left out in turn: a copy of the source without that line is compiled and linked before the library, whose own version
 # is then not taken. Some scene's outputs must change over the scripted hand's eight seconds, or the run must not end at
 # all. Proves itself by a planted stage that computes what nobody reads.
@@ -77,9 +78,10 @@ without() {
 }
 
 without rt_core/tick.cpp tick
-[ "$count" -ge 5 ] || { echo "only $count statements found in tick(): the gate no longer reads the source"; exit 1; }
+without rt_core/tick.cpp find_forces
+[ "$count" -ge 8 ] || { echo "only $count statements found in tick.cpp: the gate no longer reads the source"; exit 1; }
 without rt_core/contact/contact.cpp contact
-[ "$count" -ge 15 ] || { echo "only $count statements found: the gate no longer reads the source"; exit 1; }
+[ "$count" -ge 18 ] || { echo "only $count statements found: the gate no longer reads the source"; exit 1; }
 caller=$(grep -l 'add_transferred_forces(model' -r "$root/rt_core/contact")
 sed 's/add_transferred_forces(model[^)]*)/true/' "$caller" >"$work/mutant.cpp"
 judge "skeletons of temporal coupling" "$work/mutant.cpp"
@@ -87,9 +89,9 @@ judged=$status
 
 # The gate must fire: a stage whose result nobody reads.
 sed 's/^void tick(/void waste(const State\& state) { volatile double sum = 0; for (double k : state.contact_stiffness) sum = sum + k; }\n&/
-     s/^  make_safe(/  waste(state);\n&/' "$root/rt_core/tick.cpp" >"$work/planted.cpp"
-grep -q '^  waste(state);$' "$work/planted.cpp" || { echo "the planted stage was not planted"; exit 1; }
-line=$(grep -nx '  waste(state);' "$work/planted.cpp" | cut -d: -f1)
+     s/^    make_safe(model/    waste(state);\n&/' "$root/rt_core/tick.cpp" >"$work/planted.cpp"
+grep -q '^    waste(state);$' "$work/planted.cpp" || { echo "the planted stage was not planted"; exit 1; }
+line=$(grep -nx '    waste(state);' "$work/planted.cpp" | cut -d: -f1)
 statements "$work/planted.cpp" tick | grep -qx "$line" || { echo "the planted stage was not found"; exit 1; }
 sed "${line}d" "$work/planted.cpp" >"$work/mutant.cpp"
 status=0
