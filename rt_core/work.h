@@ -28,7 +28,7 @@ namespace palpate {
   X(rounded, kFindRows, 520, "nodes in reach that stand on a bend")                      \
   X(predicted, kFindRows, 130, "pushes times nodes that they move, eight nodes for one") \
   X(offered, kFindRows, 22, "places changed among the deepest")                          \
-  X(shown, kFindRows, 64, "terms of an elastic body's vertices summed up")               \
+  X(shown, kFindRows, 70, "terms of an elastic body's vertices summed up")               \
   X(soft_pairs, kFindRows, 4, "entries of its energy summed up")                         \
   X(rows, kSolve, 265, "rows in contact")                                                \
   X(regions, kSolve, 1600, "their regions")                                              \
@@ -36,7 +36,7 @@ namespace palpate {
   X(tip_laws, kSolve, 190, "laws of tips evaluated")                                     \
   X(region_pairs, kSolve, 13, "pairs of regions coupled, per evaluation")                \
   X(region_cubes, kSolve, 2, "entries eliminated by the regions' Newton steps")          \
-  X(linearised, kSolve, 4900, "linearisations of an elastic body")                       \
+  X(linearised, kSolve, 5400, "regions of an elastic body linearised")                   \
   X(linked, kSolve, 28, "its modes between rows of regions")                             \
   X(soft_pairs_again, kSolve, 4, "entries of its energy summed up")                      \
   X(gathered, kSolve, 4, "vectors of eight gathered from a body's compliance")           \

@@ -72,7 +72,7 @@ void solve(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
     if (i > 0 && !body.slips(force_N)) break;
     body.gather(i == 0 ? before_N : force_N);
     solve_forces(load, scratch, force_N);
-    scratch.work.linearised += 1;
+    scratch.work.linearised += regions;
     scratch.work.linked += regions * (regions + 1) / 2 * (model.params.elastic_linear + model.params.elastic_soft);
   }
   const Real left_m = body.step(force_N);
@@ -147,7 +147,7 @@ void add_most_work(const Model& model, const SceneSizes& n, Work& work) noexcept
   work.soft_pairs += soft_work(pair);
   work.tip_laws +=
       kSolvesOfFriction * (kSeriesIterations + 1 + TipLaws::kIterations * (kStepHalvings + 1)) * n.contacts;
-  work.linearised += kSolvesOfFriction;
+  work.linearised += kSolvesOfFriction * n.regions;
   work.linked += kSolvesOfFriction * n.regions * (n.regions + 1) / 2 * (model.params.elastic_linear + soft);
   work.soft_pairs_again += soft_work(pair) / 2;
 }
