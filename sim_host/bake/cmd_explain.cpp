@@ -9,6 +9,7 @@
 #include "sim_host/bake/explain.h"
 #include "sim_host/bake/scene_model.h"
 #include "sim_host/cli.h"
+#include "sim_host/overlay_options.h"
 
 namespace palpate {
 
@@ -41,9 +42,7 @@ void add_explain_command(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("explain", "Show what a scene makes each tick do: stages, laws, data and its readers, budget");
   command->add_option("SCENE", options->scene, "scene (.toml) or image (.pal)")->required();
-  command->add_option("--with", options->overlays.file,
-                      "lay a file with some of the scene's tables over it; repeatable");
-  command->add_option("--set", options->overlays.setting, "KEY=VALUE: set one key of the scene; repeatable");
+  add_overlay_options(*command, options->overlays);
   command->add_option(
       "--profile", options->profile,
       "a device's profile (config/devices/*.toml): what the scene asks of it; exits with 1 when too much");

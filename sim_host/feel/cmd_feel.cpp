@@ -14,6 +14,7 @@
 #include "sim_host/feel/device_grid.h"
 #include "sim_host/feel/feel.h"
 #include "sim_host/feel/z_width.h"
+#include "sim_host/overlay_options.h"
 
 namespace palpate {
 
@@ -112,9 +113,7 @@ void add_feel_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "feel", "Feel scenes with simulated hands in virtual time: energy, swings, steps, lag, stiffness, noise");
   command->add_option("SCENES", settings->scenes, "scenes (.toml)");
-  command->add_option("--with", settings->overlays.file,
-                      "lay a file with some of the scene's tables over it; repeatable");
-  command->add_option("--set", settings->overlays.setting, "KEY=VALUE: set one key of the scene; repeatable");
+  add_overlay_options(*command, settings->overlays);
   command->add_option("--manoeuvre", settings->manoeuvres, "only this one, below; repeatable");
   command->add_option("--hand", settings->options.hand, "light, medium, firm or strong; default: the scene's");
   command->add_option("--device", settings->options.device,

@@ -11,6 +11,7 @@
 
 #include "sim_host/cli.h"
 #include "sim_host/fit/press_forward.h"
+#include "sim_host/overlay_options.h"
 #include "sim_host/report/curve_error.h"
 
 namespace palpate {
@@ -154,9 +155,7 @@ void add_fit_command(CLI::App& app, int& exit_code) {
       ->delimiter(',')
       ->capture_default_str()
       ->check(CLI::IsMember({"E", "nu", "friction"}));
-  command->add_option("--with", options->overlays.file,
-                      "lay a file with some of the scene's tables over it; repeatable");
-  command->add_option("--set", options->overlays.setting, "KEY=VALUE: set one key of the scene; repeatable");
+  add_overlay_options(*command, options->overlays);
   command->add_option("--out", options->out, "write what was found as an overlay for --with (.toml)");
   command->add_flag("--json", options->json, "write the figures as JSON");
   command->footer(

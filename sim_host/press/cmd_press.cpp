@@ -12,6 +12,7 @@
 #include "sim_host/bake/scene_model.h"
 #include "sim_host/cli.h"
 #include "sim_host/cli_checks.h"
+#include "sim_host/overlay_options.h"
 #include "sim_host/press/anchor_loads.h"
 #include "sim_host/press/force_csv.h"
 #include "sim_host/run/joint_script.h"
@@ -218,9 +219,7 @@ void add_press_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<PressOptions>();
   CLI::App* command = app.add_subcommand("press", "Move the tool through given poses and write the forces, no device");
   command->add_option("SCENE", options->scene, "scene (.toml) or image (.pal)")->required();
-  command->add_option("--with", options->overlays.file,
-                      "lay a file with some of the scene's tables over it; repeatable");
-  command->add_option("--set", options->overlays.setting, "KEY=VALUE: set one key of the scene; repeatable");
+  add_overlay_options(*command, options->overlays);
   command->add_option("--path", options->path, "tool poses (CSV), or `demo`: the motion the scene scripts for its hand")
       ->capture_default_str();
   command->add_option("--out", options->out, "table to write (CSV)")->capture_default_str();

@@ -13,6 +13,7 @@
 #include <string_view>
 
 #include "hal/device/hand_path.h"
+#include "sim_host/csv_cells.h"
 #include "sim_host/run/joint_script.h"
 
 namespace palpate {
@@ -33,22 +34,6 @@ constexpr const char* kAllowed =
   throw std::runtime_error(fmt::format("{}:{}: {}", name, line, what));
 }
 
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t\r\"");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r\"") - first + 1);
-}
-
-std::vector<std::string_view> split(std::string_view line) {
-  std::vector<std::string_view> cells;
-  for (std::size_t start = 0;;) {
-    const std::size_t comma = line.find(',', start);
-    cells.push_back(trimmed(line.substr(start, comma - start)));
-    if (comma == std::string_view::npos) return cells;
-    start = comma + 1;
-  }
-}
-
 // Which column of the file holds which value.
 struct Header {
   std::vector<Column> order;
@@ -57,7 +42,7 @@ struct Header {
 
 Header read_header(std::string_view text, const std::string& name, int line) {
   Header header;
-  for (const std::string_view cell : split(text)) {
+  for (const std::string_view cell : cells_of(text)) {
     std::optional<Column> column;
     for (int k = 0; k < kColumns; ++k) {
       if (cell == kNames[static_cast<std::size_t>(k)]) column = static_cast<Column>(k);
@@ -88,7 +73,7 @@ Header read_header(std::string_view text, const std::string& name, int line) {
 using Row = std::array<double, kColumns>;
 
 Row read_row(std::string_view text, const Header& header, const std::string& name, int line) {
-  const std::vector<std::string_view> cells = split(text);
+  const std::vector<std::string_view> cells = cells_of(text);
   if (cells.size() != header.order.size()) {
     refuse(name, line, fmt::format("{} values, but the header names {} columns", cells.size(), header.order.size()));
   }

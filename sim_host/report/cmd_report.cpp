@@ -19,6 +19,7 @@
 #include "sim_host/cli.h"
 #include "sim_host/cli_checks.h"
 #include "sim_host/latency/machine_identity.h"
+#include "sim_host/overlay_options.h"
 #include "sim_host/report/case_report.h"
 #include "sim_host/report/csv_table.h"
 
@@ -225,9 +226,7 @@ void add_report_command(CLI::App& app, int& exit_code) {
   command->add_option("--out", options->out, "folder for report.html, report.csv, report.json and the runs")
       ->capture_default_str();
   command->add_option("--model", options->models, "only this model; repeatable");
-  command->add_option("--with", options->overlays.file,
-                      "lay a file with some of the scene's tables over it; repeatable");
-  command->add_option("--set", options->overlays.setting, "KEY=VALUE: set one key of the scene; repeatable");
+  add_overlay_options(*command, options->overlays);
   command->add_flag("--solve", options->solve, "first make the reference by finite elements, which takes minutes");
   command->add_option("--place", options->place_mm, "where the ball presses, mm; default: the body's highest point")
       ->delimiter(',')

@@ -11,6 +11,8 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "sim_host/csv_cells.h"
+
 namespace palpate {
 
 namespace {
@@ -22,16 +24,12 @@ const std::vector<std::string> kFingers{"thumb", "index", "middle", "ring", "lit
   throw std::runtime_error(where + ": " + what);
 }
 
-std::string trimmed(const std::string& text) {
-  const auto first = text.find_first_not_of(" \t\r\"");
-  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t\r\"") - first + 1);
-}
-
-double number(const std::string& text, const std::string& where) {
+double number(std::string_view text, const std::string& where) {
   double value = 0;
   const char* end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc{} || stop != end || !std::isfinite(value)) refuse(where, "'" + text + "' is not a number");
+  if (error != std::errc{} || stop != end || !std::isfinite(value))
+    refuse(where, fmt::format("'{}' is not a number", text));
   return value;
 }
 
@@ -56,16 +54,6 @@ std::size_t joint_named(const std::vector<std::string>& names, const std::string
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end()) refuse(where, fmt::format("no joint '{}'; joints are {}", name, fmt::join(names, ", ")));
   return static_cast<std::size_t>(found - names.begin());
-}
-
-std::vector<std::string> cells_of(const std::string& line) {
-  std::vector<std::string> cells;
-  for (std::size_t start = 0;;) {
-    const std::size_t comma = line.find(',', start);
-    cells.push_back(trimmed(line.substr(start, comma - start)));
-    if (comma == std::string::npos) return cells;
-    start = comma + 1;
-  }
 }
 
 // One column's value into a row.
@@ -107,11 +95,12 @@ std::vector<TimedJoints> read_joint_table(std::istream& text, const std::string&
   std::vector<std::string> columns;
   std::string line;
   for (int at = 1; std::getline(text, line); ++at) {
-    const std::string content = trimmed(line), where = fmt::format("{}:{}", name, at);
+    const std::string_view content = trimmed(line);
+    const std::string where = fmt::format("{}:{}", name, at);
     if (content.empty() || content[0] == '#') continue;
-    const std::vector<std::string> cells = cells_of(line);
+    const std::vector<std::string_view> cells = cells_of(line);
     if (columns.empty()) {
-      columns = cells;
+      columns.assign(cells.begin(), cells.end());
       if (std::count(columns.begin(), columns.end(), "time_s") != 1) refuse(where, "needs one column time_s");
       for (const std::string& column : columns)
         if (column != "time_s" && column != "closing" && std::ranges::find(kFingers, column) == kFingers.end())

@@ -1,10 +1,9 @@
 #!/usr/bin/env bash
 # Effect gate, a mutation test of the tick: what changes nothing must not be in the tick. Every statement of tick(),
 # find_forces() and contact(), the phases of every contact method one method at a time, and the skeletons of
-# `temporal_paper` coupling are
-# left out in turn: a copy of the source without that line is compiled and linked before the library, whose own version
-# is then not taken. Some scene's outputs must change over the scripted hand's eight seconds, or the run must not end at
-# all. Proves itself by a planted stage that computes what nobody reads.
+# `temporal_paper` coupling are left out in turn: a copy of the source without that line is compiled and linked before
+# the library, whose own version is then not taken. Some scene's outputs must change over the scripted hand's eight
+# seconds, or the run must not end at all. Proves itself by a planted stage that computes what nobody reads.
 # Usage: effect.sh CXX ROOT LIBRT_CORE PALPATE IMAGE_DIR
 set -euo pipefail
 usage="usage: effect.sh CXX ROOT LIBRT_CORE PALPATE IMAGE_DIR"

@@ -44,9 +44,8 @@ void solve_forces(const ElasticLoad& load, Scratch& scratch, Real* force_N) PALP
 }
 
 // How far the tick moved any place of the surface at most.
-Real swept_m(const Model& model, const State& state, ElasticWork& work) PALPATE_RT {
+Real swept_m(const Model& model, const ElasticWork& work) PALPATE_RT {
   Real sum = 0;
-  soft_products(model.params.elastic_soft, state.elastic.soft_rootJ.data(), work.y);
   for (std::int32_t t = 0; t < terms(model.params.elastic_soft); ++t)  // bound: terms
     sum += abs_of(work.y[t] - work.y_begun[t]) * work.reach_m[t];
   return sum;
@@ -54,7 +53,8 @@ Real swept_m(const Model& model, const State& state, ElasticWork& work) PALPATE_
 
 void let_body_rest(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   state.elastic.reset();
-  state.elastic.swept_m = swept_m(model, state, work_of(scratch));
+  soft_products(model.params.elastic_soft, state.elastic.soft_rootJ.data(), work_of(scratch).y);
+  state.elastic.swept_m = swept_m(model, work_of(scratch));
 }
 
 void solve(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
@@ -81,7 +81,7 @@ void solve(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   if (work_of(scratch).energy.is_outside) scratch.status |= Status::kDepthBeyondRange;
   scratch.residual_m = max_of(scratch.residual_m, left_m);
   body.yield_to_rubs();
-  state.elastic.swept_m = swept_m(model, state, work_of(scratch));
+  state.elastic.swept_m = swept_m(model, work_of(scratch));
   scratch.energy_J += body.energy_J() + body.linear_energy_J(force_N);
   press_regions(load, state, scratch);
   for (std::int32_t r = 0; r < regions; ++r)  // bound: kMaxRegions

@@ -6,9 +6,9 @@
 namespace palpate {
 
 struct ElasticWork {
-  ElasticRow row[kMaxPieces];  // by piece
-  SoftEnergy energy;           // at the amplitudes that the rows were placed with
-  Real y[elastic_layout::kMaxTerms];
+  ElasticRow row[kMaxPieces];               // by piece
+  SoftEnergy energy;                        // at the amplitudes that the rows were placed with
+  Real y[elastic_layout::kMaxTerms];        // products of the amplitudes: those the rows were placed with, then the new
   Real y_begun[elastic_layout::kMaxTerms];  // as the tick found it
   Real reach_m[elastic_layout::kMaxTerms];  // largest displacement of each shape; written when the Scratch is made
   BodyRub rub[kMaxRegions];                 // by region of the tick

@@ -153,6 +153,10 @@ void Linearised::prepare(const Real* force_N) PALPATE_RT {
   for (std::int32_t r = 0; r < regions(); ++r) {  // bound: kMaxContacts rows
     leading_[r] = &work_.row[deepest_of(rows_of(scratch_, r)).piece];
     let_stick(model_, state_, work_.y, *leading_[r], work_.rub[r]);
+    if (regions() == 1) break;
+    show_linear_modes(model_, *leading_[r], along_linear_[r]);
+    for (std::int32_t j = 0; j < r; ++j)
+      linear_[r][j] = dot(along_linear_[r], along_linear_[j], model_.params.elastic_linear);
   }
   factorise(force_N);
 }
@@ -196,7 +200,6 @@ void Linearised::gather(const Real* before_N) PALPATE_RT {
   for (std::int32_t r = 0; r < load_.n; ++r) {  // bound: kMaxPieces tips
     const RegionRows rows = rows_of(scratch_, r);
     load_.own[r] = own_field(*leading_[r]);
-    if (load_.n > 1) show_linear_modes(model_, *leading_[r], along_linear_[r]);
     FarField far = load_.own[r];
     far.c0_m_per_N += dot(leading_[r]->pull, moved_[r], n_);
     load_.tips_of[r] = {&load_.tip[next], 0, far};
@@ -234,9 +237,9 @@ Real Linearised::step(const Real* force_N) PALPATE_RT {
 
 // V' + sum F pull - friction where the step ended, and what H^-1 of it moves.
 Real Linearised::left_m(const Real* force_N, Real share, const Real* delta) PALPATE_RT {
-  Real y[kMaxTerms], left[kMaxSoftModes];
-  soft_products(n_, state_.elastic.soft_rootJ.data(), y);
-  energy_J_ = soft_slope(model_, state_.elastic.soft_rootJ.data(), y, left);
+  Real left[kMaxSoftModes];
+  soft_products(n_, state_.elastic.soft_rootJ.data(), work_.y);
+  energy_J_ = soft_slope(model_, state_.elastic.soft_rootJ.data(), work_.y, left);
   for (std::int32_t r = 0; r < regions(); ++r) {  // bound: kMaxRegions pairs
     const ElasticRow& row = *leading_[r];
     std::int32_t pair = 0;
@@ -300,7 +303,6 @@ void Linearised::add_tip(Contact& contact, std::int32_t at) PALPATE_RT {
 
 void Linearised::couple(std::int32_t r, std::int32_t j) PALPATE_RT {
   const std::int32_t n = regions();
-  linear_[r][j] = dot(along_linear_[r], along_linear_[j], model_.params.elastic_linear);
   Real* c = scratch_.system.compliance_m_per_N;
   c[r * n + j] = c[j * n + r] = linear_[r][j] + dot(leading_[r]->pull, moved_[j], n_);
 }
