@@ -2,6 +2,7 @@
 
 #include <cstring>
 
+#include "rt_core/certificate.h"
 #include "rt_core/hash.h"
 #include "rt_core/image_check.h"
 
@@ -41,8 +42,9 @@ ImageResult check_header(std::span<const std::byte> bytes, const ImageHeader& he
   if (header.version != kImageVersion) return {ImageError::kVersion, "version"};
   if (header.real_bytes != sizeof(Real)) return {ImageError::kRealSize, "real_bytes"};
   if (header.layout_hash != image_layout_hash()) return {ImageError::kLayout, "layout_hash"};
-  if (header.total_bytes != bytes.size()) return {ImageError::kTotalSize, "total_bytes"};
-  if (header.checksum != image_checksum(bytes)) return {ImageError::kChecksum, "checksum"};
+  if (header.total_bytes < kArraysOffset || header.total_bytes > bytes.size())
+    return {ImageError::kTotalSize, "total_bytes"};
+  if (header.checksum != image_checksum(bytes.first(header.total_bytes))) return {ImageError::kChecksum, "checksum"};
   if (std::memchr(header.name, '\0', sizeof(header.name)) == nullptr) return {ImageError::kName, "name"};
   return {};
 }
@@ -92,6 +94,12 @@ std::uint64_t image_checksum(std::span<const std::byte> bytes) noexcept {
   return hasher.value;
 }
 
+std::uint64_t bytes_checksum(std::span<const std::byte> bytes) noexcept {
+  Hasher hasher;
+  add_bytes(hasher, bytes);
+  return hasher.value;
+}
+
 ImageSections image_sections() noexcept { return {kSizesOffset, kParamsOffset, kArraysOffset}; }
 
 bool image_offsets(const ModelSizes& sizes, std::uint64_t (&offset)[kArrayCount + 1]) noexcept {
@@ -127,7 +135,7 @@ ImageResult open_image(std::span<const std::byte> bytes, Model& model) noexcept 
   PALPATE_MODEL_SIZES(PALPATE_CHECK)
 #undef PALPATE_CHECK
   std::uint64_t offset[kArrayCount + 1];
-  if (!image_offsets(opened.sizes, offset) || offset[kArrayCount] != bytes.size())
+  if (!image_offsets(opened.sizes, offset) || offset[kArrayCount] != header.total_bytes)
     return {ImageError::kArrayBounds, "arrays"};
   if (const ImageResult result = check_params(opened.params); result.error != ImageError::kNone) return result;
 
@@ -137,6 +145,9 @@ ImageResult open_image(std::span<const std::byte> bytes, Model& model) noexcept 
   PALPATE_MODEL_ARRAYS(PALPATE_FIELD)
 #undef PALPATE_FIELD
   if (const ImageResult result = check_arrays(opened); result.error != ImageError::kNone) return result;
+  Certificate certificate;
+  const ImageResult said = open_certificate(bytes.subspan(header.total_bytes), header.checksum, certificate);
+  if (said.error != ImageError::kNone) return said;
   opened.scene_hash = header.checksum;
   opened.name = header.name;
   model = opened;

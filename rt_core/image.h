@@ -19,7 +19,7 @@ struct ImageHeader {
   std::uint32_t version;
   std::uint32_t real_bytes;   // sizeof(Real)
   std::uint64_t layout_hash;  // of every table entry and struct size: changes whenever the meaning of the bytes changes
-  std::uint64_t total_bytes;  // of the file
+  std::uint64_t total_bytes;  // of the image; what follows is its certificate (rt_core/certificate.h)
   std::uint64_t checksum;     // of all bytes after this header, mixed with the header fields before this one
   char name[kNameBytes];      // scene name, zero-terminated
 };
@@ -54,6 +54,8 @@ struct ImageResult {
 std::uint64_t image_layout_hash() noexcept;
 // Checksum of an image's bytes (see ImageHeader::checksum). `bytes` holds at least a header.
 std::uint64_t image_checksum(std::span<const std::byte> bytes) noexcept;
+// Of any bytes; every single changed byte changes it.
+std::uint64_t bytes_checksum(std::span<const std::byte> bytes) noexcept;
 // Byte offsets of the fixed sections after the header.
 struct ImageSections {
   std::size_t sizes, params, arrays;

@@ -9,6 +9,14 @@ namespace palpate {
 #define PALPATE_CONTACT_WEIGHTS(X) X(kWinkler, winkler) X(kArea, area) X(kPaper, paper)
 PALPATE_CHOICE(ContactWeight, PALPATE_CONTACT_WEIGHTS);
 
+// Where a region's force acts as if it were one point's: the centre of pressure, or the geometric centre.
+#define PALPATE_EQUIVALENT_POINTS(X) X(kPressure, pressure) X(kPaper, paper)
+PALPATE_CHOICE(EquivalentPoint, PALPATE_EQUIVALENT_POINTS);
+
+// Between tabulated curves: the gradient of the interpolated energy, or sum n_i f_i U_i as printed.
+#define PALPATE_TABLE_INTERPOLATIONS(X) X(kEnergy, energy) X(kPaper, paper)
+PALPATE_CHOICE(TableInterpolation, PALPATE_TABLE_INTERPOLATIONS);
+
 // Who finds contact and makes force: springs at the tool's points; one law per whole tip, or curves tabulated over the
 // surface; nodes of a finite-element body; whole tips on the surface of a body that gives as its modes do.
 // X(enumerator, word): the method itself is WORD_method (contact/contact.h).
@@ -53,8 +61,12 @@ PALPATE_CHOICE(ResponseLaw, PALPATE_RESPONSE_LAWS);
 #define PALPATE_TANGENTIAL_LAWS(X) X(kSeparable, separable) X(kRadial, radial)
 PALPATE_CHOICE(TangentialLaw, PALPATE_TANGENTIAL_LAWS);
 
+// kPaper: equations (6) to (8) of Luo & Xiao 2006 with the printed length; kPaperGuarded: with one that stays above
+// zero where the contact is at an anchor.
 #define PALPATE_SKELETON_LAWS(X) \
-  X(kNone, none) X(kStiffness, stiffness) X(kPaper, paper) X(kCircular, circular) X(kCircularPaper, circular_paper)
+  X(kNone, none)                 \
+  X(kStiffness, stiffness)       \
+  X(kPaper, paper) X(kCircular, circular) X(kCircularPaper, circular_paper) X(kPaperGuarded, paper_guarded)
 PALPATE_CHOICE(SkeletonLaw, PALPATE_SKELETON_LAWS);
 
 #define PALPATE_SHAPE_LAWS(X) X(kRbf, rbf) X(kDisplacementAnglePaper, displacement_angle_paper)

@@ -37,11 +37,13 @@ namespace palpate {
 // Tool points with springs.
 #define PALPATE_POINT_PARAMS(X)                                                                    \
   PALPATE_CHOICE_PARAM(X, ContactWeight, contact_weight, "how sample forces are weighted")         \
+  PALPATE_CHOICE_PARAM(X, EquivalentPoint, equivalent_point, "centre of a region")                 \
   X(double, k1_N_per_m, "N/m", 0, 1e9, "linear coefficient of the contact law, per unit weight")   \
   X(double, k3_N_per_m3, "N/m3", 0, 1e15, "cubic coefficient of the contact law, per unit weight") \
   X(double, max_depth_m, "m", 1e-6, 1, "depth beyond which the law continues by its tangent")
 // Whole tips and tables.
-#define PALPATE_TIP_PARAMS(X) \
+#define PALPATE_TIP_PARAMS(X)                                                                          \
+  PALPATE_CHOICE_PARAM(X, TableInterpolation, table_interpolation, "between the curves of the tables") \
   X(std::int32_t, response_root, "-", 0, 1, "1: the knots of the tables are roots of depths")
 // Nodes of a finite-element body.
 #define PALPATE_NODE_PARAMS(X)                                                                        \
@@ -59,14 +61,15 @@ namespace palpate {
   X(std::int32_t, elastic_soft, "-", 0, kMaxSoftModes, "soft modes: nonlinear")                        \
   X(std::int32_t, elastic_linear, "-", 0, kMaxLinearModes, "linear modes: through which regions meet") \
   X(double, elastic_radius_rootJ, "J^1/2", 0, 1e6, "the soft energy is a quartic up to here, then goes on by tangents")
-// Relaxation of the body (rt_core/contact/relaxation.h): up to three Prony terms.
+// Relaxation of the body (rt_core/contact/relaxation.h): up to three Prony terms, and what is lost at any rate.
 #define PALPATE_RELAXATION_PARAMS(X)                                                                              \
   X(double, relax_share_1, "-", 0, 1, "part of the stiffness that relaxes with the first time constant; 0: none") \
   X(double, relax_share_2, "-", 0, 1, "with the second")                                                          \
   X(double, relax_share_3, "-", 0, 1, "with the third")                                                           \
   X(double, relax_kept_1, "-", 0, 1, "exp(-T / tau) of the first: kept from tick to tick")                        \
   X(double, relax_kept_2, "-", 0, 1, "of the second")                                                             \
-  X(double, relax_kept_3, "-", 0, 1, "of the third")
+  X(double, relax_kept_3, "-", 0, 1, "of the third")                                                              \
+  X(double, lost_share, "-", 0, 0.5, "part of a press's work that its release does not give back, however slow")
 // Friction.
 #define PALPATE_FRICTION_PARAMS(X)                                                                    \
   PALPATE_CHOICE_PARAM(X, FrictionLaw, friction_law, "limit and motion of friction")                  \
@@ -89,9 +92,11 @@ namespace palpate {
   PALPATE_CHOICE_PARAM(X, NeighbourhoodLaw, neighbourhood_law, "dent around a contact")            \
   X(double, neighbourhood_radius_m, "m", 1e-6, 1, "R of the local dent")
 // Articulated tools.
-#define PALPATE_JOINT_PARAMS(X)                                                        \
-  X(double, closing_rate_per_s, "1/s", 0, 1e3, "fastest change of a closing fraction") \
-  X(double, stop_force_N, "N", 0, 1e6, "a joint stops where it would press a part harder than this")
+#define PALPATE_JOINT_PARAMS(X)                                                                      \
+  X(double, closing_rate_per_s, "1/s", 0, 1e3, "fastest change of a closing fraction")               \
+  X(double, stop_force_N, "N", 0, 1e6, "a joint stops where it would press a part harder than this") \
+  X(double, palm_radius_m, "m", 0, 1, "of the largest disc on the palm's face: where it can push")   \
+  X(double, palm_face_m, "m", 0, 1, "from the tool's origin to that face")
 // Coupling to the device, and safety.
 #define PALPATE_DEVICE_PARAMS(X)                                                                              \
   X(double, coupling_N_per_m, "N/m", 1, 1e6, "translational stiffness of the virtual coupling")               \
@@ -194,8 +199,8 @@ struct ToolPiece {
   std::int32_t first_hull, hull_count;    // its hull vertices (kHull only)
   std::int32_t part;                      // label for telemetry: finger part, mallet head...
   std::int32_t joint = -1;                // that carries it; -1: fixed to the tool frame
-  std::int32_t group = 0;  // articulated tools: contacts of different groups (fingers, jaws) never share a region
-  std::int32_t reserved = 0;
+  std::int32_t group = 0;      // articulated tools: contacts of different groups (fingers, jaws) never share a region
+  std::int32_t curve_set = 0;  // tables: which of the sets of curves is its own
   double neighbourhood_m = 0;  // radius of the dent it makes; 0: the scene's
 };
 // One degree of freedom of an articulated tool. Its link's frame in the tool frame is

@@ -237,6 +237,7 @@ struct SettingsState {
   X(Vec3, observed_m_per_s, {}, "velocity with which device_w goes on between the encoder's steps")             \
   X(Vec3, observed_rad_per_s, {}, "and turns")                                                                  \
   X(Vec3, relaxed_rootJ, {}, "how far each relaxation term has yielded: root of twice an energy")               \
+  X(double, followed_rootJ, 0, "how far what rubs inside the body has followed")                                \
   X(Vec3, hand_velocity_m_per_s, {}, "of the handle, smoothed: bridges lost samples")                           \
   X(double, stale_share, 0, "part of the ticks, lately, that had no fresh sample")                              \
   X(std::uint32_t, next_region_id, 1, "of the next region to be born")                                          \

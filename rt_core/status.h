@@ -35,7 +35,7 @@ namespace palpate {
     "send closings of 0 to 1 and positions within the limits in the image")                                            \
   X(kJointStopped, 14, "a joint stopped because it would press a loaded part harder than the stop force",              \
     "none: this is how a grasp ends; raise the stop force to squeeze harder")                                          \
-  X(kGraspUnstable, 15, "the palm would have to pull to hold the body",                                                \
+  X(kGraspUnstable, 15, "the palm would have to pull, or to hold by more than its friction, to hold the body",         \
     "close the fingers so that their forces push the body into the palm")                                              \
   X(kFootHeld, 16, "a tip is deeper than the surface's curvature allows; its last place of contact is kept",           \
     "press less deeply, or use a larger body")                                                                         \

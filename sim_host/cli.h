@@ -23,6 +23,7 @@ inline std::string about_file(const std::string& file, const std::string& what) 
 // std::exception: main prints what() after "palpate: " and exits with kExitUsage.
 void add_bake_command(CLI::App& app, int& exit_code);
 void add_explain_command(CLI::App& app, int& exit_code);
+void add_certify_command(CLI::App& app, int& exit_code);
 void add_mesh_command(CLI::App& app, int& exit_code);
 void add_press_command(CLI::App& app, int& exit_code);
 void add_run_command(CLI::App& app, int& exit_code);

@@ -24,7 +24,7 @@ std::string unknown_command(const CLI::App& app, const std::string& word) {
 // What `palpate` alone says.
 constexpr char kWelcome[] =
     "Palpate: feel soft objects. Three things to begin with, from the folder it was fetched into:\n"
-    "  palpate run config/scenes/ellipsoid_mallet.toml    a simulated hand presses a rubber ellipsoid\n"
+    "  palpate run config/scenes/ellipsoid_mallet.toml    a simulated hand presses a soft ellipsoid\n"
     "  palpate view config/scenes/ellipsoid_mallet.toml   your mouse is the device\n"
     "  palpate press config/scenes/ring.toml --plot f.svg force against time, no device at all\n"
     "`palpate --help` lists every command, `palpate COMMAND --help` what one can do. Installed scenes: "
@@ -49,6 +49,7 @@ int main(int argc, char** argv) {
   palpate::add_bake_command(app, exit_code);
   palpate::add_mesh_command(app, exit_code);
   palpate::add_explain_command(app, exit_code);
+  palpate::add_certify_command(app, exit_code);
   palpate::add_press_command(app, exit_code);
   palpate::add_run_command(app, exit_code);
   palpate::add_set_command(app, exit_code);

@@ -33,6 +33,7 @@ class Compiler {
   CompileResult run() {
     check_scene(scene_);
     report_.name = image_.name = scene_.name;
+    report_.warnings = weak_keys(scene_);
     add_laws();
     add_tool();
     refuse(scene_, check_method(model_of(image_)));  // before the long computations
@@ -51,7 +52,6 @@ class Compiler {
     report_.array = array_bytes(image_);
     CompileResult result{write_image(image_), std::move(report_)};
     check_bytes(scene_, result.bytes);
-    result.report.image_bytes = result.bytes.size();
     return result;
   }
 
@@ -62,7 +62,6 @@ class Compiler {
   void warn(const std::string& text) { report_.warnings.push_back(text); }
 
   bool is_nodal() const { return scene_.contact.backend == Backend::kNodal; }
-
   bool is_elastic() const { return scene_.contact.backend == Backend::kElastic; }
 
   // Contact on finite elements: what the response back-end would use is left out.
@@ -120,6 +119,7 @@ class Compiler {
   void add_laws() {
     ModelParams& p = image_.params;
     p.contact_weight = scene_.contact.weight;
+    p.equivalent_point = scene_.contact.equivalent_point;
     p.friction_law = scene_.friction.law;
     p.tangential_law = scene_.friction.tangential;
     p.skeleton_law = scene_.skeleton.law;
@@ -147,6 +147,7 @@ class Compiler {
     p.friction_mu_dynamic = report_.friction.mu_dynamic;
     if (scene_.contact.law == ContactLaw::kTool) p.response_law = ResponseLaw::kTip;
     if (scene_.contact.law == ContactLaw::kTable) p.response_law = ResponseLaw::kTable;
+    p.table_interpolation = scene_.table.interpolation;
     if (is_nodal()) add_nodal_laws();
     if (!is_elastic()) return;
     p.backend = Backend::kElastic;
@@ -182,16 +183,6 @@ class Compiler {
     report_.traversal_stack = bvh.stack_high_water;
   }
 
-  // A finger part touches with a strip of its palm's side, not all around: as long as the capsule's core and a
-  // rounding, and about as wide as its radius (at a third of the radius deep the exact width is 1.5 radii, at the first
-  // touch 0).
-  static void narrow_finger_areas(Tool& tool) {
-    for (ToolPoint& point : tool.point) {
-      const ToolPiece& piece = tool.piece[static_cast<std::size_t>(point.piece)];
-      point.area_m2 = piece.margin_m * (2 * piece.half_extent_m[2] + piece.margin_m) / piece.point_count;
-    }
-  }
-
   bool is_hand() const { return scene_.articulation == Articulation::kHand; }
 
   void add_tool() {
@@ -202,7 +193,7 @@ class Compiler {
     } catch (const ConfigError& error) {
       throw ConfigError(scene_.source.file + ": " + error.what());
     }
-    if (is_hand()) narrow_finger_areas(tool);
+    if (is_hand()) narrow_finger_areas(tool.piece, tool.point);
     double total = 0;
     for (const ToolPoint& point : tool.point) total += point.area_m2;
     report_.reference_area_m2 = is_auto(scene_.contact.reference_area_m2)
@@ -245,6 +236,7 @@ class Compiler {
     const HandDesc& desc = scene_.hand;
     image_.params.closing_rate_per_s = 1 / desc.closing_s;
     image_.params.stop_force_N = desc.stop_force_N;
+    set_palm(hand_, image_.params);
     for (std::size_t i = 0; i < image_.piece.size(); ++i) {
       image_.piece[i].joint = hand_.piece_joint[i];
       image_.piece[i].group = hand_.piece_finger[i];
@@ -332,11 +324,13 @@ class Compiler {
   void add_distances() {
     ModelParams& p = image_.params;
     const double spacing = point_spacing_m();
-    p.cluster_distance_m = !is_auto(scene_.contact.cluster_distance_m) ? scene_.contact.cluster_distance_m
-                           : is_tip_law(scene_.contact.law)            ? tip_distance_m()
-                           : is_nodal()                                ? clamp_to(cluster_distance_m_, 1e-6, 1.0)
-                           : spacing > 0                               ? clamp_to(2 * spacing, 1e-6, 1.0)
-                                                                       : 0.010;
+    // Tips of an elastic body lean on one another through it, each a region of its own.
+    p.cluster_distance_m = is_elastic()                                  ? 1e-6
+                           : !is_auto(scene_.contact.cluster_distance_m) ? scene_.contact.cluster_distance_m
+                           : is_tip_law(scene_.contact.law)              ? tip_distance_m()
+                           : is_nodal()                                  ? clamp_to(cluster_distance_m_, 1e-6, 1.0)
+                           : spacing > 0                                 ? clamp_to(2 * spacing, 1e-6, 1.0)
+                                                                         : 0.010;
     report_.cluster_distance_m = p.cluster_distance_m;
     p.far_field_radius_m = is_auto(scene_.coupling.radius_m)
                                ? clamp_to(square_root(report_.reference_area_m2 / kPi), 1e-6, 1.0)
@@ -415,7 +409,9 @@ class Compiler {
     report_.baked_beams = true;
     report_.section_radius_m = image_.anchor[0].section_radius_m;
     if (scene_.coupling.law == CouplingLaw::kTemporalPaper)
-      warn("coupling.law = \"temporal_paper\" displaces no anchor of circular beams: they are baked at rest");
+      warn(
+          "coupling.law = \"temporal_paper\" displaces the surface under later contacts, but not the ends of circular "
+          "beams, which are baked from the anchors at rest");
     const BeamTableReport& beams = report_.beams;
     for (std::size_t a = 0; a < beams.dropped_by_anchor.size(); ++a)
       if (beams.dropped_by_anchor[a] == report_.vertices)
@@ -494,6 +490,6 @@ class Compiler {
 
 }  // namespace
 
-CompileResult compile_scene(const SceneDesc& scene, const BakeRun& run) { return Compiler(scene, run).run(); }
+CompileResult compile_image(const SceneDesc& scene, const BakeRun& run) { return Compiler(scene, run).run(); }
 
 }  // namespace palpate

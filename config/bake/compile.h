@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "config/bake/contact_fit.h"
+#include "config/bake/elastic_check.h"
 #include "config/bake/image_writer.h"
 #include "config/bake/worst_tick.h"
 #include "config/beams/beam_table_build.h"
@@ -30,7 +31,9 @@ struct ElasticReport {
     double worst_error = 0;  // relative, on the way to the depth
   };
   std::vector<Check> check;
-  double add_c_mpN = 0;  // to every self term, by the presses
+  std::vector<CheckPress> press;      // the same with all depths
+  std::vector<CheckedPlace> checked;  // what the image keeps of them
+  double add_c_mpN = 0;               // to every self term, by the presses
 };
 
 struct CompileReport {
@@ -62,6 +65,7 @@ struct CompileReport {
   std::int32_t joints = 0, parts_touching = 0;  // of a hand: parts in contact when closed
   double clearance_m = 0;                       // of the open hand on its way in
   TickCost cost;
+  std::vector<std::string> model;  // with error_target: which models were tried and which was taken, line by line
   std::vector<std::string> warnings;
 };
 // The report as lines for a terminal.
@@ -77,6 +81,11 @@ struct BakeRun {
   unsigned jobs = 0;  // threads for what can go side by side; 0: as many as there are processors
 };
 // Same scene, same bytes: nothing of paths, time or addresses goes into them. Throws ConfigError.
+// A scene with an error_target gets the model that meets it (model_choice.h).
 CompileResult compile_scene(const SceneDesc& scene, const BakeRun& run = {});
+// The image alone, of the model that the scene states.
+CompileResult compile_image(const SceneDesc& scene, const BakeRun& run);
+// The same with a certificate of its check presses, or of `checked` where that is not empty.
+CompileResult compile_stated(const SceneDesc& scene, const BakeRun& run, const std::vector<CheckedPlace>& checked);
 
 }  // namespace palpate

@@ -112,6 +112,7 @@ std::string report_text(const CompileReport& r) {
   if (r.cost.surface_work > 0)
     line(text, "surface    an adversary made a tick look at %d boxes and triangles; allowed %d", r.cost.surface_work,
          r.cost.surface_work_max);
+  for (const std::string& model : r.model) line(text, "model      %s", model.c_str());
   line(text, "worst tick %.0f instructions found by an adversary, %.0f stated", r.cost.found, r.cost.instructions);
   size_lines(text, r);
   for (const std::string& warning : r.warnings) text += "warning    " + warning + '\n';

@@ -180,7 +180,15 @@ ImageContents with_ball(const SceneDesc& scene, const ImageContents& image, doub
 }
 
 CheckedPress press_baked(const ImageContents& with_ball, const CheckPress& press) {
-  Model model = model_of(with_ball);
+  return press_model(model_of(with_ball), press);
+}
+
+CheckedPlace checked_place(const CheckPress& press, const CheckedPress& checked) {
+  return {press.place_m,          press.radius_m,     press.depth_m.back(), press.reference_N.back(),
+          checked.force_N.back(), checked.worst_error};
+}
+
+CheckedPress press_model(Model model, const CheckPress& press) {
   model.params.relax_share_1 = 0;  // compared before it relaxes
   TickMemory memory(model);
   Output output;

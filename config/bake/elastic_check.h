@@ -9,6 +9,7 @@
 #include "config/fem/tet_mesh.h"
 #include "config/scene/progress.h"
 #include "config/scene/scene.h"
+#include "rt_core/certificate.h"
 
 namespace palpate {
 
@@ -45,5 +46,9 @@ int press_elements(const SceneDesc& scene, const ImageContents& image, const Tet
 ImageContents with_ball(const SceneDesc& scene, const ImageContents& image, double radius_m);
 // Errors are zero where the press has no reference yet.
 CheckedPress press_baked(const ImageContents& with_ball, const CheckPress& press);
+// The same of any model whose only tool is the press's ball.
+CheckedPress press_model(Model model, const CheckPress& press);
+// What an image keeps of a press that has a reference.
+CheckedPlace checked_place(const CheckPress& press, const CheckedPress& checked);
 
 }  // namespace palpate

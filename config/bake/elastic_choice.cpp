@@ -155,7 +155,11 @@ ElasticReport bake_elastic_body(const SceneDesc& scene, ImageContents& image, st
   report.add_c_mpN = best.add_c_mpN;
   report.radius_rootJ = image.params.elastic_radius_rootJ =
       std::min(image.params.elastic_radius_rootJ, kBeyond * best.reach_rootJ);
-  for (std::size_t i = 0; i < presses.size(); ++i) report.check.push_back(check_of(presses[i], best.press[i]));
+  for (std::size_t i = 0; i < presses.size(); ++i) {
+    report.check.push_back(check_of(presses[i], best.press[i]));
+    if (!presses[i].depth_m.empty()) report.checked.push_back(checked_place(presses[i], best.press[i]));
+  }
+  report.press = presses;
   if (best.worst_error > scene.elastic.check_error)
     warnings.push_back(where + "the worst error is " + per_cent(best.worst_error) + " with " +
                        std::to_string(best.soft) + " soft modes, above body.elastic.check_error of " +

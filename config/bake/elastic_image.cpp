@@ -29,8 +29,6 @@ constexpr double kSampleSpacing = 0.08;
 // The baker's meshes are even, and large against the wall: see ElasticOptions::patch_edges.
 constexpr double kPatchEdges = 0.75;
 constexpr double kFacing = 0.5;  // samples on another face say nothing about this one
-// Of the least compliance a tip's dent can have: what a negative self term may take off it.
-constexpr double kLeastOwnShare = 0.4;
 
 std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 Vec3 vec(const Vector<3>& v) { return {v[0], v[1], v[2]}; }
@@ -125,20 +123,21 @@ std::vector<int> sample_nodes(const elastic::Surface<3>& surface, const std::vec
   return kept;
 }
 
-// c and c1 anywhere on the surface: through the samples' values, smoothly (radial functions of place and outlook,
+// c, c1 and beta anywhere on the surface: through the samples' values, smoothly (radial functions of place and outlook,
 // Matern 3/2 about the mean). A mean of near samples instead flattens the peak in the middle of a thin wall: an arch
 // was 25 % too stiff under one finger (2026-11-22).
 class SelfField {
  public:
-  SelfField(const elastic::Surface<3>& surface, const elastic::SelfTerms& terms, double spacing_m, double least_c)
+  SelfField(const elastic::Surface<3>& surface, const elastic::SelfTerms& terms, const std::vector<double>& beta,
+            double spacing_m)
       : length_(kLengths * spacing_m) {
     const auto n = static_cast<Eigen::Index>(terms.nodes.size());
-    Eigen::MatrixXd kernel(n, n), value(n, 2);
+    Eigen::MatrixXd kernel(n, n), value(n, 3);
     for (const int node : terms.nodes)
       samples_.push_back({vec(surface.rest(node)), vec(elastic::node_normal(surface, node))});
     for (Eigen::Index i = 0; i < n; ++i) {
       const std::size_t node = at(terms.nodes[static_cast<std::size_t>(i)]);
-      value.row(i) << std::max(terms.self_mpN[node], least_c), terms.second_mpN2[node];
+      value.row(i) << terms.self_mpN[node], terms.second_mpN2[node], beta[static_cast<std::size_t>(i)];
       for (Eigen::Index k = 0; k < n; ++k)
         kernel(i, k) = likeness(samples_[static_cast<std::size_t>(i)], samples_[static_cast<std::size_t>(k)]);
     }
@@ -146,11 +145,11 @@ class SelfField {
     kernel.diagonal().array() += kNugget;
     weight_ = kernel.llt().solve(value.rowwise() - mean_);
   }
-  std::pair<double, double> show(Vec3 p, Vec3 normal) const {
-    Eigen::RowVector2d sum = mean_;
+  Eigen::RowVector3d show(Vec3 p, Vec3 normal) const {
+    Eigen::RowVector3d sum = mean_;
     for (std::size_t i = 0; i < samples_.size(); ++i)
       sum += likeness({p, normal}, samples_[i]) * weight_.row(static_cast<Eigen::Index>(i));
-    return {sum[0], sum[1]};
+    return sum;
   }
 
  private:
@@ -166,7 +165,7 @@ class SelfField {
   }
   std::vector<Sample> samples_;
   double length_;
-  Eigen::RowVector2d mean_;
+  Eigen::RowVector3d mean_;
   Eigen::MatrixXd weight_;
 };
 
@@ -258,11 +257,12 @@ void add_vertices(const elastic::ElasticBody<3>& body, const Shapes& shapes, con
       for (int i = 0; i < 3; ++i) *out++ = show(shapes.u[t], 3, i);
       for (int i = 0; i < 9; ++i) *out++ = show(shapes.gradient[t], 9, i);
     }
-    const auto [c, c1] = self.show(image.vertex_m[v], image.vertex_normal[v]);
-    *out++ = static_cast<float>(c);
-    *out++ = static_cast<float>(c1);
+    const Eigen::RowVector3d own = self.show(image.vertex_m[v], image.vertex_normal[v]);
+    *out++ = static_cast<float>(own[0]);
+    *out++ = static_cast<float>(own[1]);
     *out++ = static_cast<float>(curvature[v]);
-    out += elastic_layout::kOwnFloats - 3;
+    *out++ = static_cast<float>(own[2]);
+    out += elastic_layout::kOwnFloats - elastic_layout::kOwnValues;
     for (int m = s; m < s + linear; ++m) {
       const Field phi = body.modes.phi_1pm.col(m) / std::sqrt(body.modes.lambda_Npm3[m]);
       for (int i = 0; i < 3; ++i) *out++ = show(phi, 3, i);
@@ -270,7 +270,7 @@ void add_vertices(const elastic::ElasticBody<3>& body, const Shapes& shapes, con
   }
 }
 
-// The slopes of c, c1 and curvature along the surface, from what stands at the vertices.
+// The slopes of c, c1, curvature and beta along the surface, from what stands at the vertices.
 void add_own_slopes(const elastic::ElasticBody<3>& body, ImageContents& image) {
   using namespace elastic_layout;
   const int s = body.soft, linear = static_cast<int>(body.modes.lambda_Npm3.size()) - s;
@@ -305,13 +305,22 @@ elastic::ElasticOptions options_of(int soft, int linear) {
   return options;
 }
 
-// The patch under a ball is as wide as its contact: Hertz' pressure has the variance a^2 / 5, and a^2 = R d at a dent
-// d. One dent stands for all, an eighth of the law's range: on a wall of 10 mm under a ball of 8, none at all or four
-// times as much changes the force by 1 % (2026-11-22).
-void widen_patches(double radius_m, double max_depth_m, elastic::SelfTerms& self) {
-  constexpr double kDent = 0.125;
-  const double variance = kDent * max_depth_m * radius_m / 5;
-  for (const int node : self.nodes) self.self_mpN[at(node)] -= self.width_1pmN[at(node)] * variance;
+// Of every sample, for the largest of the tool's balls; the tick scales it to the others.
+std::vector<double> betas_of(const elastic::SelfTerms& self, double modulus_Pa, const ImageContents& image) {
+  elastic::BallLaw ball{0, modulus_Pa, false};
+  for (std::size_t p = 0; p < image.piece.size(); ++p) {
+    const TipLaw& law = image.tip_law[p];
+    if (image.piece[p].point_count == 0 || law.half_power != 3) continue;
+    const double radius = image.tool_point[at(image.piece[p].first_point)].margin_m;
+    if (radius > ball.radius_m) ball = {radius, modulus_Pa, law.first_factor < 0};
+  }
+  std::vector<double> beta(self.nodes.size(), 0.0);
+  if (!(ball.radius_m > 0)) return beta;
+  for (std::size_t i = 0; i < beta.size(); ++i) {
+    const std::size_t node = at(self.nodes[i]);
+    beta[i] = elastic::fit_beta(ball, self.width[node], self.self_mpN[node], image.params.max_depth_m);
+  }
+  return beta;
 }
 
 }  // namespace
@@ -320,7 +329,7 @@ struct ElasticBake::Parts {
   TetMesh mesh;
   std::vector<bool> fixed;
   elastic::RestBody<3> rest;
-  double spacing_m, max_depth_m;
+  double spacing_m;
   elastic::ElasticStock<3> stock;
   NodalGradient gradient;
   std::vector<FacetFoot> feet;
@@ -331,7 +340,6 @@ struct ElasticBake::Parts {
         fixed(std::move(held)),
         rest(elastic::solid_mesh(mesh, scene.source.where("body.shape")), elastic_material(image.params), fixed),
         spacing_m(kSampleSpacing * rest.surface().extent_m()),
-        max_depth_m(scene.contact.max_depth_m),
         stock(elastic::make_elastic_stock(rest, sample_nodes(rest.surface(), fixed, spacing_m), modes,
                                           options_of(modes, 0))),
         gradient(mesh, rest.surface()),
@@ -354,11 +362,8 @@ ElasticReport ElasticBake::write(int soft, int linear, double add_c_mpN, ImageCo
   const Parts& parts = *parts_;
   elastic::ElasticBody<3> body = elastic::make_elastic_body(parts.stock, options_of(soft, linear));
   for (const int node : body.self.nodes) body.self.self_mpN[at(node)] += add_c_mpN;
-  double radius = 0;
-  for (const ToolPoint& point : image.tool_point) radius = std::max(radius, point.margin_m);
-  widen_patches(radius, parts.max_depth_m, body.self);
-  const double least_c = radius > 0 ? -kLeastOwnShare / (2 * parts.rest.contact_modulus() * radius) : 0;
-  const SelfField self(parts.rest.surface(), body.self, parts.spacing_m, least_c);
+  const SelfField self(parts.rest.surface(), body.self, betas_of(body.self, parts.rest.contact_modulus(), image),
+                       parts.spacing_m);
   add_energy(body.maps.potential, image);
   add_vertices(body, term_shapes(body, parts.gradient), self, parts.feet, image, parts.normals);
   add_own_slopes(body, image);

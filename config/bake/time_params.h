@@ -18,6 +18,7 @@ inline void set_times(const SceneDesc& scene, ModelParams& p) {
   const double late_s = d.local_Hz > 0 ? 0.5 * p.local_period_s : 0.5 * d.period_s + d.delay_s;
   p.coupling_Ns_per_m = is_auto(d.coupling_Ns_per_m) ? p.coupling_N_per_m * late_s : d.coupling_Ns_per_m;
   const Vec3 share = scene.material.relaxation_share, time_s = scene.material.relaxation_s;
+  p.lost_share = scene.material.lost_share;
   const auto kept = [&](double s) { return std::exp(-d.period_s / s); };
   p.relax_share_1 = share.x, p.relax_share_2 = share.y, p.relax_share_3 = share.z;
   p.relax_kept_1 = kept(time_s.x), p.relax_kept_2 = kept(time_s.y), p.relax_kept_3 = kept(time_s.z);

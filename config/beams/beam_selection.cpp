@@ -8,7 +8,9 @@ namespace palpate {
 namespace {
 
 constexpr int kClearanceSamples = 9;  // per fibre
-constexpr int kCurvatures = 16;       // of the family of circles through both points
+constexpr int kCircles = 24;          // of the family of circles through both points, evenly in their half angle
+constexpr double kHalfAngle = 1.884;  // of the largest, 108 degrees: a dome's far rim is more than half a circle away
+constexpr double kIntoWall = 1.5;     // widths by which a beam to an anchor of the hole ends inside the wall
 constexpr int kPlanes = 6;            // turned about the chord
 constexpr double kSharedUpTo = 0.2;   // relative difference of the two ways' lengths at which one carries all
 
@@ -112,10 +114,10 @@ BeamCurve BeamSelector::roomiest(Vec3 tip, Vec3 anchor, Vec3 inside) const {
   const double c = norm(anchor - tip);
   BeamCurve best;
   best.clearance_m = -kHuge;
-  for (int j = 1; j <= kCurvatures; ++j) {
-    const double b = 0.5 * c * kCurvatures / j;
+  for (int j = 1; j <= kCircles; ++j) {
+    const double half_angle = kHalfAngle * j / kCircles, b = 0.5 * c / std::sin(half_angle);
     if (!(rule_.width_m <= 0.5 * b)) continue;
-    BeamCurve curve = arc_through(tip, anchor, inside, b, false);
+    BeamCurve curve = arc_through(tip, anchor, inside, b, half_angle > 0.5 * kPi);
     curve.path = BeamPath::kFitted;
     fits(curve);
     if (curve.clearance_m > best.clearance_m) best = curve;
@@ -211,8 +213,23 @@ BeamChoice BeamSelector::choose(std::int32_t vertex, Vec3 anchor, Vec3 anchor_no
     BeamCurve straight = straight_through(tip, anchor, -inside);
     if (fits(straight)) return {1, {straight}, {1, 0}};
     ways = through_body(tip, anchor, inside, up);
+    if (ways.none()) ways = into_wall(tip, normal, anchor - (kIntoWall * rule_.width_m) * anchor_normal);
   }
   return share(ways);
+}
+
+// Both ends of a beam lie on its outer side, so one that ends at an anchor of the hole would have its inner side in the
+// hole: it ends inside the wall instead.
+BeamSelector::BothWays BeamSelector::into_wall(Vec3 tip, Vec3 normal, Vec3 end) const {
+  const Vec3 along = unit_or(end - tip, {});
+  Vec3 inside = -normal_to(along, normal);
+  if (inside == Vec3{}) inside = any_normal_to(along);
+  BothWays ways;
+  BeamCurve straight = straight_through(tip, end, -inside);
+  if (!fits(straight)) return through_body(tip, end, inside, cross(inside, along));
+  ways.side[0] = straight;
+  ways.length_m[0] = straight.length_m;
+  return ways;
 }
 
 }  // namespace palpate

@@ -74,6 +74,7 @@ class BeamSelector {
   };
   BothWays along_section(const SectionCurves& section, Vec3 tip, Vec3 anchor, Vec3 inside) const;
   BothWays through_body(Vec3 tip, Vec3 anchor, Vec3 inside, Vec3 up) const;
+  BothWays into_wall(Vec3 tip, Vec3 normal, Vec3 end) const;
   BeamChoice share(const BothWays& ways) const;
   bool fits(BeamCurve& curve) const;
   BeamCurve by_rule(Vec3 tip, Vec3 anchor, Vec3 inside, const SectionCurve& way) const;

@@ -1,26 +1,27 @@
 // What the body gives under its own contact beyond a half space and beyond its soft modes:
 //   c(x) = R - sum over soft modes of (n . phi)^2 / lambda,   R = g . K^-1 g - half space,
 // g a Gaussian patch of unit force along the inward normal n. Both parts of R grow alike as the patch shrinks; what is
-// left changes with the patch's deviation as R0 - k sigma^2 (on a wall of 10 mm by 10 % at 3.2 mm and 20 % at 4.8), and
-// two patches give R0 and k. The soft part goes off here, at the samples, because on a slender body it is most of the
-// compliance: c alone is small and smooth, and may be interpolated. It is the place's own, as the tick has it: a
-// patch's mean of the modes is up to a tenth less. c1(x) is the same for the second order: travel = ... + c1 F^2, with
+// left changes with the patch's deviation (on a wall of 10 mm by 10 % at 3.2 mm and 20 % at 4.8), and two patches tell
+// how (width_law.h); c is that of no width. The soft part goes off here, at the samples, because on a slender body it
+// is most of the compliance: c alone is small and smooth, and may be interpolated. It is the place's own, as the tick
+// has it: a patch's mean of the modes is up to a tenth less. c1(x) is the same for the second order: travel = ... + c1
+// F^2, with
 //   c1 = -1/2 K2(u, u) . u - 3 U3,  U3 = -V3(q1) + 1/2 (n . theta)(q1, q1),  q1 = (n . phi) / lambda,
-// u = K^-1 g, U3 the soft modes' own complementary energy of third order.
+// u = K^-1 g brought to no width by the cube of R's growth, U3 the soft modes' own complementary energy of third order.
 #pragma once
 
 #include <Eigen/Core>
 #include <vector>
 
 #include "config/elastic/soft_maps.h"
+#include "config/elastic/width_law.h"
 
 namespace palpate::elastic {
 
 // A place's patch and what it meets, whatever modes are chosen.
 struct SelfSample {
   int node = 0;
-  double give_mpN = 0;       // R0
-  double width_1pmN = 0;     // k
+  WidthLaw width;            // R
   double third_mpN2 = 0;     // K2(u, u) . u
   double curvature_1pm = 0;  // at rest: mean of the principal ones; convex positive
 };
@@ -28,7 +29,7 @@ struct SelfSample {
 struct SelfTerms {
   std::vector<int> nodes;                     // where contact may be
   std::vector<double> self_mpN, second_mpN2;  // c and c1, per node of the body; NaN elsewhere
-  std::vector<double> width_1pmN;             // k, the same
+  std::vector<WidthLaw> width;                // R, the same, with nothing taken off
   std::vector<double> curvature_1pm;  // per node of the body, at rest: mean of the principal ones; convex positive
   double length_m = 0;                // of the plane's logarithm: LocalLaw::length_m
   bool known(int node) const {

@@ -220,4 +220,17 @@ HandTool make_hand(const HandDesc& hand) {
   return tool;
 }
 
+void narrow_finger_areas(const std::vector<ToolPiece>& pieces, std::vector<ToolPoint>& points) {
+  for (ToolPoint& point : points) {
+    const ToolPiece& piece = pieces[static_cast<std::size_t>(point.piece)];
+    point.area_m2 = piece.margin_m * (2 * piece.half_extent_m[2] + piece.margin_m) / piece.point_count;
+  }
+}
+
+void set_palm(const HandTool& hand, ModelParams& params) {
+  const Vec3 size_m = hand.piece.back().size_m;
+  params.palm_radius_m = 0.5 * min_of(size_m.x, size_m.y);
+  params.palm_face_m = 0.5 * size_m.z;
+}
+
 }  // namespace palpate

@@ -47,6 +47,12 @@ bool takes_part(GraspFingers grasp, std::int32_t finger);
 // `points` tool points along the core of each part.
 HandTool make_hand(const HandDesc& hand);
 
+// A finger part touches with a strip of its palm's side, not all around: as long as the capsule's core and a rounding,
+// and about as wide as its radius (at a third of the radius deep the exact width is 1.5 radii, at the first touch 0).
+void narrow_finger_areas(const std::vector<ToolPiece>& piece, std::vector<ToolPoint>& point);
+// Where the palm can push: params.palm_radius_m and palm_face_m.
+void set_palm(const HandTool& hand, ModelParams& params);
+
 // One finger alone, with its base frame at `base_tool`: for tests of the kinematics. Lengths from root to tip.
 std::vector<Joint> finger_chain(const Pose& base_tool, const std::array<double, 3>& length_m,
                                 std::int32_t parent_offset, std::int32_t finger, double speed_rad_per_s);

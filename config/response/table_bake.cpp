@@ -29,16 +29,17 @@ CubicPoint hermite(const std::vector<double>& x, const std::vector<double>& y, c
 }
 
 // Mean of the curves by inverse squared distance (Shepard 1968): forces stay monotone.
-std::vector<ResponseKnot> blend(const std::vector<ForceCurve>& curves, const CurveTable& table, Vec3 at) {
+std::vector<ResponseKnot> blend(const std::vector<ForceCurve>& curves, const CurveTable& table, std::size_t first_row,
+                                Vec3 at) {
   std::vector<ResponseKnot> row(table.knot.size(), ResponseKnot{});
   double sum = 0;
   for (std::size_t c = 0; c < curves.size(); ++c) sum += 1 / squared_norm(at - curves[c].position_m);
   for (std::size_t c = 0; c < curves.size(); ++c) {
     const double weight = 1 / squared_norm(at - curves[c].position_m) / sum;
     for (std::size_t k = 0; k < row.size(); ++k) {
-      row[k].force_N += weight * table.row[c][k].force_N;
-      row[k].slope += weight * table.row[c][k].slope;
-      row[k].energy_J += weight * table.row[c][k].energy_J;
+      row[k].force_N += weight * table.row[first_row + c][k].force_N;
+      row[k].slope += weight * table.row[first_row + c][k].slope;
+      row[k].energy_J += weight * table.row[first_row + c][k].energy_J;
     }
   }
   return row;
@@ -129,39 +130,78 @@ CurveTable tabulate(const std::vector<ForceCurve>& presses, bool root) {
 
 namespace {
 
-void bake_file(const SceneDesc& scene, ImageContents& image, std::vector<std::string>& warnings) {
-  const std::filesystem::path file(scene.table.file);
-  const std::string path = file.is_absolute() ? scene.table.file : scene.source.directory + scene.table.file;
+// Presses made with one tip: rows first_row and on of the table.
+struct CurveSet {
+  std::string file;
   std::vector<ForceCurve> curves;
+  std::size_t first_row = 0;
+};
+
+// Set 0 is contact.table.file; every file that a piece names is one more.
+std::vector<CurveSet> read_sets(const SceneDesc& scene, ImageContents& image) {
+  std::vector<CurveSet> sets;
+  const auto add = [&](const std::string& name, const std::string& key) {
+    for (std::size_t i = 0; i < sets.size(); ++i)
+      if (sets[i].file == name) return static_cast<std::int32_t>(i);
+    const std::filesystem::path file(name);
+    try {
+      sets.push_back(
+          {name, read_curves(file.is_absolute() ? name : scene.source.directory + name, scene.table.smooth), 0});
+    } catch (const ConfigError& error) {
+      throw ConfigError(scene.source.where(key) + ": " + error.what());
+    }
+    return static_cast<std::int32_t>(sets.size() - 1);
+  };
+  add(scene.table.file, "contact.table.file");
+  for (std::size_t i = 0; i < scene.piece.size(); ++i)
+    if (!scene.piece[i].table_file.empty())
+      image.piece[i].curve_set = add(scene.piece[i].table_file, "tool.piece[" + std::to_string(i) + "].table_file");
+  return sets;
+}
+
+// The curve of every vertex under the tips of one set: the press made there, or a mean of all.
+void place_curves(const SceneDesc& scene, const CurveSet& set, const CurveTable& table, ImageContents& image,
+                  std::vector<std::string>& warnings) {
+  const std::size_t at = image.vertex_response.size(), vertices = image.vertex_m.size();
+  image.vertex_response.resize(at + vertices, static_cast<std::int32_t>(set.first_row));
+  if (set.curves.size() == 1) return;
+  const std::vector<std::size_t> nearest = nearest_vertices(scene, set.curves, image.vertex_m, warnings);
+  for (std::size_t v = 0; v < vertices; ++v) {
+    const auto own = std::find(nearest.begin(), nearest.end(), v);
+    if (own != nearest.end()) {
+      image.vertex_response[at + v] =
+          static_cast<std::int32_t>(set.first_row) + static_cast<std::int32_t>(own - nearest.begin());
+      continue;
+    }
+    image.vertex_response[at + v] = static_cast<std::int32_t>(image.response.size() / table.knot.size());
+    const std::vector<ResponseKnot> row = blend(set.curves, table, set.first_row, image.vertex_m[v]);
+    image.response.insert(image.response.end(), row.begin(), row.end());
+  }
+}
+
+void bake_file(const SceneDesc& scene, ImageContents& image, std::vector<std::string>& warnings) {
+  std::vector<CurveSet> sets = read_sets(scene, image);
+  std::vector<ForceCurve> curves;
+  for (CurveSet& set : sets) {
+    set.first_row = curves.size();
+    curves.insert(curves.end(), set.curves.begin(), set.curves.end());
+  }
   CurveTable table;
   try {
-    curves = read_curves(path, scene.table.smooth);
     table = tabulate(curves);
   } catch (const ConfigError& error) {
     throw ConfigError(scene.source.where("contact.table.file") + ": " + error.what());
   }
   image.knot = table.knot;
-  image.vertex_response.assign(image.vertex_m.size(), 0);
   for (const std::vector<ResponseKnot>& row : table.row)
     image.response.insert(image.response.end(), row.begin(), row.end());
-  if (curves.size() > 1) {
-    const std::vector<std::size_t> nearest = nearest_vertices(scene, curves, image.vertex_m, warnings);
-    auto next = static_cast<std::int32_t>(curves.size());
-    for (std::size_t v = 0; v < image.vertex_m.size(); ++v) {
-      const auto own = std::find(nearest.begin(), nearest.end(), v);
-      if (own != nearest.end()) {
-        image.vertex_response[v] = static_cast<std::int32_t>(own - nearest.begin());
-        continue;
-      }
-      const std::vector<ResponseKnot> row = blend(curves, table, image.vertex_m[v]);
-      image.response.insert(image.response.end(), row.begin(), row.end());
-      image.vertex_response[v] = next++;
-    }
+  for (const CurveSet& set : sets) {
+    place_curves(scene, set, table, image, warnings);
+    for (const ForceCurve& curve : set.curves)
+      if (curve.depth_m.back() < scene.contact.max_depth_m * (1 - 1e-12))
+        warnings.push_back(set.file + ": a press ends at " + number_text(1e3 * curve.depth_m.back()) +
+                           " mm, before contact.max_depth_mm; deeper the force continues by its tangent");
   }
-  for (const ForceCurve& curve : curves)
-    if (curve.depth_m.back() < scene.contact.max_depth_m * (1 - 1e-12))
-      warnings.push_back(scene.table.file + ": a press ends at " + number_text(1e3 * curve.depth_m.back()) +
-                         " mm, before contact.max_depth_mm; deeper the force continues by its tangent");
 }
 
 void bake_presses(const SceneDesc& scene, ImageContents& image, ResponseReport& report) {

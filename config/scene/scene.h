@@ -61,6 +61,7 @@ struct MaterialDesc {
   double density_kg_per_m3 = 1100;
   Vec3 relaxation_share{0, 0, 0};
   Vec3 relaxation_s{1, 1, 1};
+  double lost_share = 0;
   bool legacy_paper_material = false;
 };
 // One place where the body is held; see config/body/supports.h.
@@ -87,6 +88,7 @@ struct SkeletonDesc {
 struct ContactDesc {
   ContactLaw law = ContactLaw::kDuffing;
   ContactWeight weight = ContactWeight::kWinkler;
+  EquivalentPoint equivalent_point = EquivalentPoint::kPressure;
   ContactSurface surface = ContactSurface::kFacets;
   double reference_area_m2 = kAuto;
   double max_depth_m = 0.006;
@@ -143,6 +145,7 @@ struct PairDesc {
 // Where the curves of contact.law = "table" come from: a CSV of measured presses, or presses the baker makes.
 struct TableDesc {
   TableSource source = TableSource::kFile;
+  TableInterpolation interpolation = TableInterpolation::kEnergy;
   std::string file;
   bool smooth = false;
 };
@@ -181,7 +184,8 @@ struct PieceDesc {
   double margin_m = kAuto;
   std::int32_t points = 1;
   std::int32_t part = 0;
-  Vec3 slide_m;  // gripper: how far it has moved when the gripper is open; described where it is when closed
+  std::string table_file;  // contact.law = "table": the presses made with this tip; empty: the scene's
+  Vec3 slide_m;            // gripper: how far it has moved when the gripper is open; described where it is when closed
 };
 
 // Which fingers a hand's grasp uses: thumb and index; with the middle finger; all.
@@ -257,6 +261,7 @@ struct SceneSource {
 struct SceneDesc {
   std::string name = "scene";
   std::int32_t budget_instructions = 0;
+  std::string error_target;  // "3 %"; empty: none
   BodyDesc body;
   FemDesc fem;
   MaterialDesc material;
@@ -300,6 +305,13 @@ SceneDesc parse_scene(const std::string& text, const std::string& file);
 // Checks that need more than one key (exclusive keys, material rules, tool dimensions, path order). Part of load_scene;
 // call it for a SceneDesc made or changed in code.
 void check_scene(const SceneDesc& scene);
+// error_target as a share, 0.03; kAuto where there is none or it is no percentage.
+double error_target_share(const SceneDesc& scene);
+// Refuses keys of the file that would do nothing beside the others (scene_effect.cpp). Part of load_scene alone: code
+// that switches friction off does not take back its coefficient.
+void check_effects(const SceneDesc& scene);
+// Keys that do less than who wrote them will think, as sentences: the baker warns of them.
+std::vector<std::string> weak_keys(const SceneDesc& scene);
 
 // The schema as Markdown, one table per TOML table: the generated part of docs/scene_format.md.
 std::string schema_markdown();

@@ -1,6 +1,7 @@
 // Rules between keys: what one key's value allows or forbids for another.
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "config/body/body_card.h"
 #include "config/fem/material.h"
@@ -58,6 +59,8 @@ void check_skeleton(const SceneDesc& scene) {
 
 void check_relaxation(const SceneDesc& scene) {
   const Vec3 share = scene.material.relaxation_share;
+  if (scene.contact.backend == Backend::kNodal)
+    check_effect(scene, "body.material", {"lost_share"}, {}, "with contact.backend = \"nodal\"");
   if (share == Vec3{}) return;
   if (!(share.x > 0))
     fail(scene, "body.material.relaxation_share", "the first term is 0; begin with the first and end with zeros");
@@ -117,6 +120,10 @@ void check_contact(const SceneDesc& scene) {
   for (const char* table : {"tip", "layer", "series", "pair", "pair[0]"})
     if (!(pressed && std::string(table) == "layer")) unused_table(table, ContactLaw::kTool, "tool");
   unused_table("table", ContactLaw::kTable, "table");
+  for (std::size_t i = 0; i < scene.piece.size(); ++i)
+    if (!scene.piece[i].table_file.empty() && (scene.contact.law != ContactLaw::kTable || pressed))
+      fail(scene, "tool.piece[" + std::to_string(i) + "].table_file",
+           "has no effect unless contact.law = \"table\" reads its curves from files; remove it");
   if (pressed)
     check_presses(scene);
   else if (scene.contact.law == ContactLaw::kTable && scene.table.file.empty())
@@ -134,6 +141,8 @@ void check_contact(const SceneDesc& scene) {
 void check_tips(const SceneDesc& scene) {
   if (!is_tip_law(scene.contact.law)) return;
   check_effect(scene, "contact", {"surface"}, {}, "with laws of whole tips, which always have the smooth surface");
+  check_effect(scene, "contact", {"equivalent_point"}, {},
+               "with laws of whole tips, each of which touches at one point");
   if (scene.coupling.law == CouplingLaw::kTemporalPaper)
     fail(scene, "coupling.law", "\"temporal_paper\" needs tool points with cubic springs; allowed none, coupled");
   for (std::size_t i = 0; i < scene.piece.size(); ++i) {
@@ -258,7 +267,7 @@ void check_elastic(const SceneDesc& scene) {
   for (const char* table : {"skeleton", "shape", "coupling", "contact.layer", "contact.series", "contact.pair",
                             "contact.pair[0]", "contact.nodal"})
     check_no_table(scene, table, kBecause);
-  check_effect(scene, "contact", {"weight", "surface", "reference_area_mm2"}, {}, kBecause);
+  check_effect(scene, "contact", {"weight", "equivalent_point", "surface", "reference_area_mm2"}, {}, kBecause);
   check_effect(scene, "contact.tip", {"body_radius_1_mm", "body_radius_2_mm"}, {}, kBecause);
   check_effect(scene, "hand", {"points_per_part"}, {}, kBecause);
   check_effect(scene, "body.fem", {"order", "zone_from_mm", "zone_to_mm", "zone_layers", "precision", "strain_gauges"},
@@ -281,14 +290,30 @@ void check_backend(const SceneDesc& scene) {
   }
   for (const char* table : {"skeleton", "shape", "coupling", "contact.duffing", "contact.cubic", "contact.hertz"})
     no_table(table, "with contact.backend = \"nodal\"");
-  check_effect(scene, "contact", {"law", "weight", "surface", "reference_area_mm2", "max_depth_mm"}, {},
-               "with contact.backend = \"nodal\"");
+  check_effect(scene, "contact", {"law", "weight", "equivalent_point", "surface", "reference_area_mm2", "max_depth_mm"},
+               {}, "with contact.backend = \"nodal\"");
   check_effect(scene, "friction", {"tangential", "reference_force_N", "k", "beta", "mu_dynamic"}, {},
                "with law = \"coulomb\" or \"none\"");
   check_elements(scene);
   check_order(scene);
   if (scene.nodal.solver == NodalSolver::kPivoting)
     check_effect(scene, "contact.nodal", {"sweeps"}, {}, "with solver = \"pivoting\"");
+}
+
+// What error_target is a choice of: the models that follow from the material.
+void check_error_target(const SceneDesc& scene) {
+  if (scene.error_target.empty()) return;
+  const double share = error_target_share(scene);
+  if (is_auto(share) || !(share >= 1e-3 && share <= 1))
+    fail(scene, "error_target", "'" + scene.error_target + "' is no error; allowed \"0.1 %\" to \"100 %\"");
+  if (scene.source.has("contact.law") || scene.contact.backend != Backend::kElastic)
+    fail(scene, "error_target",
+         "has no effect where contact.law or contact.backend states the model; leave both out, or state "
+         "contact.backend = \"elastic\"");
+  if (scene.source.has("body.elastic.check_error"))
+    fail(scene, "body.elastic.check_error", "has no effect beside error_target, which says the same; remove one");
+  if (scene.elastic.check_presses == 0)
+    fail(scene, "body.elastic.check_presses", "0, but error_target is judged by presses; allowed 1 to 16");
 }
 
 bool gives(const PieceDesc& piece, const std::string& key) {
@@ -376,7 +401,16 @@ void check_device_and_path(const SceneDesc& scene) {
 
 }  // namespace
 
+double error_target_share(const SceneDesc& scene) {
+  const std::string& text = scene.error_target;
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  while (*end == ' ') ++end;
+  return end != text.c_str() && std::string(end) == "%" ? 0.01 * value : kAuto;
+}
+
 void check_scene(const SceneDesc& scene) {
+  check_error_target(scene);
   check_body(scene);
   check_fixed(scene);
   check_contact(scene);

@@ -59,12 +59,15 @@ constexpr double kMilli = 1e-3;
 constexpr double kMilliSquared = 1e-6;
 constexpr double kDegree = 3.14159265358979323846 / 180.0;
 constexpr KeyKind kVec3 = KeyKind::kVec3;
+constexpr TableCount kOne = TableCount::kOne;
 
 const KeySpec kTop[] = {
     text<&SceneDesc::name>("name", kNameBytes - 1, "name stored in the image and shown everywhere", true),
     integer<&SceneDesc::budget_instructions>("budget_instructions", 0, 10'000'000,
                                              "most instructions a tick may take in tests/bench, "
                                              "counted by callgrind; 0: none stated"),
+    text<&SceneDesc::error_target>("error_target", 16,
+                                   "\"3 %\": take the cheapest model that errs by no more; see docs/models_elastic.md"),
 };
 
 const KeySpec kBody[] = {
@@ -133,6 +136,8 @@ const KeySpec kMaterial[] = {
         kVec3, "relaxation_share", 0, 0.95, 1,
         "parts of the force that relax when the body is held, one for each term (0: none); below 0.95 together"),
     list<&MaterialDesc::relaxation_s>(kVec3, "relaxation_s", 1e-3, 1e4, 1, "and with which time constants"),
+    number<&MaterialDesc::lost_share>("lost_share", 0, 0.5, 1,
+                                      "part of a press's work that its release does not give back, however slow"),
     boolean<&MaterialDesc::legacy_paper_material>(
         "legacy_paper_material", "accept the nu = 1.0 printed by Cui & Xiao 2008 and use 0.47 instead, with a warning"),
 };
@@ -153,7 +158,8 @@ const KeySpec kFixed[] = {
 const KeySpec kSkeleton[] = {
     choice<&SkeletonDesc::law>("law",
                                "beam skeleton: stiffness = sum of straight beams' stiffnesses; paper = the ratios of "
-                               "Luo & Xiao 2006, eqs. 6-8; circular = circular beams where straight ones would leave "
+                               "Luo & Xiao 2006, eqs. 6-8; paper_guarded = the same, finite at an anchor; circular = "
+                               "circular beams where straight ones would leave "
                                "the body (objects with holes), sum of stiffnesses; circular_paper = the circular beams "
                                "and force ratios as printed in 2009 (docs/models_circular_beams.md)"),
     choice<&SkeletonDesc::anchors>("anchors",
@@ -181,6 +187,8 @@ const KeySpec kContact[] = {
     choice<&ContactDesc::weight>("weight",
                                  "weight of a tool point: area / reference area (force continuous as points enter and "
                                  "leave), share of the area in contact, or 1/n"),
+    choice<&ContactDesc::equivalent_point>("equivalent_point",
+                                           "a region's centre: of its pressure, or geometric (paper)"),
     choice<&ContactDesc::surface>("surface",
                                   "what a tool point touches: the triangles, whose edges are felt by a tool of few "
                                   "points; or the smooth surface they stand for, about 1,400 instructions more a "
@@ -190,9 +198,10 @@ const KeySpec kContact[] = {
         "winkler: contact area over which the law holds as stated; auto: mean area of a tool point"),
     number<&ContactDesc::max_depth_m>("max_depth_mm", 0.001, 1000, kMilli,
                                       "deepest penetration of the law; beyond it the law continues by its tangent"),
-    number_or_auto<&ContactDesc::cluster_distance_m>("cluster_distance_mm", 0.001, 1000, kMilli,
-                                                     "contact points nearer than this are one region; auto: twice the "
-                                                     "spacing of the tool points; nodal: three edges"),
+    number_or_auto<&ContactDesc::cluster_distance_m>(
+        "cluster_distance_mm", 0.001, 1000, kMilli,
+        "contact points nearer than this are one region; auto: twice the "
+        "spacing of the tool points; nodal: three edges; elastic: every tip is one"),
     choice<&ContactDesc::backend>(
         "backend",
         "response: tool points with a force law each; nodal: finite elements against the tool's "
@@ -279,6 +288,9 @@ const KeySpec kTable[] = {
         "file", 4096,
         "CSV of presses, relative to the scene file: depth_mm,force_N, or with x_mm,y_mm,z_mm before "
         "them for presses at several places; each starts at 0,0"),
+    choice<&TableDesc::interpolation>(
+        "interpolation",
+        "energy = gradient of the interpolated energies; paper = sum n_i f_i U_i, Mahvash & Hayward 2002, eq. 3"),
     boolean<&TableDesc::smooth>("smooth", "pool rows whose force falls instead of refusing them"),
 };
 const KeySpec kFriction[] = {
@@ -334,6 +346,7 @@ const KeySpec kPiece[] = {
         "points", 0, kMaxToolPoints,
         "most tool points to spread; each costs about 800 instructions a tick; sphere: 1; box: 8 or more; "
         "0: never touches"),
+    text<&PieceDesc::table_file>("table_file", 4096, "its own presses, instead of contact.table.file"),
     integer<&PieceDesc::part>("part", 0, 1 << 20, "label in recordings"),
     list<&PieceDesc::slide_m>(kVec3, "slide_mm", -1000, 1000, kMilli,
                               "gripper: how far the piece moves away when the gripper opens; it is described where it "
@@ -442,44 +455,38 @@ void* open_gripper(SceneDesc& scene) {
 }
 
 const TableSpec kTables[] = {
-    {"", TableCount::kOne, "Top level.", kTop, open_top},
-    {"body", TableCount::kOne, "The elastic object.", kBody, open<&SceneDesc::body>},
-    {"body.fem", TableCount::kOne, "Finite elements, with contact.backend = \"nodal\" or \"elastic\".", kFem,
+    {"", kOne, "Top level.", kTop, open_top},
+    {"body", kOne, "The elastic object.", kBody, open<&SceneDesc::body>},
+    {"body.fem", kOne, "Finite elements, with contact.backend = \"nodal\" or \"elastic\".", kFem,
      open<&SceneDesc::fem>},
-    {"body.elastic", TableCount::kOne, "Its modes, with contact.backend = \"elastic\".", kElastic,
-     open<&SceneDesc::elastic>},
-    {"body.material", TableCount::kOne, "Homogeneous, isotropic.", kMaterial, open<&SceneDesc::material>},
+    {"body.elastic", kOne, "Its modes, with contact.backend = \"elastic\".", kElastic, open<&SceneDesc::elastic>},
+    {"body.material", kOne, "Homogeneous, isotropic.", kMaterial, open<&SceneDesc::material>},
     {"body.fixed", TableCount::kOneOrList,
      "What holds the body: one table, or several of [[body.fixed]]. Heights, boxes and balls are those of the world.",
      kFixed, open_fixed},
-    {"skeleton", TableCount::kOne, "Beams from each contact region to the anchors.", kSkeleton,
-     open<&SceneDesc::skeleton>},
-    {"contact", TableCount::kOne, "The contact law.", kContact, open<&SceneDesc::contact>},
-    {"contact.duffing", TableCount::kOne, "With law = \"duffing\".", kDuffing, open<&SceneDesc::duffing>},
-    {"contact.cubic", TableCount::kOne, "With law = \"cubic\".", kCubic, open<&SceneDesc::cubic>},
-    {"contact.hertz", TableCount::kOne, "With law = \"hertz\".", kHertz, open<&SceneDesc::hertz>},
-    {"contact.tip", TableCount::kOne, "With law = \"tool\".", kTip, open<&SceneDesc::tip>},
-    {"contact.layer", TableCount::kOne, "With law = \"tool\": exact response of a thin body.", kLayer,
-     open<&SceneDesc::layer>},
-    {"contact.series", TableCount::kOne, "With law = \"tool\": the body's own give, travel = tip's + c0 F + c1 F^2.",
-     kSeries, open<&SceneDesc::series>},
+    {"skeleton", kOne, "Beams from each contact region to the anchors.", kSkeleton, open<&SceneDesc::skeleton>},
+    {"contact", kOne, "The contact law.", kContact, open<&SceneDesc::contact>},
+    {"contact.duffing", kOne, "With law = \"duffing\".", kDuffing, open<&SceneDesc::duffing>},
+    {"contact.cubic", kOne, "With law = \"cubic\".", kCubic, open<&SceneDesc::cubic>},
+    {"contact.hertz", kOne, "With law = \"hertz\".", kHertz, open<&SceneDesc::hertz>},
+    {"contact.tip", kOne, "With law = \"tool\".", kTip, open<&SceneDesc::tip>},
+    {"contact.layer", kOne, "With law = \"tool\": exact response of a thin body.", kLayer, open<&SceneDesc::layer>},
+    {"contact.series", kOne, "With law = \"tool\": the body's own give, travel = tip's + c0 F + c1 F^2.", kSeries,
+     open<&SceneDesc::series>},
     {"contact.pair", TableCount::kList,
      "With law = \"tool\": how two tips lean on one another; other pairs use the far field.", kPair, open_pair},
-    {"contact.table", TableCount::kOne, "With law = \"table\": presses, measured or computed.", kTable,
-     open<&SceneDesc::table>},
-    {"contact.nodal", TableCount::kOne, "With backend = \"nodal\".", kNodal, open<&SceneDesc::nodal>},
-    {"friction", TableCount::kOne, "Friction per contact region.", kFriction, open<&SceneDesc::friction>},
-    {"shape", TableCount::kOne, "How the deformed surface is drawn. No effect on forces.", kShape,
-     open<&SceneDesc::shape>},
-    {"coupling", TableCount::kOne, "Several contact regions at once.", kCoupling, open<&SceneDesc::coupling>},
+    {"contact.table", kOne, "With law = \"table\": presses, measured or computed.", kTable, open<&SceneDesc::table>},
+    {"contact.nodal", kOne, "With backend = \"nodal\".", kNodal, open<&SceneDesc::nodal>},
+    {"friction", kOne, "Friction per contact region.", kFriction, open<&SceneDesc::friction>},
+    {"shape", kOne, "How the deformed surface is drawn. No effect on forces.", kShape, open<&SceneDesc::shape>},
+    {"coupling", kOne, "Several contact regions at once.", kCoupling, open<&SceneDesc::coupling>},
     {"tool.piece", TableCount::kList, "The rigid tool: convex pieces, at least one with points.", kPiece, open_piece},
-    {"hand", TableCount::kOne, "Makes the tool a human hand of 21 joints; there are no tool pieces then.", kHand,
-     open_hand},
-    {"gripper", TableCount::kOne,
-     "Makes the tool a gripper: pieces with slide_mm move by the closing of path or device.", kGripper, open_gripper},
-    {"device", TableCount::kOne, "The haptic device: what it admits and where it must be stopped.", kDevice,
+    {"hand", kOne, "Makes the tool a human hand of 21 joints; there are no tool pieces then.", kHand, open_hand},
+    {"gripper", kOne, "Makes the tool a gripper: pieces with slide_mm move by the closing of path or device.", kGripper,
+     open_gripper},
+    {"device", kOne, "The haptic device: what it admits and where it must be stopped.", kDevice,
      open<&SceneDesc::device>},
-    {"path", TableCount::kOne, "What the simulated hand does in the demonstration. Not stored in the image.", kPath,
+    {"path", kOne, "What the simulated hand does in the demonstration. Not stored in the image.", kPath,
      open<&SceneDesc::path>},
     {"path.point", TableCount::kList, "Points of the path, joined smoothly in time.", kPathPoint, open_point},
 };

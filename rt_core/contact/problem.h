@@ -43,6 +43,7 @@ struct RegionRows {
   Contact* contact = nullptr;
   const std::int32_t* index = nullptr;
   std::int32_t count = 0;
+  bool geometric = false;  // their centre is that of their weights, not of their forces
 
   Contact& operator[](std::int32_t k) const PALPATE_RT { return contact[index[k]]; }
 };
@@ -53,6 +54,7 @@ struct RowsByRegion {
   std::int32_t slot[kMaxRegions];       // in State::region, by born_tick, then id
   std::int32_t first[kMaxRegions + 1];  // rows of region r: index[first[r]] to index[first[r + 1]]
   std::int32_t index[kMaxContacts];     // in Scratch::contact
+  bool geometric = false;               // EquivalentPoint::kPaper
 };
 
 // Working memory of the region solver (contact/region_solve.h). Matrices are row-major n x n, n = number of regions.

@@ -73,6 +73,7 @@ void yield_to(const SurfaceUnderRub& under, FrictionForce& friction) PALPATE_RT 
 void sort_rows(State& state, Scratch& scratch) PALPATE_RT {
   RowsByRegion& rows = scratch.rows;
   rows.regions = 0;
+  rows.geometric = false;
   std::int32_t contacts = scratch.contact_count < kMaxContacts ? scratch.contact_count : kMaxContacts;
   if (!is_finite(state.tool_w)) contacts = 0;
   std::int32_t region_of[kMaxContacts];
@@ -106,7 +107,7 @@ void sort_rows(State& state, Scratch& scratch) PALPATE_RT {
 RegionCentre region_centre(const RegionRows& rows, Vec3 fallback_normal) PALPATE_RT {
   Real total = 0;
   for (std::int32_t k = 0; k < rows.count; ++k) total += rows[k].force_N;  // bound: rows
-  const bool loaded = total > 0;
+  const bool loaded = total > 0 && !rows.geometric;
   const auto share = [loaded](const Contact& c) PALPATE_RT { return loaded ? c.force_N : c.weight; };
   Vec3 moment, sum;
   total = 0;

@@ -18,7 +18,7 @@ void sort_rows(State& state, Scratch& scratch) PALPATE_RT;
 
 inline RegionRows rows_of(Scratch& scratch, std::int32_t r) PALPATE_RT {
   const RowsByRegion& rows = scratch.rows;
-  return {&scratch.contact[0], rows.index + rows.first[r], rows.first[r + 1] - rows.first[r]};
+  return {&scratch.contact[0], rows.index + rows.first[r], rows.first[r + 1] - rows.first[r], rows.geometric};
 }
 
 struct RegionCentre {
@@ -27,8 +27,8 @@ struct RegionCentre {
 };
 // Centre of pressure sum f_i p_i / sum f_i of the forces in rows[].force_N, moved along the normal of their resultant
 // onto the rest surface. Parallel forces have exactly the moment of their sum there; the geometric centre (Luo & Xiao
-// 2006) has not. Where all forces are zero, the weighted mean; where they have no direction, `fallback_normal`. Bound:
-// the number of rows, twice.
+// 2006; rows.geometric) has not. Where all forces are zero, the weighted mean; where they have no direction,
+// `fallback_normal`. Bound: the number of rows, twice.
 RegionCentre region_centre(const RegionRows& rows, Vec3 fallback_normal) PALPATE_RT;
 // The same with the region's last normal as the fallback; before the first, that of the first row.
 RegionCentre centre_of(const Region& region, const RegionRows& rows) PALPATE_RT;

@@ -6,8 +6,13 @@ namespace palpate {
 
 namespace {
 
-// The handle's velocity is smoothed over so many samples: an encoder step of 30 um in one tick is 30 mm/s, here 5.
-constexpr double kVelocityLag_ticks = 6;
+// The handle's velocity is smoothed over so many samples, and over no less time: an encoder step of 30 um in one tick
+// is 30 mm/s, here 5. Six samples of a tenth of a millisecond made 50 of it, and the step itself an acceleration that
+// no hand has: one sample in 70 was refused (tools_on_layer at 10 kHz, 2026-11-23).
+constexpr double kVelocityLag_ticks = 6, kVelocityLag_s = 6e-3;
+double velocity_lag_ticks(const ModelParams& params) PALPATE_RT {
+  return max_of(kVelocityLag_ticks, kVelocityLag_s / params.period_s);
+}
 // The share of stale ticks is over about so many.
 constexpr double kStaleWindow_ticks = 256;
 
@@ -35,8 +40,8 @@ bool is_plausible(const Model& model, const State& state, const Input& input) PA
   if (!(norm(way) <= reach_m && 4 * chord2 <= reach_rad * reach_rad)) return false;
   // Nor can it have left the motion it had by more than its largest acceleration makes of the time, and of as long
   // again for what the smoothed velocity is late by; a step of the encoder is nobody's acceleration.
-  const double bend_m =
-      model.params.acceleration_max_m_per_s2 * elapsed_s * (elapsed_s + kVelocityLag_ticks * model.params.period_s);
+  const double bend_m = model.params.acceleration_max_m_per_s2 * elapsed_s *
+                        (elapsed_s + velocity_lag_ticks(model.params) * model.params.period_s);
   return !(bend_m > 0) || norm(way - elapsed_s * state.hand_velocity_m_per_s) <= bend_m;
 }
 
@@ -66,7 +71,7 @@ void follow_hand(const Model& model, State& state, Scratch& scratch, const Input
   if (input.stale_ticks == 0 || state.rejected_ticks > 0) {
     const double elapsed_s = period_s * (1.0 + input.overrun_ticks + state.rejected_ticks);
     const Vec3 velocity = (1 / elapsed_s) * (pose.position_m - state.told_w.position_m);
-    state.hand_velocity_m_per_s += (1 / kVelocityLag_ticks) * (velocity - state.hand_velocity_m_per_s);
+    state.hand_velocity_m_per_s += (1 / velocity_lag_ticks(model.params)) * (velocity - state.hand_velocity_m_per_s);
     state.told_w = pose;
     return observe_handle(model, state, pose);
   }

@@ -146,4 +146,17 @@ bool solve_beam_table(const Model& model, const SurfaceSpot& spot, Vec3 force_on
              : share_by_stiffness(model, force_on_body_w, skeleton);
 }
 
+Vec3 beam_table_displacement(const Model& model, const BeamTableSkeleton& skeleton, std::int32_t index) PALPATE_RT {
+  const auto anchor = static_cast<std::size_t>(index);
+  Vec3 moved;
+  if (model.anchor[anchor].fixed != 0) return moved;
+  for (int corner = 0; corner < 3; ++corner) {  // bound: 3
+    const Vec3 f = skeleton.spot.weight[corner] * skeleton.force_w[index];
+    const auto vertex = static_cast<std::size_t>(skeleton.spot.vertex[corner]);
+    const BeamResponse& row = model.beam_response[vertex * model.anchor.size() + anchor];
+    moved += {dot(row.release_m_per_N[0], f), dot(row.release_m_per_N[1], f), dot(row.release_m_per_N[2], f)};
+  }
+  return moved;
+}
+
 }  // namespace palpate

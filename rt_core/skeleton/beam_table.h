@@ -48,4 +48,7 @@ struct BeamTableSkeleton {
 bool solve_beam_table(const Model& model, const SurfaceSpot& spot, Vec3 force_on_body_w,
                       BeamTableSkeleton& skeleton) PALPATE_RT;
 
+// Displacement of anchor `index` (< count) under its beam's share of the force, released; zero for a fixed anchor.
+Vec3 beam_table_displacement(const Model& model, const BeamTableSkeleton& skeleton, std::int32_t index) PALPATE_RT;
+
 }  // namespace palpate

@@ -20,8 +20,9 @@ void clear_forces(Skeleton& skeleton) PALPATE_RT {
 SkeletonSetup skeleton_setup(const Model& model) PALPATE_RT {
   SkeletonSetup setup;
   setup.material = {model.params.youngs_modulus_Pa, model.params.poisson_ratio};
-  const bool paper = model.params.skeleton_law == SkeletonLaw::kPaper;
-  setup.theory = paper ? BeamTheory::kEulerBernoulli : BeamTheory::kTimoshenko;
+  const SkeletonLaw law = model.params.skeleton_law;
+  setup.theory = shares_by_ratios(law) ? BeamTheory::kEulerBernoulli : BeamTheory::kTimoshenko;
+  setup.guard_length = law != SkeletonLaw::kPaper;
   return setup;
 }
 
@@ -83,6 +84,10 @@ bool distribute_by_ratios(Real youngs_modulus_Pa, Vec3 force_on_body_w, Skeleton
     u += (per_axial * beam.axial_N_per_m) * along;
     v += (per_bending * beam.bending_N_per_m) * (direction - along);
   }
+  // A contact at an anchor: its beam has no direction, and I/l^3 is not a number.
+  for (std::int32_t i = 0; i < skeleton.count; ++i)  // bound: kMaxAnchors
+    if (!(skeleton.beam[i].axial_N_per_m > 0)) skeleton.degenerate = true;
+  if (skeleton.degenerate) return false;
   const RatioScales scales = solve_ratio_scales(u, v, force_on_body_w);
   skeleton.alpha_Pa = scales.alpha;
   skeleton.beta_Pa = scales.beta;
@@ -105,7 +110,7 @@ bool solve_skeleton(const Model& model, std::span<const Vec3> offset_w, Vec3 con
   clear_forces(skeleton);
   if (law == SkeletonLaw::kNone || model.anchor.empty()) return false;
   build_skeleton(skeleton_setup(model), model.anchor, offset_w, contact_w, skeleton);
-  if (law == SkeletonLaw::kPaper) {
+  if (shares_by_ratios(law)) {
     return distribute_by_ratios(model.params.youngs_modulus_Pa, force_on_body_w, skeleton);
   }
   return distribute_by_stiffness(force_on_body_w, skeleton);

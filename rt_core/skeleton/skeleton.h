@@ -64,8 +64,13 @@ inline BeamSection section_of(const Anchor& anchor) PALPATE_RT {
 struct SkeletonSetup {
   BeamMaterial material;
   BeamTheory theory = BeamTheory::kTimoshenko;
-  bool guard_length = true;  // l_eff = sqrt(l^2 + (2r)^2); false only to reproduce the bare formulas
+  bool guard_length = true;  // l_eff = sqrt(l^2 + (2r)^2); false: the formulas as printed
 };
+
+// Of straight beams: equations (6) to (8) instead of stiffnesses.
+inline bool shares_by_ratios(SkeletonLaw law) PALPATE_RT {
+  return law == SkeletonLaw::kPaper || law == SkeletonLaw::kPaperGuarded;
+}
 
 // Setup for a model's parameters and skeleton law.
 SkeletonSetup skeleton_setup(const Model& model) PALPATE_RT;
@@ -85,7 +90,9 @@ bool distribute_by_stiffness(Vec3 force_on_body_w, Skeleton& skeleton) PALPATE_R
 // beta (I_i/l_i^3)(D - (x_i.D) x_i) with D the direction of the force and alpha, beta unknown. In space (8) gives three
 // equations for the two scales: they are solved in the least-squares sense, so sum F_i = F holds only where F lies in
 // the plane of the two columns. Where the columns are parallel (a force along a symmetry axis) the least-norm solution
-// is taken. Needs beams built with BeamTheory::kEulerBernoulli. Returns false when there is no usable stiffness.
+// is taken. Needs beams built with BeamTheory::kEulerBernoulli. With the printed length a contact within
+// kLeastLength_m of an anchor leaves its beam without direction and I/l^3 without bound: degenerate. Returns false
+// then, and when there is no usable stiffness.
 bool distribute_by_ratios(Real youngs_modulus_Pa, Vec3 force_on_body_w, Skeleton& skeleton) PALPATE_RT;
 
 // Builds and distributes with the model's law. False: no anchors, SkeletonLaw::kNone, or degenerate (see the flag).

@@ -33,10 +33,14 @@ struct StraightBeam {
 // k_b >= 1e-6 k_a: the smallest ratio that leaves 3x3 solves ten digits (condition number 1e6).
 inline constexpr Real kLeastBendingRatio = 1e-6;
 
+// A beam shorter than a nanometre has no direction: that is the rounding of places on a body of metres, and forces of
+// (l / 1 mm)^-3 would leave the range of doubles' squares soon after.
+inline constexpr Real kLeastLength_m = 1e-9;
+
 // Beam from `anchor` to `contact`. `fallback_axis` (unit) is used where the two coincide. The stiffness is taken at
 // l_eff = sqrt(l^2 + min_length_m^2), which keeps it finite for a contact at the anchor; min_length_m = 0 gives the
-// bare formulas (then l must be > 0). Bending stiffness is kept at or above 1e-6 of the axial one, so that a skeleton
-// of collinear beams stays regular. Zero stiffness when an input is not finite or not positive.
+// bare formulas (then l must be above kLeastLength_m). Bending stiffness is kept at or above 1e-6 of the axial one, so
+// that a skeleton of collinear beams stays regular. Zero stiffness when an input is not finite or not positive.
 inline StraightBeam make_straight_beam(const BeamMaterial& material, const BeamSection& section, Vec3 anchor,
                                        Vec3 contact, Vec3 fallback_axis, BeamTheory theory,
                                        Real min_length_m) PALPATE_RT {
@@ -49,7 +53,7 @@ inline StraightBeam make_straight_beam(const BeamMaterial& material, const BeamS
   const Real e = material.youngs_modulus_Pa;
   const Real nu = material.poisson_ratio;
   // The first term is false for NaN, which norm() hides; the second bounds the rest.
-  const bool usable = squared_norm(span) >= 0 && l > 1e-12 && l < kHuge && e > 0 && section.area_m2 > 0 &&
+  const bool usable = squared_norm(span) >= 0 && l > kLeastLength_m && l < kHuge && e > 0 && section.area_m2 > 0 &&
                       section.inertia_m4 > 0 && nu > -1;
   if (!usable) return beam;
 

@@ -8,8 +8,8 @@ namespace palpate {
 
 // Load of each piece from the contacts of this tick, for the next tick's stops; and the palm's share of a hand's
 // balance: what it must exert on the body against the fingers' forces and the body's weight (scratch.palm_w;
-// Status::kGraspUnstable when it would have to pull). Part of the stage contact; a rigid tool has no joints to stop:
-// returns at once. Bound: kMaxContacts.
+// Status::kGraspUnstable when no palm can: it pushes, within its face, and holds by friction). Part of the stage
+// contact; a rigid tool has no joints to stop: returns at once. Bound: kMaxContacts.
 void load_pieces(const Model& model, State& state, Scratch& scratch) PALPATE_RT;
 
 // Frame of every link in the tool frame for the joint positions `joint`; writes sizes.n_joint poses, and the joints'

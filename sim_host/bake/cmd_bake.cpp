@@ -38,6 +38,7 @@ int bake(const BakeOptions& options) {
   if (!save_image(output, result.bytes, error)) throw std::runtime_error(output + ": " + error);
   if (options.report) fmt::print("{}", report_text(result.report));
   if (!options.report) {
+    for (const std::string& line : result.report.model) fmt::print("model   {}\n", line);
     for (const std::string& warning : result.report.warnings) fmt::print(stderr, "warning: {}\n", warning);
   }
   fmt::print("baked   {} -> {} ({} triangles, {} bytes)\n", options.scene, output, result.report.triangles,

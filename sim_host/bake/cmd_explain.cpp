@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "hal/device/device_profile.h"
+#include "sim_host/bake/certificate_text.h"
 #include "sim_host/bake/explain.h"
 #include "sim_host/bake/scene_model.h"
 #include "sim_host/cli.h"
@@ -24,7 +25,7 @@ struct ExplainOptions {
 int run_explain(const ExplainOptions& options) {
   const SceneModel scene(options.scene, options.overlays);
   const std::int32_t budget = scene.scene() ? scene.scene()->budget_instructions : 0;
-  fmt::print("{}", explain(scene.model(), budget));
+  fmt::print("{}{}", explain(scene.model(), budget), certificate_text(scene.bytes()));
   if (options.profile.empty()) return kExitOk;
   DeviceProfile profile;
   const std::string refusal = refuse_profile(false, "", options.profile, scene.model().params, &profile);
@@ -50,7 +51,7 @@ void add_explain_command(CLI::App& app, int& exit_code) {
       "Arrays that hold nothing are left out. What is baked but read by nobody does not pass the project's tests.\n"
       "Examples:\n"
       "  palpate explain config/scenes/half_shell.toml\n"
-      "  palpate explain config/scenes/heart_compass_paper.toml --set coupling.law=temporal_paper\n"
+      "  palpate explain config/scenes/heart_compass_paper.toml --set coupling.law=coupled\n"
       "  palpate explain mallet.pal");
   command->callback([options, &exit_code] { exit_code = run_explain(*options); });
 }

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "config/bake/compile.h"
+#include "sim_host/bake/certificate_text.h"
 #include "sim_host/bake/default_path.h"
 #include "sim_host/bake/image_file.h"
 
@@ -23,7 +24,9 @@ SceneImage prepare_scene(const std::string& scene, const std::string& image, con
   std::string error;
   if (!save_image(result.image_path, compiled.bytes, error)) throw std::runtime_error(error);
   fmt::print("baked   {} -> {}\n", scene, result.image_path);
-  if (add_default_path(*result.scene, ImageFile(result.image_path).model()))
+  const ImageFile written(result.image_path);
+  if (is_certified(written.bytes())) fmt::print("{}", certificate_text(written.bytes()));
+  if (add_default_path(*result.scene, written.model()))
     fmt::print("        the scene has no [path]: the hand presses the body's highest point and slides along x\n");
   return result;
 }

@@ -42,8 +42,8 @@ foreach(component programs core viewer python)
 endforeach()
 
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_NAME palpate)
-set(CPACK_DEBIAN_PROGRAMS_PACKAGE_DEPENDS adduser)
-set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SUGGESTS "palpate-viewer, python3-palpate, gmsh")
+set(CPACK_DEBIAN_PROGRAMS_PACKAGE_DEPENDS "adduser, gmsh") # gmsh: most shipped scenes are elastic bodies
+set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SUGGESTS "palpate-viewer, python3-palpate")
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_CONTROL_EXTRA ${debian}/postinst)
 set(CPACK_DEBIAN_VIEWER_PACKAGE_NAME palpate-viewer)
 set(CPACK_DEBIAN_VIEWER_PACKAGE_DEPENDS "palpate (= ${PROJECT_VERSION})")

@@ -12,7 +12,7 @@
 
 namespace palpate {
 
-// One tick: per anchor the force of its beams on their tips, summed over regions, and the largest stress.
+// One tick: per anchor the force of its beams on their tips, and the stress there (AnchorLoad), summed over regions.
 struct AnchorSample {
   double time_s = 0, depth_m = 0;
   std::vector<double> force_N;

@@ -12,6 +12,7 @@
 #include "sim_host/cli.h"
 #include "sim_host/cli_checks.h"
 #include "sim_host/press/grasp_run.h"
+#include "sim_host/press/grasp_stability.h"
 #include "sim_host/run/verdict.h"
 #include "sim_host/view/line_plot.h"
 #include "sim_host/view/picture.h"
@@ -66,7 +67,18 @@ void print_run(const Model& model, const GraspRun& run) {
       "{:.3f}) N{}\n",
       run.name, run.regions, run.contact_w.force_N.x, run.contact_w.force_N.y, run.contact_w.force_N.z,
       run.palm_w.force_N.x, run.palm_w.force_N.y, run.palm_w.force_N.z,
-      (run.status & Status::kGraspUnstable) != 0 ? ": UNSTABLE, the palm would have to pull" : "");
+      (run.status & Status::kGraspUnstable) != 0 ? ": more than a palm can, by friction and within its face" : "");
+  const Grasp grasp = grasp_of(model, *run.held);
+  const GraspStability s = judge(grasp);
+  fmt::print("  {}: within the friction cones fingers and palm {} the weight of {:.2f} N{}; friction needed: {}\n",
+             s.holds ? "stable" : "UNSTABLE", s.holds ? "balance" : "do not balance", norm(grasp.weight_N),
+             s.holds ? "" : fmt::format(" by {:.3f} N", s.imbalance_N),
+             s.friction_needed < kHuge ? fmt::format("{:.3f} of it", s.friction_needed) : "no amount would do");
+  if (s.closed) {
+    fmt::print("  force closure: yes, quality {:.4f} to {:.4f}\n", s.quality_least, s.quality_most);
+  } else {
+    fmt::print("  force closure: no\n");
+  }
   fmt::print("  normal force on each part, and stress at each anchor\n");
   for (std::size_t part = 1; part < run.part_force_N.size(); ++part)
     if (run.part_force_N[part] > 0)

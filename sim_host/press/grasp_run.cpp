@@ -42,7 +42,7 @@ std::size_t end_of_hold(const std::vector<TimedPose>& poses) {
 std::vector<double> anchor_stresses_Pa(const Model& model, const State& state) {
   const AnchorField field = anchors_of(model, state);
   std::vector<double> stress;
-  for (std::size_t a = 0; a < model.anchor.size(); ++a) stress.push_back(field.anchor[a].stress_sum_Pa);
+  for (std::size_t a = 0; a < model.anchor.size(); ++a) stress.push_back(field.anchor[a].stress_Pa);
   return stress;
 }
 

@@ -24,7 +24,7 @@ struct GraspOptions {
 struct GraspRun {
   std::string name;
   std::vector<double> time_s;
-  // Summed over the regions (AnchorLoad::stress_sum_Pa). History: per anchor, per sample.
+  // Summed over the regions (AnchorLoad::stress_Pa). History: per anchor, per sample.
   std::vector<std::vector<double>> stress_Pa;
   // At the end of the hold: the last tick with every finger told to be as closed as it ever is.
   StatePtr held;

@@ -10,13 +10,11 @@ namespace palpate {
 namespace {
 
 void add(const BeamStress& stress, Vec3 displacement_w, Vec3 force_w, AnchorLoad& anchor) {
-  const double extreme_Pa = std::abs(stress.axial_Pa) + stress.bending_Pa;
   anchor.displacement_w += displacement_w;
   anchor.force_w += force_w;
-  anchor.stress_Pa = std::max(extreme_Pa, anchor.stress_Pa);
-  anchor.shear_stress_Pa = std::max(stress.shear_Pa, anchor.shear_stress_Pa);
-  if (std::abs(stress.axial_Pa) > std::abs(anchor.axial_stress_Pa)) anchor.axial_stress_Pa = stress.axial_Pa;
-  anchor.stress_sum_Pa += extreme_Pa;
+  anchor.stress_Pa += std::abs(stress.axial_Pa) + stress.bending_Pa;
+  anchor.shear_stress_Pa += stress.shear_Pa;
+  anchor.axial_stress_Pa += stress.axial_Pa;
 }
 
 Vec3 force_on_body(const Region& region) {
@@ -78,8 +76,6 @@ BeamTableAnchor beam_table_anchor(const Model& model, const BeamTableSkeleton& s
     const std::size_t at =
         static_cast<std::size_t>(skeleton.spot.vertex[corner]) * model.anchor.size() + static_cast<std::size_t>(index);
     const BeamResponse& row = model.beam_response[at];
-    result.displacement_w +=
-        {dot(row.release_m_per_N[0], f), dot(row.release_m_per_N[1], f), dot(row.release_m_per_N[2], f)};
     inner += dot(row.inner_Pa_per_N, f);
     outer += dot(row.outer_Pa_per_N, f);
     side += dot(row.side_Pa_per_N, f);
@@ -90,7 +86,7 @@ BeamTableAnchor beam_table_anchor(const Model& model, const BeamTableSkeleton& s
   const Real extreme = std::max(std::abs(inner), std::abs(outer)) + std::abs(side);
   result.stress.bending_Pa = std::max(extreme - std::abs(result.stress.axial_Pa), 0.0);
   result.stress.shear_Pa = std::sqrt(shear_in * shear_in + shear_out * shear_out);
-  if (model.anchor[static_cast<std::size_t>(index)].fixed != 0) result.displacement_w = {};
+  result.displacement_w = beam_table_displacement(model, skeleton, index);
   return result;
 }
 

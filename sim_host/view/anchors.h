@@ -34,14 +34,13 @@ struct BeamTableAnchor {
 BeamTableAnchor beam_table_anchor(const Model& model, const BeamTableSkeleton& skeleton, std::int32_t index);
 
 struct AnchorLoad {
-  Vec3 displacement_w;   // sum over regions
-  Vec3 force_w;          // of its beams on their tips, sum over regions
-  double stress_Pa = 0;  // extreme-fibre stress at the anchor, largest over regions
-  double axial_stress_Pa = 0;
+  Vec3 displacement_w;  // sum over regions
+  Vec3 force_w;         // of its beams on their tips, sum over regions
+  // Stress at the anchor, in every table, plot and file: the extreme-fibre stress of the beams that end there, summed
+  // over regions: what all contacts do together, as an upper bound, since the fibres need not coincide.
+  double stress_Pa = 0;
+  double axial_stress_Pa = 0;  // its mean over the section, tension positive, summed likewise
   double shear_stress_Pa = 0;
-  // Sum over regions of the extreme-fibre stresses: what all contacts do together, as an upper bound, since the fibres
-  // need not coincide.
-  double stress_sum_Pa = 0;
 };
 
 struct AnchorField {

@@ -74,7 +74,7 @@ TEST(Compile, ShippedScenesBakeOpenAndFit) {
     const Opened image(baked.bytes);
     EXPECT_EQ(image.result.error, ImageError::kNone) << path << ": " << image.result.field;
     EXPECT_EQ(std::filesystem::path(path).stem().string(), image.model.name);
-    EXPECT_THAT(baked.report.warnings, testing::IsEmpty()) << path;
+    EXPECT_EQ(baked.report.warnings, weak_keys(scene)) << path;
     const bool skeleton = scene.contact.backend == Backend::kResponse && scene.skeleton.law != SkeletonLaw::kNone;
     EXPECT_EQ(baked.report.fixed_anchors >= 1, skeleton) << path;
     // At 800 instructions each, inside the worst tick's budget: 60,000 for a scene, 250,000 for a hand.
@@ -95,7 +95,7 @@ TEST(Compile, SameSceneSameBytesWhereverItLies) {
 }
 
 TEST(Compile, EveryParameterArrives) {
-  const SceneDesc scene = small(R"([body.material]
+  SceneDesc scene = small(R"([body.material]
 youngs_modulus_Pa = 2e6
 poisson_ratio = 0.47
 density_kg_per_m3 = 1200
@@ -107,7 +107,7 @@ weight = "area"
 max_depth_mm = 3
 cluster_distance_mm = 7
 [friction]
-law = "mindlin"
+law = "return_map"
 tangential = "radial"
 k = 2
 beta = 0.8
@@ -119,7 +119,6 @@ neighbourhood = "log_c1"
 radius_mm = 9
 [coupling]
 law = "temporal_paper"
-radius_mm = 4
 [device]
 period_ms = 2
 force_max_N = 5
@@ -137,11 +136,12 @@ stall_max_ms = 36
 speed_max_m_per_s = 2
 turn_max_rad_per_s = 12
 )");
+  scene.coupling.radius_m = 0.004;  // stated in a file it would have no effect with this law
   const Opened image(compile_scene(scene).bytes);
   ASSERT_EQ(image.result.error, ImageError::kNone) << image.result.field;
   const ModelParams& p = image.model.params;
   EXPECT_EQ(p.contact_weight, ContactWeight::kArea);
-  EXPECT_EQ(p.friction_law, FrictionLaw::kMindlin);
+  EXPECT_EQ(p.friction_law, FrictionLaw::kReturnMap);
   EXPECT_EQ(p.tangential_law, TangentialLaw::kRadial);
   EXPECT_EQ(p.skeleton_law, SkeletonLaw::kPaper);
   EXPECT_EQ(p.shape_law, ShapeLaw::kDisplacementAnglePaper);

@@ -249,6 +249,23 @@ TEST_F(Samples, AJumpNoHandCouldMakeIsRefusedUntilOneCould) {
   EXPECT_FALSE(refused());
 }
 
+// At 10 kHz an encoder's step of 30 um comes in one tick of many: nobody's acceleration. A jump still is.
+TEST_F(Samples, AnEncodersStaircaseIsNoJumpAtAnyRate) {
+  for (const double period_s : {1e-3, 2.5e-4, 1e-4}) {
+    reset(*state_);
+    model_.params.period_s = period_s;
+    int count = 0;
+    for (int i = 0; i < 20000; ++i) {
+      const double at_m = 0.02 * std::sin(2 * 3.14159265358979 * 3 * period_s * i);  // 3 Hz, up to 0.38 m/s
+      sample(3e-5 * static_cast<double>(static_cast<long>(at_m / 3e-5)));
+      count += refused() ? 1 : 0;
+    }
+    EXPECT_EQ(count, 0) << period_s;
+    sample(state_->told_w.position_m.z + 4e-3);
+    EXPECT_TRUE(refused()) << period_s;
+  }
+}
+
 TEST_F(Samples, ADeviceThatSendsTooFewIsAFault) {
   Output output;
   std::uint32_t fault = 0;

@@ -95,6 +95,63 @@ TEST(Skeleton, WorkedExamplePaperRatios) {
   EXPECT_LT(norm(sum_of_forces(s) - example.force), 1e-12);
 }
 
+// `paper` is the printed law: beams of their own length. Forces by 40-digit arithmetic (mpmath, 2026-11-23), the
+// printed length and the guarded one.
+TEST(Skeleton, PaperIsThePrintedLawAndTheGuardedOneIsNot) {
+  Example example;
+  Model model;
+  model.params.youngs_modulus_Pa = 3e6;
+  model.params.poisson_ratio = 0.47;
+  model.anchor = example.anchors;
+  const struct {
+    SkeletonLaw law;
+    double ratio;
+    Vec3 force[5];
+  } worked[] = {{SkeletonLaw::kPaper,
+                 110.36705505118,
+                 {{0.663762543043694, 0, -1.40708082591557},
+                  {-0.253876861258302, 0, -1.31531688548537},
+                  {0.215970998153296, 0.307772771990046, -2.36489182952632},
+                  {0.215970998153296, -0.307772771990046, -2.36489182952632},
+                  {0.158172321908016, 0, -2.54781862954642}}},
+                {SkeletonLaw::kPaperGuarded,
+                 122.9194143086,
+                 {{0.648710438748216, 0, -1.4443313847486},
+                  {-0.235986579275215, 0, -1.35586168294626},
+                  {0.213290521834785, 0.300524596212114, -2.33325494915592},
+                  {0.213290521834785, -0.300524596212114, -2.33325494915592},
+                  {0.160695096857429, 0, -2.53329703399329}}}};
+  for (const auto& row : worked) {
+    model.params.skeleton_law = row.law;
+    Skeleton s;
+    ASSERT_TRUE(solve_skeleton(model, {}, example.contact, example.force, s));
+    EXPECT_NEAR(s.beta_Pa / s.alpha_Pa / row.ratio, 1, 1e-9);
+    for (std::size_t i = 0; i < 5; ++i) expect_near(s.force_w[i], row.force[i], 1e-9);
+  }
+}
+
+// At an anchor I/l^3 has no bound: down to kLeastLength_m the nearest beam takes the force, all finite; nearer the
+// printed law says that it is singular. The guarded one goes on.
+TEST(Skeleton, ThePrintedLawSaysWhereItIsSingular) {
+  Example example;
+  Model model;
+  model.params.youngs_modulus_Pa = 3e6;
+  model.params.poisson_ratio = 0.47;
+  model.anchor = example.anchors;
+  for (const double apart : {1e-3, 1e-6, 2 * kLeastLength_m, 0.5 * kLeastLength_m, 0.0}) {
+    example.contact = Vec3{0.04 - apart, 0, 0};
+    Skeleton s;
+    model.params.skeleton_law = SkeletonLaw::kPaper;
+    EXPECT_EQ(solve_skeleton(model, {}, example.contact, example.force, s), apart > kLeastLength_m);
+    EXPECT_EQ(s.degenerate, apart <= kLeastLength_m);
+    for (int i = 0; i < s.count; ++i) EXPECT_LE(norm(s.force_w[i]), 30 * norm(example.force)) << apart;
+    EXPECT_TRUE(is_finite(sum_of_forces(s)));
+    model.params.skeleton_law = SkeletonLaw::kPaperGuarded;
+    EXPECT_TRUE(solve_skeleton(model, {}, example.contact, example.force, s));
+    EXPECT_TRUE(is_finite(sum_of_forces(s)));
+  }
+}
+
 // The stiffness law against dense elimination in long double, with the stiffness matrix written from rotations.
 TEST(Skeleton, StiffnessLawAgreesWithDenseSolve) {
   std::mt19937_64 random(11);

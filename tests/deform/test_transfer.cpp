@@ -60,7 +60,7 @@ class Transfer : public ::testing::Test {
     const deform_test::Row w = deform_test::solve_dense(m, g);
     Vec3 force;
     for (std::size_t i = 0; i < 6; ++i) force += static_cast<double>(w[i]) * s.force_w[i];
-    return dot(force, to.normal_w);
+    return std::fabs(dot(force, to.normal_w));
   }
   Scene scene_;
   const StatePtr memory_ = test::roomy_state();
@@ -92,6 +92,11 @@ TEST_F(Transfer, IsOnTheToolSide) {
   Region twice = top_;
   twice.normal_force_N = 10;  // linear in the force
   EXPECT_NEAR(added({near, twice})[0], 2 * once, 1e-12);
+  // And so does one that presses from the other side, through the body.
+  Region below = top_;
+  below.id = 6;
+  below.normal_w = -1.0 * top_.normal_w;
+  EXPECT_GT(added({near, below})[0], 0);
 }
 
 TEST_F(Transfer, IsNotReciprocal) {

@@ -57,6 +57,11 @@ TEST(RegionLoad, WorkedExample) {
   EXPECT_NEAR(centre.position_w.x, 0.7039473684e-3, 1e-13);
   EXPECT_NEAR(centre.position_w.y, 1.8144736842e-3, 1e-13);
   EXPECT_NEAR(centre.position_w.z, 0, 1e-18);
+  // The paper's equivalent point: the geometric centre, whatever the forces.
+  RegionRows paper = points.view();
+  paper.geometric = true;
+  EXPECT_NEAR(region_centre(paper, kUp).position_w.x, 1e-3, 1e-18);
+  EXPECT_NEAR(region_centre(paper, kUp).position_w.y, 1e-3, 1e-18);
   // The resultant at the centre of pressure has the torque of the points.
   EXPECT_LT(norm(cross(centre.position_w, load.resultant_w) - load.torque_w), 1e-16);
   // Pressed along a direction 30 degrees off the normal: parts, limits and sticking.

@@ -17,9 +17,9 @@ methods=$(sed -n 's/^#define PALPATE_METHODS(X)//p' "$root/rt_core/laws.h" | gre
 [ "$(wc -w <<<"$methods")" -ge 3 ] || { echo "the list of methods was not found in rt_core/laws.h"; exit 1; }
 
 # One scene of each method and kind, cheapest first: a run stops at the first one that changes.
-"$palpate" bake "$root/config/scenes/heart_compass_paper.toml" --set coupling.law=temporal_paper -o "$work/temporal.pal" \
+"$palpate" bake "$root/config/scenes/heart_compass_paper.toml" -o "$work/temporal.pal" \
   >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
-scenes="$images/tools_on_layer.pal $images/ellipsoid_mallet.pal $work/temporal.pal $images/grasp_cylinder_2.pal"
+scenes="$images/tools_on_layer.pal $images/ellipsoid_mallet_springs.pal $work/temporal.pal $images/grasp_cylinder_2.pal"
 scenes+=" $images/pinch_block.pal $images/ring.pal"
 
 # shellcheck disable=SC2086

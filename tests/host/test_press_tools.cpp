@@ -9,6 +9,7 @@
 #include <memory>
 #include <random>
 
+#include "rt_core/contact/tips/tip_law.h"
 #include "sim_host/bake/scene_model.h"
 #include "sim_host/press/press.h"
 #include "sim_host/tick_memory.h"
@@ -225,6 +226,62 @@ TEST_F(TableScene, LoopsOverSoftAndStiffPlacesAreConservative) {
       "-40,200,0,0,0\n-40,200,0,1,2\n-40,200,0,2,5\n-40,200,0,6,20\n"
       "40,200,0,0,0\n40,200,0,1,4\n40,200,0,2,9\n40,200,0,6,50\n");
   expect_conservative(scene, "table", 8, 1e-3);
+}
+
+// Eq. 3 of Mahvash & Hayward 2002 as printed: F = sum n_i f_i U_i. Along the axis, where stiff and soft places differ,
+// it has no force aside, which the interpolated energy has; around it, the normals' own. And loops over such places
+// give or take energy.
+TEST_F(TableScene, PrintedInterpolationIsTheSumOfTheCornersForces) {
+  const std::string csv =
+      "x_mm,y_mm,z_mm,depth_mm,force_N\n"
+      "-40,200,0,0,0\n-40,200,0,1,2\n-40,200,0,2,5\n-40,200,0,6,20\n"
+      "40,200,0,0,0\n40,200,0,1,4\n40,200,0,2,9\n40,200,0,6,50\n";
+  const SceneModel printed = make(csv, {"contact.table.interpolation=paper"}), corrected = make(csv);
+  const Model& model = printed.model();
+  double aside_N = 0;
+  for (int i = 0; i < 12; ++i) {
+    const Pose pose = pose_at(-0.03 + 0.005 * i, 0.02 * i, 2e-3);
+    const auto state = make_state(model);
+    Vec3 expected, force;
+    press(model, std::vector<TimedPose>{{0, pose}}, {}, *state, nullptr,
+          [&](const PressRow& row, const State&, const Scratch& scratch) {
+            const SurfaceFoot& foot = scratch.foot[0];
+            const TableLaw law = table_law(model, 0, foot.triangle, foot.weight);
+            const CornerForces corner = table_forces(law, scratch.contact[0].depth_m);
+            for (int k = 0; k < 3; ++k)
+              expected += foot.weight[k] * corner.force_N[k] *
+                          model.corner_normal[static_cast<std::size_t>(foot.triangle)].normal[k];
+            force = row.record.output.contact_w.force_N;
+          });
+    EXPECT_GT(norm(expected), 5);
+    EXPECT_LT(norm(force - expected), 1e-9);
+    const SlideResult other = slide(corrected.model(), {{0, pose}});
+    aside_N = std::max(aside_N, other.aside_max_N - norm(tangential_part(force, rotate(pose.orientation, {0, 1, 0}))));
+  }
+  EXPECT_GT(aside_N, 0.02);  // on 6 N: what the printed sum leaves out
+}
+
+// Curves per tool, chosen in the tick: each tip of one tool has the presses made with it.
+TEST_F(TableScene, EachTipHasItsOwnCurves) {
+  const std::string soft = (std::filesystem::temp_directory_path() / "palpate_EachTip_soft.csv").string();
+  const std::string tools = (std::filesystem::temp_directory_path() / "palpate_EachTip.toml").string();
+  const std::string csv = (std::filesystem::temp_directory_path() / "palpate_EachTip_hard.csv").string();
+  std::ofstream(soft) << "depth_mm,force_N\n0,0\n1.5,1\n6,10\n";
+  std::ofstream(csv) << "depth_mm,force_N\n0,0\n1,4\n6,30\n";
+  std::ofstream(tools) << "[[tool.piece]]\nshape = \"sphere\"\nposition_mm = [0, -13.65, 0]\nradius_mm = 6.35\n"
+                          "[[tool.piece]]\nshape = \"sphere\"\nposition_mm = [0, 13.65, 0]\nradius_mm = 6.35\n"
+                          "table_file = \"" +
+                              soft + "\"\n";
+  SceneOverlays overlays;
+  overlays.file.push_back(tools);
+  overlays.setting = {"contact.law=table", "contact.table.file=" + csv, "friction.law=none"};
+  const SceneModel scene(load_scene(scene_path("tools_on_cylinder"), overlays));
+  EXPECT_EQ(scene.model().vertex_response.size(), 2 * scene.model().vertex_m.size());
+  Pose pose = pose_at(0, 0, 3e-3);
+  EXPECT_NEAR(slide(scene.model(), {{0, pose}}).force_max_N, 13.34, 0.01);
+  pose.orientation = Quat{0, 0, 0, 1};  // the other end down
+  EXPECT_NEAR(slide(scene.model(), {{0, pose}}).force_max_N, 3.1, 0.4);
+  for (const std::string& file : {soft, tools, csv}) std::filesystem::remove(file);
 }
 
 // Curves pressed by the baker, cubic in the root of the depth, softer towards the edge: loops up to 20 mm from the edge

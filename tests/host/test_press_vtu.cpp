@@ -61,7 +61,7 @@ std::vector<T> array_of(const std::string& vtu, const std::string& name) {
 
 class Vtu : public ::testing::Test {
  protected:
-  const SceneModel scene_{std::string(PALPATE_SOURCE_DIR) + "/config/scenes/ellipsoid_mallet.toml"};
+  const SceneModel scene_{std::string(PALPATE_SOURCE_DIR) + "/config/scenes/ellipsoid_mallet_springs.toml"};
   const Model& model_ = scene_.model();
 };
 

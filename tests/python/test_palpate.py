@@ -12,7 +12,7 @@ import numpy as np
 import palpate
 
 PROGRAMS, ROOT = sys.argv[1:3]
-MALLET = os.path.join(ROOT, "config", "scenes", "ellipsoid_mallet.toml")
+MALLET = os.path.join(ROOT, "config", "scenes", "ellipsoid_mallet_springs.toml")
 
 
 def command(*words):

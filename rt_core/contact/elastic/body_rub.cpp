@@ -4,32 +4,6 @@ namespace palpate {
 
 namespace {
 
-using namespace elastic_layout;
-
-// How the material at the foot moves by each amplitude.
-void show_sweep(const Model& model, const Real* y, const ElasticRow& row, Vec3* sweep_w) PALPATE_RT {
-  const std::int32_t soft = model.params.elastic_soft;
-  const Triangle& triangle = model.triangle[static_cast<std::size_t>(row.foot.triangle)];
-  const float* block[3];
-  for (int k = 0; k < 3; ++k) block[k] = vertex_block(model, triangle.vertex[k]);  // bound: 3
-  const auto moved = [&](std::int32_t term) PALPATE_RT -> Double4 {
-    Double4 u{};
-    for (int k = 0; k < 3; ++k) u += splat4(row.foot.weight[k]) * widen4(block[k] + kTermFloats * term);  // bound: 3
-    return u;
-  };
-  Double4 sweep[kMaxSoftModes];
-  for (std::int32_t a = 0; a < soft; ++a) sweep[a] = moved(a);
-  std::int32_t pair = soft;
-  for (std::int32_t a = 0; a < soft; ++a) {  // bound: pairs
-    for (std::int32_t b = a; b < soft; ++b, ++pair) {
-      const Double4 u = moved(pair);
-      sweep[a] += splat4(y[b]) * u;
-      sweep[b] += splat4(y[a]) * u;
-    }
-  }
-  for (std::int32_t a = 0; a < soft; ++a) sweep_w[a] = {sweep[a][0], sweep[a][1], sweep[a][2]};
-}
-
 // Axes along a stretch of the spring and across it, with the forces of a spring stretched by `begun`.
 void aim_along(Vec3 stretch, Vec3 begun, Vec3 normal_w, std::int32_t soft, BodyRub& rub) PALPATE_RT {
   const Vec3 any = tangential_part(axis_off(normal_w), normal_w);
@@ -55,10 +29,10 @@ BodyRub begin_rub(const Region& region, Vec3 motion_w) PALPATE_RT {
   return rub;
 }
 
-void let_stick(const Model& model, const State& state, const Real* y, const ElasticRow& row, BodyRub& rub) PALPATE_RT {
+void let_stick(const Model& model, const State& state, const ElasticRow& row, BodyRub& rub) PALPATE_RT {
   if (!rub.is_on) return;
   const std::int32_t soft = model.params.elastic_soft;
-  show_sweep(model, y, row, rub.sweep_w);
+  rub.sweep_w = row.sweep_w;
   for (std::int32_t a = 0; a < soft; ++a) rub.moved_w += state.elastic.step_rootJ[a] * rub.sweep_w[a];
   const Vec3 stretch = tangential_part(rub.stretch_w - rub.moved_w, row.foot.normal_w);
   aim_along(stretch, stretch, row.foot.normal_w, soft, rub);

@@ -20,19 +20,19 @@ struct RubAxis {
 };
 
 struct BodyRub {
-  bool is_on = false;           // the region has a memory of friction
-  bool slides = false;          // did in the last tick
-  Vec3 stretch_w;               // of the spring, had the surface held still: the last tick's and what the tool moved
-  Vec3 moved_w;                 // by the surface
-  Real spring_N_per_m = 0;      // of the last tick
-  Vec3 sweep_w[kMaxSoftModes];  // dx/dp of the material at the foot
-  RubAxis axis[2];              // along the spring's stretch; across it
+  bool is_on = false;             // the region has a memory of friction
+  bool slides = false;            // did in the last tick
+  Vec3 stretch_w;                 // of the spring, had the surface held still: the last tick's and what the tool moved
+  Vec3 moved_w;                   // by the surface
+  Real spring_N_per_m = 0;        // of the last tick
+  const Vec3* sweep_w = nullptr;  // ElasticRow::sweep_w
+  RubAxis axis[2];                // along the spring's stretch; across it
 };
 
 // Before the first linearisation. `motion_w`: of the tool's material since the last tick.
 BodyRub begin_rub(const Region& region, Vec3 motion_w) PALPATE_RT;
 // Axes, forces and stiffnesses of a tip that sticks: only the body's answer tells whether it slips.
-void let_stick(const Model& model, const State& state, const Real* y, const ElasticRow& row, BodyRub& rub) PALPATE_RT;
+void let_stick(const Model& model, const State& state, const ElasticRow& row, BodyRub& rub) PALPATE_RT;
 // Those of one that slips, if it does by the law at `force_N` where the answer `step` puts it. False: it sticks.
 bool let_slip(const FrictionParameters& law, Vec3 normal_w, Real force_N, const Real* step, std::int32_t soft,
               BodyRub& rub) PALPATE_RT;

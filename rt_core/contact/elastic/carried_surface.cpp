@@ -164,6 +164,64 @@ void show_modes(const Model& model, const Real* y, const TravelSlope& slope, Ela
   }
 }
 
+// How the material under the tip moves with each amplitude.
+void show_sweep(const Model& model, const Real* y, ElasticRow& row, Double4 (&corner)[3][kMaxSoftModes]) PALPATE_RT {
+  const std::int32_t soft = model.params.elastic_soft;
+  const Triangle& triangle = model.triangle[static_cast<std::size_t>(row.foot.triangle)];
+  Double4 sweep[kMaxSoftModes] = {};
+  for (int k = 0; k < 3; ++k) {  // bound: 3 pairs
+    const float* block = vertex_block(model, triangle.vertex[k]);
+    Double4* u = corner[k];
+    for (std::int32_t a = 0; a < soft; ++a) u[a] = widen4(block + kTermFloats * a);
+    std::int32_t pair = soft;
+    for (std::int32_t a = 0; a < soft; ++a) {
+      for (std::int32_t b = a; b < soft; ++b, ++pair) {
+        const Double4 second = widen4(block + kTermFloats * pair);
+        u[a] += splat4(y[b]) * second;
+        u[b] += splat4(y[a]) * second;
+      }
+    }
+    for (std::int32_t a = 0; a < soft; ++a) sweep[a] += splat4(row.foot.weight[k]) * u[a];
+  }
+  for (std::int32_t a = 0; a < soft; ++a) row.sweep_w[a] = {sweep[a][0], sweep[a][1], sweep[a][2]};
+}
+
+// What the foot's slide adds to the travel's second derivative. The travel is the tip's radius less the distance f from
+// its centre to the nearest place s, whose derivatives in amplitudes and place are, at distance d over curvature k,
+//   f_a = -n.u_a,   f_ab = t_a.t_b / d - n.u_ab,   f_as = t_a / d - g_a,   f_ss = 1 / d + k,
+// with t_a the tangential part of u_a and g_a the slope of n.u_a along the surface, 1 + k d times its slope G_a as the
+// centre moves; and f_ab - f_as f_sb / f_ss is that of the nearest. Without it H lacked F d g_a.g_b, by which a body is
+// held upright under a ball: one of 60 mm on a block of 20 threw it from side to side every tick (2026-11-23).
+// The centre of a capsule's side slides too, so that along its axis f_ss is the body's curvature alone and t_a does
+// nothing; where that is flat the touch goes to the capsule's end.
+void turn_with_foot(std::int32_t soft, ElasticRow& row, const Double4 (&corner)[3][kMaxSoftModes]) PALPATE_RT {
+  const Vec3 n = row.foot.normal_w;
+  const Real half = norm(row.tip.half_axis_w), side = row.tip.sideness(), on_side = max_of(row.along_1_per_m, 0.0);
+  const Vec3 axis = half > 0 ? (side / half) * tangential_part(row.tip.half_axis_w, n) : Vec3{};
+  const Real d = max_of(row.foot.height_m, 0.0),
+             mean = row.curvature_1_per_m + side * (row.curvature_1_per_m - on_side);
+  const Real bend = max_of(1 + mean * d, 0.5), curvature = bend > 1 ? mean / bend : 0.0, bent = 1 + on_side * d;
+  const Real slide = half * bent * bent / (1 + on_side * half);
+  Vec3 along[kMaxSoftModes], slope[kMaxSoftModes];
+  Real on_axis[kMaxSoftModes];
+  for (std::int32_t a = 0; a < soft; ++a) {  // bound: 3 soft
+    along[a] = tangential_part(row.sweep_w[a], n);
+    for (int k = 0; k < 3; ++k) {
+      const Double4& u = corner[k][a];
+      slope[a] += (n.x * u[0] + n.y * u[1] + n.z * u[2]) * row.foot.gradient_per_m[k];
+    }
+    on_axis[a] = dot(slope[a], axis);
+    slope[a] -= on_axis[a] * axis;
+    along[a] -= dot(along[a], axis) * axis;
+  }
+  std::int32_t pair = 0;
+  for (std::int32_t a = 0; a < soft; ++a) {  // bound: pairs
+    for (std::int32_t b = a; b < soft; ++b, ++pair)
+      row.turn[pair] += d * bend * dot(slope[a], slope[b]) - dot(along[a], slope[b]) - dot(slope[a], along[b]) -
+                        curvature * dot(along[a], along[b]) + slide * on_axis[a] * on_axis[b];
+  }
+}
+
 // A number between the vertices that hold it and its gradient g: the cubic that has both there, in Bezier form, its
 // middle coefficient the one that keeps parabolas. Along an edge it is the same from both sides, and at the vertices
 // the gradient has no kink. Straight between the vertices, c1's kink on the crest of a ring threw the tip aside by 0.5
@@ -209,7 +267,7 @@ void show_own_terms(const Model& model, ElasticRow& row) PALPATE_RT {
   }
   Real value[kOwnSlopes];
   Vec3 gradient[kOwnSlopes];
-  for (int i = 0; i < kOwnSlopes; ++i) {  // bound: 3 x 3
+  for (int i = 0; i < kOwnSlopes; ++i) {  // bound: 4 x 3
     Real slope[3];
     value[i] = VertexCubic(edge_m, own, i).at(row.foot.weight, slope);
     for (int k = 0; k < 3; ++k) gradient[i] += slope[k] * row.foot.gradient_per_m[k];
@@ -217,9 +275,11 @@ void show_own_terms(const Model& model, ElasticRow& row) PALPATE_RT {
   row.c_m_per_N = value[0];
   row.c1_m_per_N2 = value[1];
   row.curvature_1_per_m = value[2];
+  row.beta_1_per_mN = value[3];
   row.c_gradient = gradient[0];
   row.c1_gradient = gradient[1];
   row.curvature_gradient = gradient[2];
+  row.beta_gradient = gradient[3];
 }
 
 // One Newton step along a capsule's axis to where its height is least; `rise` and how the normal turns as the centre
@@ -275,20 +335,26 @@ void CarriedSurface::place(const RoundTip& tip, std::int32_t triangle, Real near
     row.travel_m = tip.margin_m - row.foot.height_m;
     if (!(row.travel_m + nearer_m > 0)) return;
     show_modes(model, y, travel_slope(model, row, last), row);
+    show_own_terms(model, row);
+    Double4 corner[3][kMaxSoftModes];
+    show_sweep(model, y, row, corner);
     if (!tip.is_ball()) {
       slide_along(last.corners, row);
       *shown += kSlideWork;
     }
+    turn_with_foot(model.params.elastic_soft, row, corner);
   } else if (place_on_facet(centre_w, triangle, row)) {
     row.travel_m = tip.margin_m - row.foot.height_m;
     if (!(row.travel_m + nearer_m > 0)) return;
     row.rise = row.foot.normal_w;
     show_modes(model, y, facet_slope(row), row);
+    show_own_terms(model, row);
+    Double4 corner[3][kMaxSoftModes];
+    show_sweep(model, y, row, corner);
   } else {
     return;
   }
-  *shown += 3 * terms(model.params.elastic_soft);
-  show_own_terms(model, row);
+  *shown += 6 * terms(model.params.elastic_soft);
 }
 
 bool CarriedSurface::place_on_facet(Vec3 centre_w, std::int32_t triangle, ElasticRow& row) const PALPATE_RT {

@@ -83,6 +83,7 @@ void solve(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   body.yield_to_rubs();
   state.elastic.swept_m = swept_m(model, work_of(scratch));
   scratch.energy_J += body.energy_J() + body.linear_energy_J(force_N);
+  body.pull_aside(force_N);
   press_regions(load, state, scratch);
   for (std::int32_t r = 0; r < regions; ++r)  // bound: kMaxRegions
     work_of(scratch).place_N_per_m[r] = load.place_N_per_m(r, scratch.system.shift_m[r]);
@@ -139,7 +140,7 @@ void create_work(const Model& model, void* block) noexcept {
 // loses it.
 void add_most_work(const Model& model, const SceneSizes& n, Work& work) noexcept {
   const std::int32_t soft = model.params.elastic_soft, pair = pairs(soft);
-  const std::int32_t place = (3 * (kFootWalk + 2) + 1) * terms(soft) + kSlideWork;
+  const std::int32_t place = (3 * (kFootWalk + 2) + 4) * terms(soft) + kSlideWork;
   add_most_points(model, n, work);
   work.queries += 2 * n.points;  // a capsule asks three times
   add_most_regions(n, kSolvesOfFriction * TipLaws::kIterations, work);

@@ -1,8 +1,8 @@
 // How an image holds an elastic body. Amplitudes p of its soft modes are in J^1/2: the linear energy is p.p / 2.
 //   u(x) = sum_t shape_t(x) y_t,   y = p_a, then p_a p_b for the pairs a <= b in the order of pair_place()
 // (a pair's shape has the 1/2 of its square in it). A vertex of the surface is a block of floats:
-//   per term t 12: u, and du_i/dX_j row by row;  c (m/N), c1 (m/N2), mean curvature (1/m), 0; the gradients of these
-//   three along the surface, 0 0 0;
+//   per term t 12: u, and du_i/dX_j row by row;  c (m/N), c1 (m/N2), mean curvature (1/m), beta (1/(m N)); the
+//   gradients of these four along the surface;
 //   per linear mode 3: its shape in m/J^1/2. Rounded up to whole lanes of four.
 // V = p.p/2 + p_a p_b W3_ab + p_a p_b W4_ab,  W3 = cubic . p,  W4 = quartic . y2  (y2 the pairs' products).
 #pragma once
@@ -12,7 +12,7 @@
 
 namespace palpate::elastic_layout {
 
-inline constexpr std::int32_t kTermFloats = 12, kOwnSlopes = 3, kOwnValues = 4, kOwnFloats = 16;
+inline constexpr std::int32_t kTermFloats = 12, kOwnSlopes = 4, kOwnValues = 4, kOwnFloats = 16;
 
 constexpr std::int32_t pairs(std::int32_t soft) { return soft * (soft + 1) / 2; }
 constexpr std::int32_t terms(std::int32_t soft) { return soft + pairs(soft); }

@@ -15,14 +15,23 @@ struct FarChange {
 };
 FarChange far_change(const FarField& far, Real force_N) PALPATE_RT;
 
+// What a place does to a tip's law there, and how that changes along the surface: c of the place where it is negative
+// and beta of it (config/elastic/width_law.h), and its curvature.
+struct PlacedLaw {
+  Real scale = 1, scale_by_curvature = 0, scale_by_c = 0;  // of the tip's law
+  PlaceTerms terms, by_c, by_beta, by_scale;
+};
+PlacedLaw placed_law(const TipLaw& law, const ElasticRow& row) PALPATE_RT;
+
 struct ElasticLoad : TipLaws {
   static constexpr bool kPullsAside = true;
   Tip tip[kMaxPieces];
   const ElasticRow* placed[kMaxPieces];
-  Real per_curvature[kMaxPieces];
+  PlacedLaw law[kMaxPieces];
   TipRegion tips_of[kMaxRegions];
-  FarField own[kMaxRegions];  // c and c1 of the region, without the modes
-  const Real* before_N;       // the last tick's forces, of all regions
+  FarField own[kMaxRegions];     // c and c1 of the region, without the modes
+  Vec3 pair_aside[kMaxRegions];  // slope along the surface of what the others' forces move under a region
+  const Real* before_N;          // the last tick's forces, of all regions
 
   std::int32_t at(std::int32_t r, std::int32_t k) const PALPATE_RT {
     return static_cast<std::int32_t>(region[r].tip - tip) + k;
@@ -43,26 +52,29 @@ struct ElasticLoad : TipLaws {
     const Real e = tip[i].depth_m - shift_m;
     const LawPoint point = tip_at(tip[i], e);
     const Real energy = tip_energy_J(tip[i], e), f = point.force_N;
-    const FarChange change = far_change(own[r], f);
-    const Vec3 aside = f * (stands.rise - stands.foot.normal_w) + change.per_c0_N2 * stands.c_gradient +
-                       change.per_c1_N3 * stands.c1_gradient -
-                       (energy / tip[i].scale * per_curvature[i]) * stands.curvature_gradient;
+    const Vec3 aside =
+        f * (stands.rise - stands.foot.normal_w + pair_aside[r]) + far_aside(r, stands, f) - law_aside(i, e, energy);
     // Never steeper than 45 degrees: far beyond the range the second power of the force is no physics.
     const Real length = norm(aside), share = length > f ? f / length : 1.0;
     return {point, energy, stands.tip.centre_w(), share * aside, e > tip[i].local.tip->depth_max_m};
   }
+  // How the energy of the far field and, the other way, that of the tip's law change along the surface.
+  Vec3 far_aside(std::int32_t r, const ElasticRow& stands, Real force_N) const PALPATE_RT {
+    if (!(stands.c_m_per_N > 0)) return {};
+    const FarChange change = far_change(own[r], force_N);
+    return change.per_c0_N2 * stands.c_gradient + change.per_c1_N3 * stands.c1_gradient;
+  }
+  Vec3 law_aside(std::int32_t i, Real e, Real energy_J) const PALPATE_RT {
+    const PlacedLaw& here = law[i];
+    const Real range_m = tip[i].local.tip->depth_max_m;
+    const Real alone = (energy_J - place_energy_J(here.terms, range_m, e)) / here.scale;
+    const Real by_c = placed[i]->c_m_per_N < 0 ? alone * here.scale_by_c + place_energy_J(here.by_c, range_m, e) : 0.0;
+    const Real by_scale = alone + place_energy_J(here.by_scale, range_m, e);
+    return by_c * placed[i]->c_gradient + (here.scale_by_curvature * by_scale) * placed[i]->curvature_gradient +
+           place_energy_J(here.by_beta, range_m, e) * placed[i]->beta_gradient;
+  }
   // What the last forces ask for; a new region as if it were alone.
   Real start(std::int32_t r) const PALPATE_RT { return before_N[r] > 0 ? shift_under(before_N, r) : TipLaws::start(r); }
-  // As the tips' own, which have a pair's second order besides.
-  Real shift_under(const Real* force, std::int32_t i) const PALPATE_RT {
-    Real shift = far_shift_m(region[i].far, force[i]);
-    const Real* c = coupling.c_m_per_N + i * n;
-    for (std::int32_t j = 0; j < n; ++j) shift += j == i ? 0.0 : c[j] * force[j];  // bound: regions
-    return shift;
-  }
-  Real curvature(const Real* force, std::int32_t i, std::int32_t j) const PALPATE_RT {
-    return i == j ? far_slope_m_per_N(region[i].far, force[i]) : coupling.c_m_per_N[i * n + j];
-  }
   Real coupling_J(std::int32_t r, Real force_N, Real) const PALPATE_RT { return far_energy_J(own[r], force_N); }
 };
 

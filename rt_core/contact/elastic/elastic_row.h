@@ -24,16 +24,17 @@ struct RoundTip {
 };
 
 struct ElasticRow {
-  SmoothFoot foot;                                 // on the carried surface
-  RoundTip tip;                                    // where the next tick takes it
-  Vec3 placed_w;                                   // its centre here
-  Real along_1_per_m;                              // curvature of the body along a capsule's axis
-  Real travel_m;                                   // how far the carried surface and the tip overlap; < 0 apart
-  Real pull[kMaxSoftModes];                        // d travel / d p
-  Real turn[elastic_layout::kMaxPairs];            // d2 travel / d p2 at a fixed place
-  Real c_m_per_N, c1_m_per_N2, curvature_1_per_m;  // there; see config/elastic/self_terms.h
-  Vec3 rise;                                       // gradient of the tip's height: the normal but for the facets' share
-  Vec3 c_gradient, c1_gradient, curvature_gradient;
+  SmoothFoot foot;                       // on the carried surface
+  RoundTip tip;                          // where the next tick takes it
+  Vec3 placed_w;                         // its centre here
+  Real along_1_per_m;                    // curvature of the body along a capsule's axis
+  Real travel_m;                         // how far the carried surface and the tip overlap; < 0 apart
+  Real pull[kMaxSoftModes];              // d travel / d p
+  Real turn[elastic_layout::kMaxPairs];  // d2 travel / d p2, with the foot's slide
+  Vec3 sweep_w[kMaxSoftModes];           // of the material at the foot, by each amplitude
+  Real c_m_per_N, c1_m_per_N2, curvature_1_per_m, beta_1_per_mN;  // there; config/elastic/self_terms.h, width_law.h
+  Vec3 rise;  // gradient of the tip's height: the normal but for the facets' share
+  Vec3 c_gradient, c1_gradient, curvature_gradient, beta_gradient;
 };
 
 // A capsule's step along its axis, in terms of vertices summed up.

@@ -10,6 +10,9 @@ namespace {
 
 using namespace elastic_layout;
 
+// Of half a capsule's axis.
+constexpr Real kThird = 1.0 / 3;
+
 // A body under load is looked for where it may have come to: this far a surface of amplitudes y stands from its place
 // at rest at most.
 Real most_moved_m(const Model& model, const ElasticWork& work) PALPATE_RT {
@@ -64,10 +67,10 @@ class Finder {
       // Lifted off: looked for from the next tick on.
       if (row.foot.triangle >= 0) return free_depth(row) > 0 ? keep(index, row) : let_lift(point, row, 0);
     }
-    search(tip, point, row);
+    if (!search(tip, point)) return;
+    surface_.place(tip, point.triangle, nearer_m_, row);
     if (row.foot.triangle < 0) {
-      scratch_.status |= Status::kPointsHeld;
-      point.gap_m = point.gap_bound_m = 0;
+      hold(point);
       return;
     }
     if (free_depth(row) > 0) return keep(index, row);
@@ -98,34 +101,48 @@ class Finder {
     return true;
   }
 
-  // From the facet nearest to the centre on the body at rest, as the surface about the last place has moved. A capsule:
-  // from the nearest of three places on its axis, no point of which is farther than a third from one of them.
-  void search(RoundTip& tip, const PointState& point, ElasticRow& row) PALPATE_RT {
-    row.foot.triangle = -1;
+  // The facet nearest to the centre on the body at rest, as the surface about the last place has moved. A capsule: from
+  // the nearest of three places on its axis, no point of which is farther than a third from one of them; first that
+  // where it was last, beside which the others need to look no farther. False: no part of the body is in reach.
+  bool search(RoundTip& tip, PointState& point) PALPATE_RT {
     Vec3 moved;
     if (point.triangle >= 0)
       moved = surface_.displacement(model_.triangle[static_cast<std::size_t>(point.triangle)].vertex[0]);
-    const std::int32_t places = tip.is_ball() ? 1 : 3;
+    tip.come_near(point.closest_w);
+    const std::int32_t places = tip.is_ball() ? 1 : 3, last = tip.along < -kThird ? 0 : tip.along > kThird ? 2 : 1;
     SurfacePoint best;
     Real along = tip.along, bound = kHuge;
     for (std::int32_t i = 0; i < places; ++i) {  // bound: 3
-      if (places > 1) tip.along = (i - 1) * (2.0 / 3);
-      if (scratch_.surface_work >= surface_work_share(model_.params)) return;
-      const SurfacePoint here = closest_surface_point(model_, tip.centre_w() - moved, kHuge, point.triangle);
+      if (places > 1) tip.along = ((i == 0 ? last : i <= last ? i - 1 : i) - 1) * (2 * kThird);
+      if (scratch_.surface_work >= surface_work_share(model_.params)) return hold(point);
+      const Real radius = best.found && best.signed_distance_m > 0 ? best.signed_distance_m : kHuge;
+      const SurfacePoint here = closest_surface_point(model_, tip.centre_w() - moved, radius, point.triangle);
       scratch_.surface_work += here.looked;
       scratch_.work.queries += 1;
       if (here.truncated) scratch_.status |= Status::kTraversalTruncated;
-      if (!here.found) return;
       bound = min_of(bound, here.lower_bound_m);
-      if (i > 0 && !(here.signed_distance_m < best.signed_distance_m)) continue;
+      if (!here.found || (i > 0 && !(here.signed_distance_m < best.signed_distance_m))) continue;
       best = here;
       along = tip.along;
     }
+    if (!best.found) return hold(point);
     tip.along = along;
     tip.come_near(best.closest_w + moved);
-    reach_m_ = bound - tip.margin_m - norm(tip.half_axis_w) / 3 - model_.params.smooth_slack_m -
+    point.triangle = best.triangle;
+    point.closest_w = best.closest_w + moved;
+    point.normal_w = best.normal_w;
+    reach_m_ = bound - tip.margin_m - norm(tip.half_axis_w) * kThird - model_.params.smooth_slack_m -
                (state_.elastic.moved != 0 ? moved_m_ + norm(moved) : 0.0);
-    surface_.place(tip, best.triangle, nearer_m_, row);
+    if (best.signed_distance_m < 0 || !(reach_m_ > nearer_m_ + kSearchMargin_m)) return true;
+    point.gap_m = point.gap_bound_m = reach_m_ - nearer_m_;
+    return false;
+  }
+
+  // Neither apart nor touching: unknown until there is work to spare.
+  bool hold(PointState& point) PALPATE_RT {
+    scratch_.status |= Status::kPointsHeld;
+    point.gap_m = point.gap_bound_m = 0;
+    return false;
   }
 
   void let_lift(PointState& point, const ElasticRow& row, Real bound_m) const PALPATE_RT {

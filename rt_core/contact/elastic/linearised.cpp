@@ -13,9 +13,11 @@ using namespace elastic_layout;
 constexpr Real kLeastStiffness = 1e-2;
 // Of the ball's radius: the longest step of one linearisation.
 constexpr Real kLongestStep = 0.25;
-// Where c1 changes a place's compliance by more than half, the place goes on by its tangent: with c1 < 0 it would turn
-// back, and with any c1 the square of a force stands for little beyond.
-constexpr Real kLeastFarShare = 0.5;
+// How far c1 may change a place's compliance before the place goes on by its tangent. With c1 < 0 it would turn back.
+// With c1 > 0 it would not; but c is what the soft modes leave of the place, and where they leave little the second
+// order of the whole soon is more than it: with half of c, or four times c, a dome under 51 N was 7.8 or 4.1 % too
+// stiff, with this 0.6 % (2026-11-23).
+constexpr Real kMostStiffening = 0.5, kMostSoftening = 20;
 
 // The lower triangle of h becomes the factor of h + shift; false when a pivot falls below the least stiffness.
 bool factor_shifted(const Real* h, Real shift, std::int32_t n, Real* factor) PALPATE_RT {
@@ -98,7 +100,40 @@ CurvatureFactor curvature_factor(const TipLaw& law, const ElasticRow& row) PALPA
   return {value, sum == relative.sum ? -0.5 * value * relative.per_curvature / sum : 0.0};
 }
 
+// A flat punch holds the width of its contact, and what its place takes off its give is one factor of its stiffness: at
+// most four.
+constexpr Real kMostOfPunch = 0.75;
+
 }  // namespace
+
+PlacedLaw placed_law(const TipLaw& law, const ElasticRow& row) PALPATE_RT {
+  PlacedLaw out;
+  const Real rho = max_of(-row.c_m_per_N, 0.0), c_falls = rho > 0 ? -1.0 : 0.0;
+  if (law.half_power == 2) {
+    const Real share = rho * law.coefficient;
+    out.scale = 1.0 / (1.0 - min_of(share, kMostOfPunch));
+    out.scale_by_c = share < kMostOfPunch ? c_falls * law.coefficient * out.scale * out.scale : 0.0;
+    return out;
+  }
+  const CurvatureFactor factor = curvature_factor(law, row);
+  out.scale = factor.value;
+  out.scale_by_curvature = factor.per_curvature;
+  const Real base = out.scale * law.coefficient, square = base * base;
+  if (law.half_power == 4) {
+    out.terms = {0, 0, 2 * rho * square, 5 * rho * rho * square * base};
+    out.by_c = {0, 0, 2 * c_falls * square, 10 * c_falls * rho * square * base};
+    return out;
+  }
+  // beta goes with the tip's own radius on the body, R scale^2.
+  const Real wide = row.tip.margin_m * out.scale * out.scale * square;
+  out.terms = {1.5 * rho * square, 2.625 * rho * rho * square * base, row.beta_1_per_mN * wide, 0};
+  out.by_c = {1.5 * c_falls * square, 5.25 * c_falls * rho * square * base, 0, 0};
+  out.by_beta = {0, 0, wide, 0};
+  const Real inverse = 1.0 / out.scale;
+  out.by_scale = {2 * inverse * out.terms.second_N_per_m2, 3 * inverse * out.terms.between_N_per_m25,
+                  4 * inverse * out.terms.third_N_per_m3, 0};
+  return out;
+}
 
 CarriedSurface look(const Model& model, const State& state, Scratch& scratch, std::int32_t& summed,
                     std::int32_t& shown) PALPATE_RT {
@@ -119,9 +154,10 @@ void let_go(const Model& model, const SoftEnergy& energy, Real* step) PALPATE_RT
 
 FarField own_field(const ElasticRow& row) PALPATE_RT {
   const Real c = row.c_m_per_N, c1 = abs_of(row.c1_m_per_N2);
-  if (!(c > 0)) return {c, 0};
-  // (1 - kLeastFarShare) c of slope to spare, at 2 c1 of it per newton.
-  return {c, row.c1_m_per_N2, c1 * kHuge > c ? (1 - kLeastFarShare) * c / (2 * c1) : kHuge};
+  if (!(c > 0)) return {};  // in the tip's own law
+  // So much of c of slope to spare, at 2 c1 of it per newton.
+  const Real share = row.c1_m_per_N2 > 0 ? kMostSoftening : kMostStiffening;
+  return {c, row.c1_m_per_N2, c1 * kHuge > c ? share * c / (2 * c1) : kHuge};
 }
 
 FarChange far_change(const FarField& far, Real force_N) PALPATE_RT {
@@ -152,13 +188,33 @@ Linearised::Linearised(const Model& model, State& state, Scratch& scratch, Elast
 void Linearised::prepare(const Real* force_N) PALPATE_RT {
   for (std::int32_t r = 0; r < regions(); ++r) {  // bound: kMaxContacts rows
     leading_[r] = &work_.row[deepest_of(rows_of(scratch_, r)).piece];
-    let_stick(model_, state_, work_.y, *leading_[r], work_.rub[r]);
-    if (regions() == 1) break;
-    show_linear_modes(model_, *leading_[r], along_linear_[r]);
-    for (std::int32_t j = 0; j < r; ++j)
-      linear_[r][j] = dot(along_linear_[r], along_linear_[j], model_.params.elastic_linear);
+    let_stick(model_, state_, *leading_[r], work_.rub[r]);
+    if (regions() > 1) link(r);
   }
   factorise(force_N);
+}
+
+// Region r with those before it.
+void Linearised::link(std::int32_t r) PALPATE_RT {
+  const std::int32_t modes = model_.params.elastic_linear;
+  const NearField near = near_field();
+  show_linear_modes(model_, *leading_[r], along_linear_[r]);
+  linear_[r][r] = dot(along_linear_[r], along_linear_[r], modes);
+  cut_1_per_m_[r] = near.cut_1_per_m(linear_[r][r], leading_[r]->c_m_per_N);
+  for (std::int32_t j = 0; j < r; ++j) {  // bound: kMaxRegions kMaxLinearModes
+    const Real shared = dot(along_linear_[r], along_linear_[j], modes);
+    share_[r][j] = linear_[r][r] > 0 ? clamp_to(shared / linear_[r][r], -1.0, 1.0) : 0.0;
+    share_[j][r] = linear_[j][j] > 0 ? clamp_to(shared / linear_[j][j], -1.0, 1.0) : 0.0;
+    linear_[r][j] = shared + near.between(*leading_[r], *leading_[j], 0.5 * (cut_1_per_m_[r] + cut_1_per_m_[j]));
+  }
+}
+
+// c1 is what the modes' travel under one tip does to it; of two tips that hold one another's modes still it is nothing:
+// W = c1 F^2 (F + sum share F_j) / 3. A wall pinched from both sides had a place softer than nothing (2026-11-23).
+Real Linearised::second_order(std::int32_t r, std::int32_t j) const PALPATE_RT {
+  const FarField& own = load_.own[r];
+  const Real force = load_.before_N[r], held = force > own.force_max_N ? own.force_max_N / force : 1.0;
+  return 2.0 / 3 * held * own.c1_m_per_N2 * share_[r][j];
 }
 
 bool Linearised::slips(const Real* force_N) PALPATE_RT {
@@ -196,7 +252,7 @@ void Linearised::gather(const Real* before_N) PALPATE_RT {
   load_.region = load_.tips_of;
   load_.evaluated = &scratch_.work.tip_laws;
   load_.before_N = before_N;
-  load_.coupling = {scratch_.system.compliance_m_per_N, nullptr};
+  load_.coupling = {scratch_.system.compliance_m_per_N, scratch_.system.second_order_m_per_N2};
   for (std::int32_t r = 0; r < load_.n; ++r) {  // bound: kMaxPieces tips
     const RegionRows rows = rows_of(scratch_, r);
     load_.own[r] = own_field(*leading_[r]);
@@ -280,10 +336,27 @@ void Linearised::yield_to_rubs() PALPATE_RT {
   }
 }
 
+// The near field's alone: the linear modes are straight between the vertices, and their slope would step from facet to
+// facet, by 1.3 % of the force on a pinched wall (2026-11-23).
+void Linearised::pull_aside(const Real* force_N) PALPATE_RT {
+  const NearField near = near_field();
+  for (std::int32_t r = 0; r < regions(); ++r) {  // bound: kMaxRegions^2
+    Vec3 slope;
+    for (std::int32_t j = 0; j < regions(); ++j) {
+      if (j != r)
+        slope += force_N[j] * near.slope(*leading_[r], *leading_[j], 0.5 * (cut_1_per_m_[r] + cut_1_per_m_[j]));
+    }
+    load_.pair_aside[r] = slope;
+  }
+}
+
 Real Linearised::linear_energy_J(const Real* force_N) const PALPATE_RT {
   Real energy = 0;
   for (std::int32_t r = 0; r < regions(); ++r)  // bound: kMaxRegions^2 / 2
-    for (std::int32_t j = 0; j < r; ++j) energy += linear_[r][j] * force_N[r] * force_N[j];
+    for (std::int32_t j = 0; j < r; ++j) {
+      const Real second = second_order(r, j) * force_N[r] + second_order(j, r) * force_N[j];
+      energy += (linear_[r][j] + second) * force_N[r] * force_N[j];
+    }
   return energy;
 }
 
@@ -292,9 +365,9 @@ void Linearised::add_tip(Contact& contact, std::int32_t at) PALPATE_RT {
   Tip& tip = load_.tip[at];
   tip = Tip{};
   tip.local = local_law(model_, contact.piece);
-  const CurvatureFactor factor = curvature_factor(*tip.local.tip, row);
-  tip.scale = factor.value;
-  load_.per_curvature[at] = factor.per_curvature;
+  load_.law[at] = placed_law(*tip.local.tip, row);
+  tip.scale = load_.law[at].scale;
+  tip.place = &load_.law[at].terms;
   load_.placed[at] = &row;
   tip.depth_m = contact.depth_m = row.travel_m + dot(row.pull, free_step_, n_);
   contact.position_w = row.foot.foot_w;
@@ -305,6 +378,9 @@ void Linearised::couple(std::int32_t r, std::int32_t j) PALPATE_RT {
   const std::int32_t n = regions();
   Real* c = scratch_.system.compliance_m_per_N;
   c[r * n + j] = c[j * n + r] = linear_[r][j] + dot(leading_[r]->pull, moved_[j], n_);
+  Real* h = scratch_.system.second_order_m_per_N2;
+  h[r * n + j] = second_order(r, j);
+  h[j * n + r] = second_order(j, r);
 }
 
 }  // namespace palpate

@@ -88,14 +88,24 @@ void weigh_contacts(ContactWeight law, const RegionRows& rows) PALPATE_RT;
 // F_j = normal_force_N * normal_w + friction_force_w, the force of the body on the tool. The skeleton of j stands on
 // the anchors as the regions before it displaced them; baked beams stand on the anchors at rest.
 //
-// Sign: the same as F_j, because the weights sum to one: two regions pushed in side by side (equal normals) give a
-// positive component, hence more force on the tool there; opposed regions give a negative one. The caller clamps the
-// normal force at zero. Not reciprocal: the law as a whole is not conservative.
+// The paper adds "force effects", interpolated stresses: magnitudes. So what is added is the size of that component: a
+// contact made later presses the body against the earlier ones, beside it and, through the body, opposite to it. (With
+// the sign of F_j, as until 2026-11-23, a thumb lost all its load to the fingers that came after it.) Not reciprocal:
+// the law as a whole is not conservative.
 //
 // Reads centre_w, normal_w, normal_force_N and friction_force_w of all slots as they are at the call. Nothing is added
 // where there is no interpolation, or a number is not finite. False when some region's skeleton was degenerate: it
 // carries nothing over. Bound: kMaxRegions skeletons and kMaxRegions^2 / 2 sums over the anchors.
 bool add_transferred_forces(const Model& model, const State& state, const std::int32_t* slot, std::int32_t count,
                             Real* added_N) PALPATE_RT;
+
+// The other half of the temporal order: the depth of a region is measured "on top of the deformed shape due to contacts
+// occurred before" it (Cui & Xiao 2008, section IV.C). First born first: the regions before it displace the anchors
+// through their skeletons, the surface between the anchors follows by interpolation, and its motion along the region's
+// normal is the region's shift in scratch.system; inward never farther than max_depth_m, since the ratios' scales have
+// no bound, outward never farther than the region's own depth, since contact is found on the rest surface. Writes the
+// centres of regions, too. Nothing for a single region or without an interpolation. Status: kSkeletonDegenerate. Bound:
+// kMaxRegions skeletons and as many interpolations.
+void shift_in_order(const Model& model, State& state, Scratch& scratch, const PointLaws& laws) PALPATE_RT;
 
 }  // namespace palpate

@@ -64,6 +64,7 @@ void fill_compliance(const Model& model, const State& state, const RowsByRegion&
 // Shift of the surface under each region by all of them, and by one newton of its own.
 void couple(const Model& model, State& state, Scratch& scratch, PointLaws& laws) PALPATE_RT {
   for (std::int32_t r = 0; r < laws.n; ++r) scratch.system.shift_m[r] = 0;  // bound: kMaxRegions
+  if (model.params.coupling_law == CouplingLaw::kTemporalPaper) shift_in_order(model, state, scratch, laws);
   if (!is_coupled(model)) return;
   lean_regions(model, state, laws, scratch.rows);
   fill_compliance(model, state, scratch.rows, scratch.system.compliance_m_per_N);
@@ -77,6 +78,7 @@ void couple(const Model& model, State& state, Scratch& scratch, PointLaws& laws)
 
 void solve(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   sort_rows(state, scratch);
+  scratch.rows.geometric = model.params.equivalent_point == EquivalentPoint::kPaper;
   RegionRows region[kMaxRegions];
   const auto weight = model.params.contact_weight;
   for (std::int32_t r = 0; r < scratch.rows.regions; ++r) {  // bound: kMaxContacts points
@@ -100,7 +102,7 @@ void add_transferred(const Model& model, State& state, Scratch& scratch) PALPATE
     Region& region = state.region[rows.slot[i]];
     const Real own = region.normal_force_N;
     if (!(own > 0)) continue;
-    region.normal_force_N = max_of(own + added[i], 0.0);
+    region.normal_force_N = own + added[i];
     const Real scale = region.normal_force_N / own;
     region.wrench_w = {scale * region.wrench_w.force_N, scale * region.wrench_w.torque_Nm};
     const RegionRows touching = rows_of(scratch, i);
@@ -145,6 +147,7 @@ void add_most_work(const Model& model, const SceneSizes& n, Work& work) noexcept
   work.spring_laws += (1 + PointLaws::kIterations * (kStepHalvings + 1)) * n.contacts;
   work.beams += n.anchors * n.regions;
   work.carried += n.anchors * n.regions * n.regions;
+  if (model.params.coupling_law == CouplingLaw::kTemporalPaper) work.standing += n.anchors * n.regions;
 }
 
 }  // namespace

@@ -115,6 +115,28 @@ Real local_energy_J(const LocalLaw& law, Real e_m) PALPATE_RT {
          edge.tangent_N_per_m * beyond.energy_m2;
 }
 
+LawPoint place_at(const PlaceTerms& place, Real range_m, Real e_m) PALPATE_RT {
+  if (!(e_m > 0)) return {};
+  const Real e = min_of(e_m, range_m), beyond = min_of(e_m, kHuge) - e, root = square_root(e);
+  const Real force =
+      e * e *
+      (place.second_N_per_m2 + place.between_N_per_m25 * root + e * (place.third_N_per_m3 + e * place.fourth_N_per_m4));
+  const Real tangent = e * (2 * place.second_N_per_m2 + 2.5 * place.between_N_per_m25 * root +
+                            e * (3 * place.third_N_per_m3 + 4 * e * place.fourth_N_per_m4));
+  return {force + tangent * beyond, tangent};
+}
+
+Real place_energy_J(const PlaceTerms& place, Real range_m, Real e_m) PALPATE_RT {
+  if (!(e_m > 0)) return 0.0;
+  const Real e = min_of(e_m, range_m), beyond = min_of(e_m, kHuge) - e, root = square_root(e);
+  const Real inside = e * e * e *
+                      (place.second_N_per_m2 / 3 + place.between_N_per_m25 * root / 3.5 +
+                       e * (place.third_N_per_m3 / 4 + e * place.fourth_N_per_m4 / 5));
+  if (!(beyond > 0)) return inside;
+  const LawPoint edge = place_at(place, range_m, e);
+  return inside + (edge.force_N + 0.5 * edge.tangent_N_per_m * beyond) * beyond;
+}
+
 Real interval_energy_J(const LocalLaw& law, std::int32_t interval) PALPATE_RT {
   return energy_from_knot(law, interval, (interval + 1) / kIntervals);
 }
@@ -187,14 +209,15 @@ Real curve_energy_J(const TableLaw& law, const ResponseKnot* curve, const Place&
 
 }  // namespace
 
-TableLaw table_law(const Model& model, std::int32_t triangle, const Real (&weight)[3]) PALPATE_RT {
+TableLaw table_law(const Model& model, std::int32_t piece, std::int32_t triangle, const Real (&weight)[3]) PALPATE_RT {
   TableLaw law;
+  const std::size_t set = static_cast<std::size_t>(model.piece[static_cast<std::size_t>(piece)].curve_set);
   law.knot = model.knot.data();
   law.knots = static_cast<std::int32_t>(model.knot.size());
   law.root = model.params.response_root == 1;
   for (int k = 0; k < 3; ++k) {  // bound: 3
     const std::int32_t vertex = model.triangle[static_cast<std::size_t>(triangle)].vertex[k];
-    const std::int32_t row = model.vertex_response[static_cast<std::size_t>(vertex)];
+    const std::int32_t row = model.vertex_response[set * model.vertex_m.size() + static_cast<std::size_t>(vertex)];
     law.curve[k] = &model.response[static_cast<std::size_t>(row) * model.knot.size()];
     law.weight[k] = weight[k];
   }
@@ -218,6 +241,14 @@ CornerEnergies table_energies(const TableLaw& law, Real e_m) PALPATE_RT {
   if (!(e_m > 0)) return result;
   const Place place = place_of(law, e_m);
   for (int k = 0; k < 3; ++k) result.energy_J[k] = curve_energy_J(law, law.curve[k], place);  // bound: 3
+  return result;
+}
+
+CornerForces table_forces(const TableLaw& law, Real e_m) PALPATE_RT {
+  CornerForces result;
+  if (!(e_m > 0)) return result;
+  const Place place = place_of(law, e_m);
+  for (int k = 0; k < 3; ++k) result.force_N[k] = curve_at(law, law.curve[k], place).force_N;  // bound: 3
   return result;
 }
 

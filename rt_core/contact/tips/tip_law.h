@@ -24,6 +24,16 @@ LocalLaw local_law(const Model& model, std::int32_t piece) PALPATE_RT;
 LawPoint local_at(const LocalLaw& law, Real e_m) PALPATE_RT;
 // Integral of the force from zero: exact for the force above, also with a factor table.
 Real local_energy_J(const LocalLaw& law, Real e_m) PALPATE_RT;
+// What a place adds to the law where its give changes with the width of the contact (an elastic body's; the tick has
+// them from c and beta of the place): force second e^2 + between e^2.5 + third e^3 + fourth e^4, beyond the law's range
+// by its tangent.
+struct PlaceTerms {
+  Real second_N_per_m2 = 0, between_N_per_m25 = 0, third_N_per_m3 = 0, fourth_N_per_m4 = 0;
+};
+LawPoint place_at(const PlaceTerms& place, Real range_m, Real e_m) PALPATE_RT;
+// Integral of that force from zero.
+Real place_energy_J(const PlaceTerms& place, Real range_m, Real e_m) PALPATE_RT;
+
 // Integral of the force over one interval of the factor table: what the baker adds up into FactorKnot::energy_J.
 Real interval_energy_J(const LocalLaw& law, std::int32_t interval) PALPATE_RT;
 
@@ -39,7 +49,8 @@ struct TableLaw {
   bool root = false;  // the knots are roots of depths
 };
 
-TableLaw table_law(const Model& model, std::int32_t triangle, const Real (&weight)[3]) PALPATE_RT;
+// Of the curves of `piece`: the set that is its own.
+TableLaw table_law(const Model& model, std::int32_t piece, std::int32_t triangle, const Real (&weight)[3]) PALPATE_RT;
 
 // sum w_i f_i(e) and its tangent; zero for e <= 0 and NaN. Beyond the last knot the curves continue by their tangents.
 // Bound: one binary search (6 steps).
@@ -49,5 +60,10 @@ struct CornerEnergies {
   Real energy_J[3] = {};
 };
 CornerEnergies table_energies(const TableLaw& law, Real e_m) PALPATE_RT;
+// The three forces f_i(e), which the paper sums along the corners' own normals.
+struct CornerForces {
+  Real force_N[3] = {};
+};
+CornerForces table_forces(const TableLaw& law, Real e_m) PALPATE_RT;
 
 }  // namespace palpate

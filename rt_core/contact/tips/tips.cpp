@@ -33,6 +33,19 @@ Vec3 sideways_force(const Tip& tip, const SurfaceFoot& foot, Real e) PALPATE_RT 
            corner.energy_J[2] * foot.gradient_per_m[2]);
 }
 
+// As printed (Mahvash & Hayward 2002, eq. 3): F = sum n_i f_i(e) U_i, each curve along its own vertex's normal. What
+// that is beside the force along the smooth normal, whose size the curves' mean has.
+Vec3 printed_aside(const Model& model, const Tip& tip, const SurfaceFoot& foot, Vec3 normal_w, Real e) PALPATE_RT {
+  const CornerForces corner = table_forces(tip.table, e);
+  const CornerNormals& at = model.corner_normal[static_cast<std::size_t>(foot.triangle)];
+  Vec3 sum;
+  for (int k = 0; k < 3; ++k) {  // bound: 3
+    const Real share_N = tip.table.weight[k] * corner.force_N[k];
+    sum += share_N * (at.normal[k] - normal_w);
+  }
+  return sum;
+}
+
 // The tips in contact, by region, and what accounting asks of them. Forces act at the tips' centres, which are fixed to
 // the tool: as the field depends on the centres alone, it is then conservative in rotation too. (The line of action of
 // the normal force passes through the foot.) The loader refuses more tool points than pieces for these laws.
@@ -40,6 +53,8 @@ struct TipLoad : TipLaws {
   static constexpr bool kPullsAside = true;
   Tip tip[kMaxPieces];
   const SurfaceFoot* foot[kMaxPieces];
+  const Model* model;
+  const Scratch* scratch;
   TipRegion tips_of[kMaxRegions];
 
   Real softening(std::int32_t r, Real shift_m) const PALPATE_RT {
@@ -50,8 +65,13 @@ struct TipLoad : TipLaws {
     const Tip& one = region[r].tip[k];
     const SurfaceFoot& stands = *foot[region[r].tip + k - tip];
     const Real e = one.depth_m - shift_m;
-    return {tip_at(one, e), tip_energy_J(one, e), stands.centre_w,
-            one.tabulated ? sideways_force(one, stands, e) : Vec3{}, beyond_range(one, e)};
+    return {tip_at(one, e), tip_energy_J(one, e), stands.centre_w, one.tabulated ? aside(r, k, one, stands, e) : Vec3{},
+            beyond_range(one, e)};
+  }
+  Vec3 aside(std::int32_t r, std::int32_t k, const Tip& one, const SurfaceFoot& stands, Real e) const PALPATE_RT {
+    if (model->params.table_interpolation == TableInterpolation::kEnergy) return sideways_force(one, stands, e);
+    const RowsByRegion& rows = scratch->rows;
+    return printed_aside(*model, one, stands, scratch->contact[rows.index[rows.first[r] + k]].normal_w, e);
   }
   Real coupling_J(std::int32_t r, Real force_N, Real) const PALPATE_RT { return far_energy_J(region[r].far, force_N); }
 };
@@ -68,7 +88,7 @@ Tip make_tip(const Model& model, const SurfaceFoot& foot, const Contact& contact
   tip.depth_m = contact.depth_m;
   tip.tabulated = model.params.response_law != ResponseLaw::kTip;
   if (tip.tabulated) {
-    tip.table = table_law(model, foot.triangle, foot.weight);
+    tip.table = table_law(model, contact.piece, foot.triangle, foot.weight);
   } else {
     tip.local = local_law(model, contact.piece);
   }
@@ -77,6 +97,8 @@ Tip make_tip(const Model& model, const SurfaceFoot& foot, const Contact& contact
 
 void gather(const Model& model, Scratch& scratch, TipLoad& load) PALPATE_RT {
   std::int32_t next = 0;
+  load.model = &model;
+  load.scratch = &scratch;
   load.n = scratch.rows.regions;
   load.region = load.tips_of;
   load.evaluated = &scratch.work.tip_laws;
@@ -171,7 +193,10 @@ ImageResult check_tables(const Model& model) noexcept {
     if (first ? r.force_N != 0 || (root && r.slope != 0) : r.force_N < model.response[i - 1].force_N)
       return broken("response", i);
   }
-  if (model.vertex_response.size() != model.vertex_m.size()) return broken("vertex_response", 0);
+  const std::size_t sets = model.vertex_response.size() / model.vertex_m.size();
+  if (sets == 0 || model.vertex_response.size() != sets * model.vertex_m.size()) return broken("vertex_response", 0);
+  for (std::size_t i = 0; i < model.piece.size(); ++i)
+    if (!in_range(model.piece[i].curve_set, sets)) return broken("piece.curve_set", i);
   for (std::size_t i = 0; i < model.vertex_response.size(); ++i)
     if (!in_range(model.vertex_response[i], model.response.size() / knots)) return broken("vertex_response", i);
   return {};

@@ -23,11 +23,16 @@ Real h_of(const TipCoupling& coupling, std::int32_t i, std::int32_t j, std::int3
 LawPoint tip_at(const Tip& tip, Real e_m) PALPATE_RT {
   if (tip.tabulated) return table_at(tip.table, e_m);
   const LawPoint point = local_at(tip.local, e_m);
-  return {tip.scale * point.force_N, tip.scale * point.tangent_N_per_m};
+  if (tip.place == nullptr) return {tip.scale * point.force_N, tip.scale * point.tangent_N_per_m};
+  const LawPoint place = place_at(*tip.place, tip.local.tip->depth_max_m, e_m);
+  return {tip.scale * point.force_N + place.force_N, tip.scale * point.tangent_N_per_m + place.tangent_N_per_m};
 }
 
 Real tip_energy_J(const Tip& tip, Real e_m) PALPATE_RT {
-  if (!tip.tabulated) return tip.scale * local_energy_J(tip.local, e_m);
+  if (!tip.tabulated) {
+    const Real energy = tip.scale * local_energy_J(tip.local, e_m);
+    return tip.place == nullptr ? energy : energy + place_energy_J(*tip.place, tip.local.tip->depth_max_m, e_m);
+  }
   const CornerEnergies corner = table_energies(tip.table, e_m);
   return tip.table.weight[0] * corner.energy_J[0] + tip.table.weight[1] * corner.energy_J[1] +
          tip.table.weight[2] * corner.energy_J[2];

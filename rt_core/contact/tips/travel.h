@@ -17,8 +17,9 @@ struct Tip {
   LocalLaw local;
   TableLaw table;
   bool tabulated = false;
-  Real depth_m = 0;  // travel
-  Real scale = 1;    // of the local law: a curved body's place is softer or stiffer
+  Real depth_m = 0;                   // travel
+  Real scale = 1;                     // of the local law: a curved body's place is softer or stiffer
+  const PlaceTerms* place = nullptr;  // beside the scaled law
 };
 
 LawPoint tip_at(const Tip& tip, Real e_m) PALPATE_RT;

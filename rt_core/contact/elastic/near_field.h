@@ -1,0 +1,48 @@
+// What tips on one body do to one another where its linear modes are too coarse to tell.
+#pragma once
+
+#include "rt_core/contact/elastic/elastic_row.h"
+
+namespace palpate {
+
+// What one tip does to the surface under another beyond the linear modes, m/N. Those end at a length l, below which the
+// body is a half space: A (1/r - 1/sqrt(r^2 + l^2)), A = (1 - nu^2) / (pi E), which has 1/r near and falls off like
+// r^-3 beyond l; its Fourier transform is positive. Under a tip itself half space and modes give what half space and c
+// do:
+//   sum phi^2 / lambda - A / l = c
+// says how long l is there. Opposite faces of a wall push one another out (the normals' cosine); faces across a gap do
+// not know of one another.
+struct NearField {
+  Real scale_m2_per_N;
+
+  // 1 / l at a place.
+  Real cut_1_per_m(Real modes_m_per_N, Real c_m_per_N) const PALPATE_RT {
+    return max_of(modes_m_per_N - c_m_per_N, 0.0) / scale_m2_per_N;
+  }
+  Real between(const ElasticRow& a, const ElasticRow& b, Real cut_1_per_m) const PALPATE_RT {
+    const Vec3 apart = b.foot.foot_w - a.foot.foot_w;
+    // Two tips at one place: the mean of 1/r over a contact a fifth of their radii wide is finite.
+    const Real core = kCore * (a.tip.margin_m + b.tip.margin_m), square = squared_norm(apart) + core * core;
+    Real share = dot(a.foot.normal_w, b.foot.normal_w);
+    if (share < 0) {
+      const Real in = -dot(apart, a.foot.normal_w), out = dot(apart, b.foot.normal_w);
+      share *= in > 0 && out > 0 ? in * out / square : 0.0;
+    }
+    const Real r = square_root(square), by_cut = r * cut_1_per_m;
+    return scale_m2_per_N * share / r * (1 - by_cut / square_root(by_cut * by_cut + 1));
+  }
+  // Its gradient as a's place moves, the normals' turn left out.
+  Vec3 slope(const ElasticRow& a, const ElasticRow& b, Real cut_1_per_m) const PALPATE_RT {
+    const Vec3 apart = b.foot.foot_w - a.foot.foot_w;
+    const Real core = kCore * (a.tip.margin_m + b.tip.margin_m), square = squared_norm(apart) + core * core;
+    const Real by_cut = square_root(square) * cut_1_per_m, root = square_root(by_cut * by_cut + 1);
+    // K = s / r - s c / sqrt(r^2 c^2 + 1): dK/dr = -K / r (1 + x (x + root) / root^2) with x = r c
+    const Real value = between(a, b, cut_1_per_m);
+    return (value / square * (1 + by_cut * (by_cut + root) / (root * root))) * tangential_part(apart, a.foot.normal_w);
+  }
+
+ private:
+  static constexpr Real kCore = 0.1;
+};
+
+}  // namespace palpate

@@ -1,0 +1,48 @@
+#include "sim_host/bake/certificate_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "rt_core/certificate.h"
+
+namespace palpate {
+
+namespace {
+
+std::string force_text(std::span<const CheckedPlace> places) {
+  if (places.empty())
+    return "force   not certified: no press was held against finite elements (error_target, or "
+           "body.elastic.check_presses)\n";
+  const auto [shallow, deep] = std::ranges::minmax(places, {}, &CheckedPlace::depth_m);
+  const CheckedPlace& worst = *std::ranges::max_element(places, {}, &CheckedPlace::worst_error);
+  return fmt::format(
+      "force   error at most {:.1f} % of large-strain elements: a ball of {:.4g} mm at {} places, {:.3g} to {:.3g} mm "
+      "deep;\n        worst at ({:.4g}, {:.4g}, {:.4g}) mm, {:.4g} N by elements, {:.4g} N baked at {:.3g} mm\n",
+      100 * worst.worst_error, 1e3 * worst.radius_m, places.size(), 1e3 * shallow.depth_m, 1e3 * deep.depth_m,
+      1e3 * worst.place_m.x, 1e3 * worst.place_m.y, 1e3 * worst.place_m.z, worst.reference_N, worst.force_N,
+      1e3 * worst.depth_m);
+}
+
+std::string tick_text(const TickCertificate* tick) {
+  if (tick == nullptr) return "tick    not certified: `palpate certify` looks for the dearest\n";
+  return fmt::format(
+      "tick    dearest {:.0f} instructions in {:.0f} ticks of a search; touches {:.0f} KiB of the image, {:.0f} of "
+      "State, {:.0f} of Scratch\n",
+      tick->tick_instructions, tick->ticks, tick->image_bytes / 1024, tick->state_bytes / 1024,
+      tick->scratch_bytes / 1024);
+}
+
+}  // namespace
+
+bool is_certified(std::span<const std::byte> file) {
+  const Certificate certificate = certificate_of(file);
+  return !certificate.place.empty() || certificate.tick != nullptr;
+}
+
+std::string certificate_text(std::span<const std::byte> file) {
+  const Certificate certificate = certificate_of(file);
+  return force_text(certificate.place) + tick_text(certificate.tick);
+}
+
+}  // namespace palpate

@@ -1,0 +1,75 @@
+// `palpate certify`: looks for the dearest tick of a scene and writes what it found into the image.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+
+#include "config/bake/image_writer.h"
+#include "config/scene/progress.h"
+#include "sim_host/bake/scene_model.h"
+#include "sim_host/certify/tick_certify.h"
+#include "sim_host/cli.h"
+#include "sim_host/overlay_options.h"
+
+namespace palpate {
+
+namespace {
+
+struct CertifyTicksOptions {
+  std::string scene, output;
+  SceneOverlays overlays;
+  TickSearchOptions search;
+};
+
+int run_certify_ticks(CertifyTicksOptions& options) {
+  const SceneModel scene(options.scene, options.overlays);
+  const Progress bar = isatty(STDERR_FILENO) != 0 ? progress_bar(stderr) : Progress{};
+  if (bar) options.search.progress = [&](double share) { bar("ticks", std::min(share, 1.0)); };
+  std::vector<TimedPose> path;
+  double hand_N_per_m = 0;
+  if (scene.scene() && !scene.scene()->path.point.empty()) {
+    path = scripted_poses(scene.scene()->path, scene.model().params.period_s);
+    hand_N_per_m = scene.scene()->path.hand_stiffness_N_per_m;
+  }
+  const Certified certified = certify_ticks(scene.bytes(), path, hand_N_per_m, options.search);
+  fmt::print("{}", certified_text(scene.model(), certified));
+  const std::string output =
+      options.output.empty() ? std::filesystem::path(options.scene).stem().string() + ".pal" : options.output;
+  std::string error;
+  if (!save_image(output, with_certificate(scene.bytes(), certified.certificate), error))
+    throw std::runtime_error(output + ": " + error);
+  fmt::print("certified {} -> {}\n", options.scene, output);
+  if (certified.search.beyond_stated == 0) return kExitOk;
+  fmt::print("{} ticks took more than the image states; bake the scene anew, and report it if that does not help\n",
+             certified.search.beyond_stated);
+  return kExitFailed;
+}
+
+}  // namespace
+
+void add_certify_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<CertifyTicksOptions>();
+  CLI::App* command =
+      app.add_subcommand("certify", "Look for the dearest tick of a scene; write what was found into its image");
+  command->add_option("SCENE", options->scene, "scene (.toml) or image (.pal)")->required();
+  add_overlay_options(*command, options->overlays);
+  command->add_option("-o,--output", options->output, "image to write; default: the scene's name with .pal, here");
+  command->add_option("--ticks", options->search.ticks, "ticks to look at; half of them climb from the dearest found")
+      ->capture_default_str()
+      ->check(CLI::Range(std::int64_t{100}, std::int64_t{1'000'000'000}));
+  command->add_option("--seed", options->search.seed, "of the search: the same seed finds the same")
+      ->capture_default_str();
+  command->footer(
+      "Exits with 1 when a tick took more than the image states, by which a controller judges whether it fits.\n"
+      "The image itself stays as it is: recordings that name it still do.\n"
+      "Examples:\n"
+      "  palpate certify config/scenes/ring.toml -o ring.pal\n"
+      "  palpate certify mallet.pal --ticks 10000000 --seed 7 -o mallet.pal");
+  command->callback([options, &exit_code] { exit_code = run_certify_ticks(*options); });
+}
+
+}  // namespace palpate
