@@ -1,9 +1,8 @@
 #include "config/bake/image_rules.h"
 
 #include <cstring>
-#include <memory>
-#include <new>
 
+#include "config/bake/opened_image.h"
 #include "config/scene/config_error.h"
 #include "config/tool/piece_card.h"
 #include "rt_core/tool/shapes.h"
@@ -72,12 +71,7 @@ void refuse(const SceneDesc& scene, const ImageResult& result) {
 }
 
 void check_bytes(const SceneDesc& scene, std::span<const std::byte> bytes) {
-  const auto release = [](std::byte* p) { ::operator delete (p, std::align_val_t{kImageAlignment}); };
-  const std::unique_ptr<std::byte, decltype(release)> aligned(
-      static_cast<std::byte*>(::operator new (bytes.size(), std::align_val_t{kImageAlignment})), release);
-  std::memcpy(aligned.get(), bytes.data(), bytes.size());
-  Model model;
-  refuse(scene, open_image({aligned.get(), bytes.size()}, model));
+  refuse(scene, OpenedImage(bytes).result());
 }
 
 }  // namespace palpate

@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
-#include <memory>
-#include <new>
 
 #include "config/bake/certificate_writer.h"
+#include "config/bake/opened_image.h"
 #include "config/scene/config_error.h"
 #include "config/scene/schema.h"
 #include "rt_core/image.h"
@@ -46,27 +44,6 @@ constexpr const char* kElasticLeavesOut =
     "errors of the elements away from the presses, two tips at once, friction along the surface";
 
 std::string per_cent(double share) { return number_text(std::round(1e3 * share) / 10) + " %"; }
-
-// An image's bytes where open_image wants them.
-class OpenedImage {
- public:
-  explicit OpenedImage(const std::vector<std::byte>& bytes)
-      : at_(static_cast<std::byte*>(std::aligned_alloc(
-            kImageAlignment, (bytes.size() + kImageAlignment - 1) / kImageAlignment * kImageAlignment))) {
-    if (at_ == nullptr) throw std::bad_alloc();
-    std::memcpy(at_.get(), bytes.data(), bytes.size());
-    if (open_image({at_.get(), bytes.size()}, model_).error != ImageError::kNone)
-      throw ConfigError("the image of a model that error_target tried does not open");
-  }
-  const Model& model() const { return model_; }
-
- private:
-  struct Release {
-    void operator()(std::byte* p) const { std::free(p); }
-  };
-  std::unique_ptr<std::byte, Release> at_;
-  Model model_;
-};
 
 // The scene with the check presses' ball as its only tool, without friction.
 SceneDesc with_ball_alone(const SceneDesc& scene, double radius_m) {
@@ -143,6 +120,7 @@ class ModelChoice {
     try {
       const CompileResult ball = compile_stated(with_ball_alone(scene, presses[0].radius_m), run_, {});
       const OpenedImage image(ball.bytes);
+      if (image.result().error != ImageError::kNone) throw ConfigError("its image does not open");
       for (const CheckPress& press : presses)
         if (!press.reference_N.empty()) places.push_back(checked_place(press, press_model(image.model(), press)));
       double worst = 0;

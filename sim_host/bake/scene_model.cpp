@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cstring>
 #include <stdexcept>
 
 #include "config/bake/compile.h"
@@ -24,21 +23,16 @@ SceneModel::SceneModel(const std::string& path, const SceneOverlays& overlays) {
 
 SceneModel::SceneModel(const SceneDesc& scene) : scene_(scene) { compile(); }
 
-std::span<const std::byte> SceneModel::bytes() const {
-  return file_ ? file_->bytes() : std::span(reinterpret_cast<const std::byte*>(blocks_.data()), size_);
-}
+std::span<const std::byte> SceneModel::bytes() const { return file_ ? file_->bytes() : opened_->bytes(); }
 
 void SceneModel::compile() {
-  const CompileResult compiled = compile_scene(*scene_);
-  size_ = compiled.bytes.size();
-  blocks_.resize((size_ + kImageAlignment - 1) / kImageAlignment);
-  std::memcpy(blocks_.data(), compiled.bytes.data(), size_);
-  const ImageResult result = open_image(bytes(), model_);
+  opened_ = std::make_unique<OpenedImage>(compile_scene(*scene_).bytes);
+  const ImageResult& result = opened_->result();
   if (result.error != ImageError::kNone) {
     throw std::runtime_error(fmt::format("{}: the compiled scene fails its own check: {}: {}", scene_->name,
                                          result.field, describe(result.error)));
   }
-  add_default_path(*scene_, model_);
+  add_default_path(*scene_, opened_->model());
 }
 
 }  // namespace palpate

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "config/bake/opened_image.h"
 #include "config/scene/scene.h"
 #include "sim_host/bake/image_file.h"
 
@@ -18,7 +19,7 @@ class SceneModel {
   // Throws ConfigError or std::runtime_error, naming the file and what is wrong with it. Overlays are for a .toml only.
   explicit SceneModel(const std::string& path, const SceneOverlays& overlays = {});
   explicit SceneModel(const SceneDesc& scene);
-  const Model& model() const { return file_ ? file_->model() : model_; }
+  const Model& model() const { return file_ ? file_->model() : opened_->model(); }
   // The whole image.
   std::span<const std::byte> bytes() const;
   // The description, known only for a .toml.
@@ -26,14 +27,9 @@ class SceneModel {
 
  private:
   void compile();
-  struct alignas(kImageAlignment) Block {
-    std::byte bytes[kImageAlignment];
-  };
   std::optional<SceneDesc> scene_;
-  std::vector<Block> blocks_;
-  std::size_t size_ = 0;  // of the image in them
-  std::unique_ptr<ImageFile> file_;
-  Model model_;
+  std::unique_ptr<ImageFile> file_;      // one of
+  std::unique_ptr<OpenedImage> opened_;  // the two
 };
 
 }  // namespace palpate

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "config/bake/compile.h"
+#include "config/bake/opened_image.h"
 #include "config/beams/beam_rows.h"
 #include "config/scene/config_error.h"
 #include "rt_core/image.h"
@@ -105,16 +106,10 @@ TEST(BeamCurves, DegenerateChords) {
 // The baked surface of a scene, opened.
 struct Baked {
   CompileResult result;
-  std::vector<std::byte> aligned;
-  Model model;
-  std::byte* start = nullptr;
-  explicit Baked(const SceneDesc& scene)
-      : result(compile_scene(scene)), aligned(result.bytes.size() + kImageAlignment) {
-    const auto address = reinterpret_cast<std::uintptr_t>(aligned.data());
-    start = aligned.data() + (kImageAlignment - address % kImageAlignment) % kImageAlignment;
-    std::copy(result.bytes.begin(), result.bytes.end(), start);
-    const ImageResult opened = open_image({start, result.bytes.size()}, model);
-    EXPECT_EQ(opened.error, ImageError::kNone) << opened.field;
+  OpenedImage image;
+  const Model& model = image.model();
+  explicit Baked(const SceneDesc& scene) : result(compile_scene(scene)), image(result.bytes) {
+    EXPECT_EQ(image.result().error, ImageError::kNone) << image.result().field;
   }
   Baked(const Baked&) = delete;
   Baked& operator=(const Baked&) = delete;

@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "config/bake/compile.h"
+#include "config/bake/opened_image.h"
 #include "config/scene/config_error.h"
 #include "rt_core/image.h"
 #include "tests/config/generated_docs.h"
@@ -20,23 +21,6 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::StartsWith;
-
-struct Free {
-  void operator()(void* p) const { std::free(p); }
-};
-// An image in memory aligned as open_image asks.
-class Opened {
- public:
-  explicit Opened(const std::vector<std::byte>& bytes) : memory_(std::aligned_alloc(kImageAlignment, bytes.size())) {
-    std::memcpy(memory_.get(), bytes.data(), bytes.size());
-    result = open_image({static_cast<const std::byte*>(memory_.get()), bytes.size()}, model);
-  }
-  Model model;
-  ImageResult result;
-
- private:
-  std::unique_ptr<void, Free> memory_;
-};
 
 std::vector<std::string> shipped_scenes() {
   std::vector<std::string> scenes;
@@ -71,9 +55,9 @@ TEST(Compile, ShippedScenesBakeOpenAndFit) {
   for (const std::string& path : scenes) {
     const SceneDesc scene = load_scene(path);
     const CompileResult baked = compile_scene(scene);
-    const Opened image(baked.bytes);
-    EXPECT_EQ(image.result.error, ImageError::kNone) << path << ": " << image.result.field;
-    EXPECT_EQ(std::filesystem::path(path).stem().string(), image.model.name);
+    const OpenedImage image(baked.bytes);
+    EXPECT_EQ(image.result().error, ImageError::kNone) << path << ": " << image.result().field;
+    EXPECT_EQ(std::filesystem::path(path).stem().string(), image.model().name);
     EXPECT_EQ(baked.report.warnings, weak_keys(scene)) << path;
     const bool skeleton = scene.contact.backend == Backend::kResponse && scene.skeleton.law != SkeletonLaw::kNone;
     EXPECT_EQ(baked.report.fixed_anchors >= 1, skeleton) << path;
@@ -137,9 +121,9 @@ speed_max_m_per_s = 2
 turn_max_rad_per_s = 12
 )");
   scene.coupling.radius_m = 0.004;  // stated in a file it would have no effect with this law
-  const Opened image(compile_scene(scene).bytes);
-  ASSERT_EQ(image.result.error, ImageError::kNone) << image.result.field;
-  const ModelParams& p = image.model.params;
+  const OpenedImage image(compile_scene(scene).bytes);
+  ASSERT_EQ(image.result().error, ImageError::kNone) << image.result().field;
+  const ModelParams& p = image.model().params;
   EXPECT_EQ(p.contact_weight, ContactWeight::kArea);
   EXPECT_EQ(p.friction_law, FrictionLaw::kReturnMap);
   EXPECT_EQ(p.tangential_law, TangentialLaw::kRadial);
@@ -175,18 +159,18 @@ turn_max_rad_per_s = 12
   EXPECT_DOUBLE_EQ(p.ramp_out_s, 0.1);
   EXPECT_DOUBLE_EQ(p.speed_max_m_per_s, 2);
   EXPECT_DOUBLE_EQ(p.turn_max_rad_per_s, 12);
-  EXPECT_EQ(image.model.sizes.n_rbf, 10);
-  EXPECT_EQ(image.model.sizes.n_patch, image.model.sizes.n_vertex);
+  EXPECT_EQ(image.model().sizes.n_rbf, 10);
+  EXPECT_EQ(image.model().sizes.n_patch, image.model().sizes.n_vertex);
 }
 
 // S = V / sum of lengths: for the 40 x 30 x 25 mm ellipsoid the lengths sum to 190 mm; s = pi r (1 - nu^2) / 2.
 TEST(Compile, SectionsShareTheVolume) {
   const CompileResult baked = compile_scene(small("[body.material]\npoisson_ratio = 0.47\n"));
-  const Opened image(baked.bytes);
-  ASSERT_EQ(image.model.anchor.size(), 6u);
+  const OpenedImage image(baked.bytes);
+  ASSERT_EQ(image.model().anchor.size(), 6u);
   const double area = baked.report.volume_m3 / 0.190;
   int fixed = 0;
-  for (const Anchor& a : image.model.anchor) {
+  for (const Anchor& a : image.model().anchor) {
     EXPECT_NEAR(a.section_area_m2, area, 1e-6 * area);
     EXPECT_NEAR(a.section_radius_m, std::sqrt(area / kPi), 1e-6 * a.section_radius_m);
     EXPECT_NEAR(a.section_inertia_m4, kPi / 4 * std::pow(a.section_radius_m, 4), 1e-12 * a.section_inertia_m4);
@@ -199,16 +183,16 @@ TEST(Compile, SectionsShareTheVolume) {
 
 // Released beams at 6 mm and nu = 0.47: s = 7.3428445 mm.
 TEST(Compile, ReleaseLengthOfASixMillimetreBeam) {
-  const Opened image(
+  const OpenedImage image(
       compile_scene(small("[body.material]\npoisson_ratio = 0.47\n[skeleton]\nsection_radius_mm = 6\n")).bytes);
-  EXPECT_NEAR(image.model.anchor[0].release_length_m, 7.3428445e-3, 1e-10);
+  EXPECT_NEAR(image.model().anchor[0].release_length_m, 7.3428445e-3, 1e-10);
 }
 
 TEST(Compile, WeightsAreAreasOverTheReference) {
-  const Opened automatic(compile_scene(small()).bytes);
-  EXPECT_DOUBLE_EQ(automatic.model.tool_point[0].weight, 1.0);
-  const Opened stated(compile_scene(small("[contact]\nreference_area_mm2 = 100\n")).bytes);
-  EXPECT_NEAR(stated.model.tool_point[0].weight, 4 * kPi * 64 / 100, 1e-9);
+  const OpenedImage automatic(compile_scene(small()).bytes);
+  EXPECT_DOUBLE_EQ(automatic.model().tool_point[0].weight, 1.0);
+  const OpenedImage stated(compile_scene(small("[contact]\nreference_area_mm2 = 100\n")).bytes);
+  EXPECT_NEAR(stated.model().tool_point[0].weight, 4 * kPi * 64 / 100, 1e-9);
 }
 
 TEST(Compile, CouplingIsBoundedByTheDevice) {
@@ -236,14 +220,14 @@ TEST(Compile, ThePapersPoissonRatioIsReplacedLoudly) {
   const CompileResult baked =
       compile_scene(small("[body.material]\npoisson_ratio = 1.0\nlegacy_paper_material = true\n"));
   EXPECT_THAT(baked.report.warnings, testing::Contains(HasSubstr("0.47 is used")));
-  EXPECT_DOUBLE_EQ(Opened(baked.bytes).model.params.poisson_ratio, 0.47);
+  EXPECT_DOUBLE_EQ(OpenedImage(baked.bytes).model().params.poisson_ratio, 0.47);
 }
 
 TEST(Compile, WithoutASkeletonThereAreNoAnchors) {
-  const Opened image(compile_scene(small("[skeleton]\nlaw = \"none\"\n")).bytes);
-  ASSERT_EQ(image.result.error, ImageError::kNone) << image.result.field;
-  EXPECT_TRUE(image.model.anchor.empty());
-  EXPECT_EQ(image.model.sizes.n_rbf, 0);
+  const OpenedImage image(compile_scene(small("[skeleton]\nlaw = \"none\"\n")).bytes);
+  ASSERT_EQ(image.result().error, ImageError::kNone) << image.result().field;
+  EXPECT_TRUE(image.model().anchor.empty());
+  EXPECT_EQ(image.model().sizes.n_rbf, 0);
 }
 
 TEST(Compile, EveryShapeBakes) {
@@ -252,7 +236,7 @@ TEST(Compile, EveryShapeBakes) {
     const std::string text = std::string("name = \"a\"\n[[tool.piece]]\nshape = \"sphere\"\nradius_mm = 8\n[body]\n") +
                              body + "\ntriangles = 2000\n";
     const CompileResult baked = compile_scene(parse_scene(text, "s.toml"));
-    EXPECT_EQ(Opened(baked.bytes).result.error, ImageError::kNone) << body;
+    EXPECT_EQ(OpenedImage(baked.bytes).result().error, ImageError::kNone) << body;
     EXPECT_GE(baked.report.anchors, 6) << body;
   }
 }
@@ -266,10 +250,10 @@ TEST(Compile, MeshFilesAreRelativeToTheScene) {
   const std::string text =
       "name = \"cube\"\n[[tool.piece]]\nshape = \"sphere\"\nradius_mm = 8\n[body]\nshape = \"mesh\"\nmesh = \"";
   const CompileResult baked = compile_scene(parse_scene(text + "cube.obj\"\n", (folder / "scene.toml").string()));
-  const Opened image(baked.bytes);
-  EXPECT_EQ(image.result.error, ImageError::kNone);
+  const OpenedImage image(baked.bytes);
+  EXPECT_EQ(image.result().error, ImageError::kNone);
   EXPECT_NEAR(baked.report.volume_m3, 8e-6, 1e-12);
-  EXPECT_EQ(image.model.anchor.size(), 8u);
+  EXPECT_EQ(image.model().anchor.size(), 8u);
   try {
     compile_scene(parse_scene(text + "none.obj\"\n", (folder / "scene.toml").string()));
     FAIL();

@@ -1,13 +1,12 @@
 // A scene baked from text in memory and ticked by hand: no file, no process, no device.
 #pragma once
 
-#include <cstring>
 #include <memory>
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 #include "config/bake/compile.h"
+#include "config/bake/opened_image.h"
 #include "rt_core/image.h"
 #include "rt_core/tick.h"
 #include "sim_host/tick_memory.h"
@@ -16,30 +15,22 @@ namespace palpate::test {
 
 class BakedScene {
  public:
-  explicit BakedScene(const SceneDesc& scene) {
-    CompileResult baked = compile_scene(scene);
-    report = baked.report;
-    blocks_.resize((baked.bytes.size() + kImageAlignment - 1) / kImageAlignment);
-    std::memcpy(static_cast<void*>(blocks_.data()), baked.bytes.data(), baked.bytes.size());
-    const ImageResult opened =
-        open_image({reinterpret_cast<const std::byte*>(blocks_.data()), baked.bytes.size()}, model_);
-    if (opened.error != ImageError::kNone) throw std::runtime_error(std::string("image: ") + opened.field);
-  }
+  explicit BakedScene(const SceneDesc& scene) : BakedScene(compile_scene(scene)) {}
   explicit BakedScene(const std::string& text) : BakedScene(parse_scene(text, "test.toml")) {}
   BakedScene(const BakedScene&) = delete;
   BakedScene& operator=(const BakedScene&) = delete;
-  const Model& model() const { return model_; }
+  const Model& model() const { return image_.model(); }
   // For tests that change a parameter after baking.
-  Model& model() { return model_; }
+  Model& model() { return image_.model(); }
 
   CompileReport report;
 
  private:
-  struct alignas(kImageAlignment) Block {
-    std::byte bytes[kImageAlignment];
-  };
-  std::vector<Block> blocks_;
-  Model model_;
+  explicit BakedScene(const CompileResult& baked) : report(baked.report), image_(baked.bytes) {
+    if (image_.result().error != ImageError::kNone)
+      throw std::runtime_error(std::string("image: ") + image_.result().field);
+  }
+  OpenedImage image_;
 };
 
 // Ticks a model with the tool held at given poses (Drive::kTool).
