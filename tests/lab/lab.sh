@@ -89,6 +89,8 @@ verdict() { # SCENARIO[:SECONDS] [SECONDS TAKEN]: reads and judges the results
   printf '%-7s %-28s %7s ticks  missed %s  wake-up max %s us (cyclictest %s)  sent max %s us  page faults %s  heap calls %s%s%s\n' \
     "$([ -z "$problems" ] && echo passed || echo FAILED)" "$1" "${ticks:--}" "${missed:--}" "${wake:--}" "${kernel:--}" \
     "${sent:--}" "${faults:--}" "${heap:--}" "${2:+  [$2 s]}" "${problems:+  $problems}" | tee "$results/$folder/verdict.txt"
+  # Where the folder is gone afterwards, as after a run in CI, this is all there is of it.
+  [ -z "$problems" ] || tail -n 8 "$results/$folder/log.txt" 2> /dev/null | sed 's/^/  | /'
 }
 
 default_seconds() { # SCENARIO
