@@ -33,6 +33,7 @@ void add_recover_command(CLI::App& app, int& exit_code);
 void add_latency_command(CLI::App& app, int& exit_code);
 void add_view_command(CLI::App& app, int& exit_code);
 void add_picture_command(CLI::App& app, int& exit_code);
+void add_movie_command(CLI::App& app, int& exit_code);
 void add_grasp_command(CLI::App& app, int& exit_code);
 void add_feel_command(CLI::App& app, int& exit_code);
 void add_compare_command(CLI::App& app, int& exit_code);

@@ -57,6 +57,7 @@ int main(int argc, char** argv) {
   palpate::add_recover_command(app, exit_code);
   palpate::add_latency_command(app, exit_code);
   palpate::add_picture_command(app, exit_code);
+  palpate::add_movie_command(app, exit_code);
   palpate::add_view_command(app, exit_code);
   palpate::add_grasp_command(app, exit_code);
   palpate::add_feel_command(app, exit_code);

@@ -129,7 +129,7 @@ ReplayResult replay(RecordingReader& recording, const Model& model, const Replay
   return result;
 }
 
-StatePtr state_after(RecordingReader& recording, const Model& model, std::uint64_t wanted) {
+StatePtr for_each_state(RecordingReader& recording, const Model& model, const StateListener& listen) {
   check_scene(recording.header(), model);
   StatePtr state = recording.initial_state(model);
   const ScratchPtr scratch = make_scratch(model);
@@ -140,9 +140,16 @@ StatePtr state_after(RecordingReader& recording, const Model& model, std::uint64
       throw RecordingError(fmt::format("tick {} is missing in the recording: nothing after it is known", state->tick));
     }
     tick(model, *state, *scratch, record.input, output);
-    if (record.tick == wanted) return state;
+    if (!listen(record, *state)) return state;
   }
-  throw RecordingError(fmt::format("tick {} is not in the recording", wanted));
+  return nullptr;
+}
+
+StatePtr state_after(RecordingReader& recording, const Model& model, std::uint64_t wanted) {
+  StatePtr state =
+      for_each_state(recording, model, [&](const TickRecord& record, const State&) { return record.tick != wanted; });
+  if (!state) throw RecordingError(fmt::format("tick {} is not in the recording", wanted));
+  return state;
 }
 
 }  // namespace palpate

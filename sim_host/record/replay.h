@@ -30,6 +30,12 @@ using ReplayListener = std::function<void(const TickRecord& recorded, const Tick
 // made with another scene image.
 ReplayResult replay(RecordingReader& recording, const Model& model, const ReplayListener& listen = {});
 
+// Called with every recorded tick and the state after it; false ends it.
+using StateListener = std::function<bool(const TickRecord& recorded, const State& state)>;
+// Runs the inputs of a recording again, tick after tick. Returns the state at which `listen` ended it; null at the end
+// of the recording. Throws RecordingError when the image is another one, or a tick is missing.
+StatePtr for_each_state(RecordingReader& recording, const Model& model, const StateListener& listen);
+
 // The state after the recorded tick `wanted`, by running the inputs up to it again. Throws RecordingError when the
 // image is another one, or a tick before it is missing.
 StatePtr state_after(RecordingReader& recording, const Model& model, std::uint64_t wanted);

@@ -15,6 +15,7 @@
 #include "sim_host/record/recording_writer.h"
 #include "sim_host/record/replay.h"
 #include "sim_host/record/state_check.h"
+#include "tests/host/tiny_run.h"
 #include "tests/support/roomy.h"
 #include "tests/support/tiny_image.h"
 
@@ -41,11 +42,7 @@ struct RecordedRun {
       state = make_state(model);  // a hostile file, made by nobody's tick
     const ScratchPtr scratch = make_scratch(model);
     for (std::uint64_t i = 0; i < kTicks; ++i) {
-      Input input;
-      // Comes down on the tetrahedron's face, slides and leaves.
-      const double phase = static_cast<double>(i) / static_cast<double>(kTicks);
-      input.pose_w.position_m = {0.02 * phase, 0.01 * phase, 0.06 - 0.05 * std::sin(3.14159 * phase)};
-      input.commands = i > 5 ? Command::kArm : 0;
+      const Input input = test::tiny_run_input(i, kTicks);
       Output output;
       tick(model, *state, *scratch, input, output);
       TickRecord record{};

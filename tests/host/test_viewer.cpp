@@ -19,6 +19,7 @@
 #include "sim_host/view/player.h"
 #include "sim_host/view/steering.h"
 #include "sim_host/view/view_scales.h"
+#include "tests/host/tiny_run.h"
 #include "tests/support/tiny_image.h"
 
 namespace palpate {
@@ -176,10 +177,7 @@ struct TinyRun {
     const StatePtr state = copy_of(*initial);
     const ScratchPtr scratch = make_scratch(model);
     for (std::uint64_t i = 0; i < kTicks; ++i) {
-      Input input;
-      const double phase = static_cast<double>(i) / static_cast<double>(kTicks);
-      input.pose_w.position_m = {0.02 * phase, 0.01 * phase, 0.06 - 0.05 * std::sin(3.14159 * phase)};
-      input.commands = i > 5 ? Command::kArm : 0;
+      const Input input = test::tiny_run_input(i, kTicks);
       Output output;
       tick(model, *state, *scratch, input, output);
       TickRecord record{};

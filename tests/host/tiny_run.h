@@ -1,0 +1,21 @@
+// The run of the tiny scene that tests of recordings play: the tool comes down on the tetrahedron's face, slides and
+// leaves.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "rt_core/io.h"
+
+namespace palpate::test {
+
+// Input of tick `i` of `ticks`; armed from the seventh tick on.
+inline Input tiny_run_input(std::uint64_t i, std::uint64_t ticks) {
+  Input input;
+  const double phase = static_cast<double>(i) / static_cast<double>(ticks);
+  input.pose_w.position_m = {0.02 * phase, 0.01 * phase, 0.06 - 0.05 * std::sin(3.14159 * phase)};
+  input.commands = i > 5 ? Command::kArm : 0;
+  return input;
+}
+
+}  // namespace palpate::test
