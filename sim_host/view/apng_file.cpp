@@ -60,8 +60,8 @@ ApngFile::ApngFile(const std::string& path, int width, int height, int frames, i
 }
 
 void ApngFile::chunk(const char (&type)[5], std::span<const std::uint8_t> data) {
-  const auto* name = reinterpret_cast<const Bytef*>(type);
-  const uLong crc = crc32(crc32(0, name, 4), data.data(), static_cast<uInt>(data.size()));
+  uLong crc = crc32(0, reinterpret_cast<const Bytef*>(type), 4);
+  if (!data.empty()) crc = crc32(crc, data.data(), static_cast<uInt>(data.size()));  // from null it begins anew
   const std::vector<std::uint8_t> length = Bytes().u32(static_cast<std::uint32_t>(data.size())).data,
                                   check = Bytes().u32(static_cast<std::uint32_t>(crc)).data;
   file_.write(length.data(), length.size());

@@ -6,6 +6,7 @@
 #include <unistd.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -82,7 +83,9 @@ class ApngReader {
         EXPECT_EQ(number(chunk.data, 0), sequence++);
         control = chunk.data;
       }
-      if (chunk.type == "fdAT") EXPECT_EQ(number(chunk.data, 0), sequence++);
+      if (chunk.type == "fdAT") {
+        EXPECT_EQ(number(chunk.data, 0), sequence++);
+      }
       if (chunk.type != "IDAT" && chunk.type != "fdAT") continue;
       const std::uint32_t w = number(control, 4), h = number(control, 8), x = number(control, 12),
                           y = number(control, 16);
@@ -160,6 +163,7 @@ class MovieOfARun : public testing::Test {
     const StatePtr initial = make_state(model_);
     RecordingHeader header;
     header.scene_hash = model_.scene_hash;
+    header.period_ns = 1'000'000;
     std::strcpy(header.scene_name, "tiny");
     std::strcpy(header.image_path, "tiny.pal");
     RecordingWriter writer(run_, header, *initial);
@@ -204,13 +208,13 @@ class MovieOfARun : public testing::Test {
 };
 
 TEST_F(MovieOfARun, ShowsItFromTheFirstTouchToTheLast) {
-  ASSERT_GT(first_touch_s_, 0.26);
+  ASSERT_GT(first_touch_s_, 0);
   MovieOptions options;
   options.width = 240;
   options.height = 180;
   options.per_second = 10;
   const MovieMade made = make(options);
-  EXPECT_NEAR(made.from_s, first_touch_s_ - 0.25, 1e-9);
+  EXPECT_NEAR(made.from_s, std::max(0.0, first_touch_s_ - 0.25), 1e-9);
   EXPECT_LE(made.to_s, last_touch_s_ + 0.25 + 1e-9);
   EXPECT_EQ(made.frames, static_cast<int>((made.to_s - made.from_s) * 10) + 1);
   const std::vector<Rgb> frames = ApngReader(movie_).frames();
