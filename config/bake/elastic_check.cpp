@@ -87,10 +87,7 @@ std::vector<CheckPress> check_places(const SceneDesc& scene, const ImageContents
   double radius = 0;
   for (const ToolPoint& tip : image.tool_point) radius = std::max(radius, tip.margin_m);
   radius = std::max(radius, depth);
-  const Supports supports = supports_of(scene, mesh);
-  std::vector<Vec3> taken = sharp_corners(scene, image);
-  for (std::size_t n = 0; n < mesh.node_m.size(); ++n)
-    if (supports[n] != 0) taken.push_back(mesh.node_m[n]);
+  std::vector<Vec3> taken;
   const double apart = 1.2 * contact_radius_m(radius, depth);
   const auto nearest = [&](Vec3 p) {
     double least = kHuge;
@@ -98,10 +95,18 @@ std::vector<CheckPress> check_places(const SceneDesc& scene, const ImageContents
     return least;
   };
   std::vector<std::size_t> open;
-  for (std::size_t v = 0; v < image.vertex_m.size(); ++v)
-    if (nearest(image.vertex_m[v]) > apart &&
-        is_reachable(surface, image.vertex_m[v], image.vertex_normal[v], radius, surface.params.surface_size_m))
-      open.push_back(v);
+  const auto look_beside = [&](const Supports& supports) {
+    taken = sharp_corners(scene, image);
+    for (std::size_t n = 0; n < mesh.node_m.size(); ++n)
+      if (supports[n] != 0) taken.push_back(mesh.node_m[n]);
+    for (std::size_t v = 0; v < image.vertex_m.size(); ++v)
+      if (nearest(image.vertex_m[v]) > apart &&
+          is_reachable(surface, image.vertex_m[v], image.vertex_normal[v], radius, surface.params.surface_size_m))
+        open.push_back(v);
+  };
+  const Supports supports = supports_of(scene, mesh);
+  look_beside(supports_and_beds(supports, beds_of(scene, mesh)));
+  if (open.empty()) look_beside(supports);  // a bed all around is no reason not to press
   std::vector<CheckPress> presses;
   while (static_cast<int>(presses.size()) < count && !open.empty()) {
     const std::size_t v = *std::ranges::max_element(
@@ -137,7 +142,7 @@ int press_elements(const SceneDesc& scene, const ImageContents& image, const Tet
   options.stable = true;
   options.max_newton = kMostNewton;
   options.max_cuts = kMostCuts;
-  fem::LargeStrainSolver<3> solver(solid, elastic_material(image.params), fixed, touched, {ball}, options);
+  fem::LargeStrainSolver<3> solver(solid, elastic_material(scene, image.params, fine), fixed, touched, {ball}, options);
   solver.place_tools({point(press.place_m + press.radius_m * press.normal)});
   const double most_N = kForces * scene.device.force_max_N;
   for (const double depth : press.depth_m) {

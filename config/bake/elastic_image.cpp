@@ -338,7 +338,8 @@ struct ElasticBake::Parts {
   Parts(const SceneDesc& scene, const ImageContents& image, int modes, TetMesh body, std::vector<bool> held)
       : mesh(std::move(body)),
         fixed(std::move(held)),
-        rest(elastic::solid_mesh(mesh, scene.source.where("body.shape")), elastic_material(image.params), fixed),
+        rest(elastic::solid_mesh(mesh, scene.source.where("body.shape")), elastic_material(scene, image.params, mesh),
+             fixed),
         spacing_m(kSampleSpacing * rest.surface().extent_m()),
         stock(elastic::make_elastic_stock(rest, sample_nodes(rest.surface(), fixed, spacing_m), modes,
                                           options_of(modes, 0))),
@@ -351,7 +352,10 @@ ElasticBake::ElasticBake(const SceneDesc& scene, const ImageContents& image, int
                          std::vector<std::string>& warnings) {
   TetMesh mesh = make_elastic_mesh(scene, image, warnings);
   const Supports supports = supports_of(scene, mesh);
-  check_supports(mesh, supports, scene.source.where("body.shape"));
+  const std::vector<ElasticBed> beds = beds_of(scene, mesh);
+  // What a bed along the surface's normal leaves free depends on the surface: the stiffness's factor says so.
+  if (std::ranges::none_of(beds, &ElasticBed::normal))
+    check_supports(mesh, supports_and_beds(supports, beds), scene.source.where("body.shape"));
   parts_ = std::make_unique<Parts>(scene, image, modes, std::move(mesh), elastic::fixed_components(supports));
 }
 ElasticBake::~ElasticBake() = default;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "config/bake/elastic_bed.h"
 #include "config/bake/fem_body.h"
 #include "config/bake/image_rules.h"
 #include "config/body/body.h"
@@ -12,6 +13,9 @@
 #include "config/body/edge_cut.h"
 #include "config/body/remesh.h"
 #include "config/body/support_rim.h"
+#include "config/body/supports.h"
+#include "config/elastic/solid_mesh.h"
+#include "config/elastic/surface.h"
 #include "config/fem/large_strain_elements.h"
 #include "config/fem/tet_io.h"
 #include "config/response/corner_normals.h"
@@ -205,12 +209,17 @@ TetMesh make_elastic_mesh(const SceneDesc& scene, const ImageContents& image, st
   return mesh;
 }
 
-fem::StrainBody elastic_material(const ModelParams& params) {
+fem::StrainBody elastic_material(const SceneDesc& scene, const ModelParams& params, const TetMesh& mesh) {
   fem::StrainBody material;
   material.youngs_modulus_Pa = params.youngs_modulus_Pa;
   material.poisson_ratio = params.poisson_ratio;
   material.kinematics = fem::Kinematics::kSolid;
   material.point_bulk = kPointBulk;
+  const std::vector<ElasticBed> beds = beds_of(scene, mesh);
+  if (!beds.empty()) {
+    const elastic::Surface<3> surface(elastic::solid_mesh(mesh, scene.source.where("body.shape")), 1);
+    material.spring = bed_springs(surface, beds);
+  }
   return material;
 }
 

@@ -139,15 +139,22 @@ class Rim {
 
 void lay_support_rims(const SceneDesc& scene, SurfaceMesh& mesh) {
   if (card_of(scene.body.shape).supports != nullptr) return;  // its supports are not regions
-  const double lowest_m = bounds_of(mesh).lower_m.y;
   const std::vector<FixedDesc> regions = held_regions(scene);
-  std::vector<HeldComponents> laid;
+  // Rims of what is held alike are laid as one.
+  const auto alike = [](const FixedDesc& a, const FixedDesc& b) {
+    return a.holds == b.holds && (a.stiffness_N_per_m3 == b.stiffness_N_per_m3 ||
+                                  (is_auto(a.stiffness_N_per_m3) && is_auto(b.stiffness_N_per_m3)));
+  };
+  std::vector<std::function<bool(Vec3)>> has;
+  for (std::size_t i = 0; i < regions.size(); ++i) has.push_back(region_on(scene, i, mesh));
+  std::vector<FixedDesc> laid;
   for (const FixedDesc& one : regions) {
-    if (std::ranges::find(laid, one.holds) != laid.end()) continue;
-    laid.push_back(one.holds);
+    if (std::ranges::any_of(laid, [&](const FixedDesc& other) { return alike(one, other); })) continue;
+    laid.push_back(one);
     const auto inside = [&](Vec3 x) {
-      return std::ranges::any_of(
-          regions, [&](const FixedDesc& entry) { return entry.holds == one.holds && in_region(entry, x, lowest_m); });
+      for (std::size_t i = 0; i < regions.size(); ++i)
+        if (alike(regions[i], one) && has[i](x)) return true;
+      return false;
     };
     Rim(inside, mesh).lay();
   }

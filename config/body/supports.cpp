@@ -4,6 +4,7 @@
 
 #include "config/body/body_card.h"
 #include "config/body/body_pose.h"
+#include "config/body/support_surface.h"
 #include "config/scene/config_error.h"
 #include "config/scene/schema.h"
 
@@ -14,8 +15,10 @@ namespace {
 // Nodes of a flat base are as flat as rounding leaves them.
 constexpr double kFlat_m = 1e-9;
 
+std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
+
 // In the order of HeldComponents.
-constexpr std::uint8_t kHeld[] = {kHoldAll, 1, 2, 4, 1 | 2, 1 | 4, 2 | 4};
+constexpr std::uint8_t kHeld[] = {kHoldAll, 1, 2, 4, 1 | 2, 1 | 4, 2 | 4, kHoldAll};
 static_assert(std::size(kHeld) == ChoiceOf<HeldComponents>::kCount);
 
 // Where the scene says it: a list's entries are numbered, a single table is not.
@@ -24,10 +27,8 @@ std::string entry_label(const SceneDesc& scene, std::size_t i) {
   return scene.source.where(scene.source.has(numbered) ? numbered : "body.fixed");
 }
 
-double lowest_of(const TetMesh& mesh) {
-  double lowest = kHuge;
-  for (const Vec3& x : mesh.node_m) lowest = std::min(lowest, x.y);
-  return lowest;
+bool is_near(const FixedDesc& entry, Vec3 x, Vec3 centre_m) {
+  return squared_norm(x - centre_m) <= (entry.radius_m + kFlat_m) * (entry.radius_m + kFlat_m);
 }
 
 [[noreturn]] void fail_empty(const std::string& label, const TetMesh& mesh) {
@@ -37,11 +38,10 @@ double lowest_of(const TetMesh& mesh) {
                     "; move the region to it or make it larger than the edge of an element (body.fem.edge_mm)");
 }
 
-// Nodes in an entry's region. A region is convex, but its middles of edges were bent to the surface: they are in it
-// with their edges' ends.
-std::vector<char> nodes_in(const FixedDesc& entry, const TetMesh& mesh, double lowest_m) {
+// Nodes in an entry's region. Middles of edges were bent to the surface: they are in it with their edges' ends.
+std::vector<char> nodes_in(const std::function<bool(Vec3)>& in_it, const TetMesh& mesh) {
   std::vector<char> in(mesh.node_m.size());
-  for (std::size_t n = 0; n < in.size(); ++n) in[n] = in_region(entry, mesh.node_m[n], lowest_m) ? 1 : 0;
+  for (std::size_t n = 0; n < in.size(); ++n) in[n] = in_it(mesh.node_m[n]) ? 1 : 0;
   for (const Tet& tet : mesh.tet)
     for (std::size_t e = 0; e < kTetEdge.size(); ++e) {
       if (tet.node[4 + e] < 0) continue;  // a straight element has no middles
@@ -50,6 +50,21 @@ std::vector<char> nodes_in(const FixedDesc& entry, const TetMesh& mesh, double l
       };
       if (in[end(0)] != 0 && in[end(1)] != 0) in[static_cast<std::size_t>(tet.node[4 + e])] = 1;
     }
+  return in;
+}
+
+bool is_bed(const FixedDesc& entry) { return !is_auto(entry.stiffness_N_per_m3); }
+
+// Nodes that an entry holds: of a patch those of the surface that are joined to its middle within it, so that the other
+// side of a thin wall is free; of vertices those of the surface.
+std::vector<char> nodes_of(const SceneDesc& scene, std::size_t i, const TetMesh& mesh, const TetSurface& skin) {
+  const FixedDesc entry = held_regions(scene)[i];
+  std::vector<char> in = nodes_in(region_on(scene, i, skin.mesh), mesh);
+  if (entry.region == FixedRegion::kPatch)
+    keep_joined(skin, nearest_on(skin.mesh, entry.centre_m), in);
+  else if (entry.region == FixedRegion::kVertices)
+    keep_surface(skin, in);
+  if (std::ranges::find(in, 1) == in.end()) fail_empty(entry_label(scene, i), mesh);
   return in;
 }
 
@@ -68,7 +83,10 @@ bool in_region(const FixedDesc& entry, Vec3 x_w, double lowest_m) {
              x_w.y >= entry.from_m.y - kFlat_m && x_w.y <= entry.to_m.y + kFlat_m &&
              x_w.z >= entry.from_m.z - kFlat_m && x_w.z <= entry.to_m.z + kFlat_m;
     case FixedRegion::kBall:
-      return squared_norm(x_w - entry.centre_m) <= (entry.radius_m + kFlat_m) * (entry.radius_m + kFlat_m);
+      return is_near(entry, x_w, entry.centre_m);
+    case FixedRegion::kPatch:
+    case FixedRegion::kVertices:
+      return false;  // they are of a surface: region_on
   }
   return false;
 }
@@ -85,7 +103,8 @@ double standing_base_m(const SceneDesc& scene, const std::string& who) {
         who +
         " knows a body that stands where its shape is made; remove the key, or use contact.backend = \"elastic\"");
   const std::vector<FixedDesc> entries = held_regions(scene);
-  if (entries.size() == 1 && entries[0].region == FixedRegion::kBase) return entries[0].base_height_m;
+  if (entries.size() == 1 && entries[0].region == FixedRegion::kBase && !is_bed(entries[0]))
+    return entries[0].base_height_m;
   throw ConfigError(entry_label(scene, 0) + ": " + who +
                     " knows a body that stands on its base alone; hold it by one base_height_mm, or use "
                     "contact.backend = \"elastic\"");
@@ -98,17 +117,54 @@ Supports supports_of(const SceneDesc& scene, const TetMesh& mesh) {
     return of_shape(unplaced);
   }
   const std::vector<FixedDesc> entries = held_regions(scene);
-  const double lowest_m = lowest_of(mesh);
+  const TetSurface skin = surface_of(mesh);
   Supports supports(mesh.node_m.size(), 0);
   for (std::size_t i = 0; i < entries.size(); ++i) {
-    const std::vector<char> in = nodes_in(entries[i], mesh, lowest_m);
+    if (is_bed(entries[i])) continue;
+    const std::vector<char> in = nodes_of(scene, i, mesh, skin);
     for (std::size_t n = 0; n < supports.size(); ++n)
       if (in[n] != 0) supports[n] |= kHeld[static_cast<std::size_t>(entries[i].holds)];
-    if (std::ranges::find(in, 1) == in.end()) fail_empty(entry_label(scene, i), mesh);
   }
   if (std::ranges::all_of(supports, [](std::uint8_t held) { return held == kHoldAll; }))
     throw ConfigError(entry_label(scene, 0) + ": holds every node of the body: nothing could move; make it smaller");
   return supports;
+}
+
+std::vector<ElasticBed> beds_of(const SceneDesc& scene, const TetMesh& mesh) {
+  std::vector<ElasticBed> beds;
+  if (std::ranges::none_of(scene.fixed, is_bed)) return beds;
+  const TetSurface skin = surface_of(mesh);
+  for (std::size_t i = 0; i < scene.fixed.size(); ++i) {
+    const FixedDesc& entry = scene.fixed[i];
+    if (!is_bed(entry)) continue;
+    std::vector<char> in = nodes_of(scene, i, mesh, skin);
+    keep_surface(skin, in);
+    const bool has_triangle = std::ranges::any_of(skin.mesh.triangle, [&](const Corners& t) {
+      return std::ranges::all_of(t, [&](std::int32_t v) { return in[at(skin.node[at(v)])] != 0; });
+    });
+    if (!has_triangle) fail_empty(entry_label(scene, i), mesh);
+    beds.push_back({std::move(in), entry.stiffness_N_per_m3, kHeld[static_cast<std::size_t>(entry.holds)],
+                    entry.holds == HeldComponents::kNormal});
+  }
+  return beds;
+}
+
+Supports supports_and_beds(Supports supports, const std::vector<ElasticBed>& beds) {
+  for (const ElasticBed& bed : beds)
+    for (std::size_t n = 0; n < supports.size(); ++n)
+      if (bed.node[n] != 0) supports[n] |= bed.components;
+  return supports;
+}
+
+std::function<bool(Vec3)> region_on(const SceneDesc& scene, std::size_t i, const SurfaceMesh& surface) {
+  const FixedDesc entry = held_regions(scene)[i];
+  if (entry.region == FixedRegion::kPatch) {
+    const Vec3 middle_m = nearest_on(surface, entry.centre_m).place_m;
+    return [entry, middle_m](Vec3 x) { return is_near(entry, x, middle_m); };
+  }
+  if (entry.region == FixedRegion::kVertices) return on_listed_triangles(scene, entry, entry_label(scene, i));
+  const double lowest_m = bounds_of(surface).lower_m.y;
+  return [entry, lowest_m](Vec3 x) { return in_region(entry, x, lowest_m); };
 }
 
 }  // namespace palpate

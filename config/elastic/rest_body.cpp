@@ -30,6 +30,7 @@ RestBody<kDim>::RestBody(const fem::StrainMesh<kDim>& mesh, const fem::StrainBod
     throw ConfigError("elastic body: Young's modulus must be above 0 Pa and Poisson's ratio in (-1, 0.4999]");
   if (body.kinematics == fem::Kinematics::kAxisymmetric)
     throw ConfigError("elastic body: a body of revolution is meshed in space, not in its half plane");
+  find_node_moduli(mesh);
   Eigen::SparseMatrix<double> stiffness = assembly_.pattern();
   assembly_.evaluate(Eigen::VectorXd::Zero(size_), nullptr, &stiffness);
   factor_.analyse(stiffness);
@@ -51,9 +52,30 @@ RestBody<kDim>::RestBody(const fem::StrainMesh<kDim>& mesh, const fem::StrainBod
 
 template <int kDim>
 double RestBody<kDim>::contact_modulus() const {
-  const double nu = material_.poisson_ratio;
+  return contact_modulus_of({material_.youngs_modulus_Pa, material_.poisson_ratio});
+}
+template <int kDim>
+double RestBody<kDim>::contact_modulus_of(const fem::ElementMaterial& m) const {
+  const double nu = m.poisson_ratio;
   const double shared = material_.kinematics == fem::Kinematics::kPlaneStress ? 1 : 1 - nu * nu;
-  return material_.youngs_modulus_Pa / shared * (kDim == 2 ? material_.thickness_m : 1);
+  return m.youngs_modulus_Pa / shared * (kDim == 2 ? material_.thickness_m : 1);
+}
+template <int kDim>
+double RestBody<kDim>::contact_modulus(int node) const {
+  return node_modulus_.empty() ? contact_modulus() : node_modulus_[static_cast<std::size_t>(node)];
+}
+template <int kDim>
+void RestBody<kDim>::find_node_moduli(const fem::StrainMesh<kDim>& mesh) {
+  if (material_.element.empty()) return;
+  node_modulus_.assign(static_cast<std::size_t>(mesh.node_count()), 0);
+  std::vector<double> count(node_modulus_.size());
+  const auto nodes = static_cast<std::size_t>(fem::nodes_per_element(mesh.element));
+  for (std::size_t i = 0; i < mesh.connectivity.size(); ++i) {
+    const auto n = static_cast<std::size_t>(mesh.connectivity[i]);
+    node_modulus_[n] += contact_modulus_of(material_.element[i / nodes]);
+    count[n] += 1;
+  }
+  for (std::size_t n = 0; n < count.size(); ++n) node_modulus_[n] /= count[n];
 }
 
 template <int kDim>

@@ -23,6 +23,8 @@ class RestBody {
   Eigen::Index size() const { return size_; }
   // What a contact patch meets: E / (1 - nu^2), in plane stress E; in the plane times the width (N/m).
   double contact_modulus() const;
+  // The same of the elements at a node, their mean.
+  double contact_modulus(int node) const;
 
   // K^-1 f at rest.
   Eigen::VectorXd solve(const Eigen::VectorXd& force_N) const { return solve_all(force_N); }
@@ -34,8 +36,11 @@ class RestBody {
   void release_fixed(Eigen::VectorXd& v) const;
 
  private:
+  double contact_modulus_of(const fem::ElementMaterial& material) const;
+  void find_node_moduli(const fem::StrainMesh<kDim>& mesh);
   fem::StrainBody material_;
   Eigen::Index size_;
+  std::vector<double> node_modulus_;  // of bodies of several materials
   Surface<kDim> surface_;
   fem::LargeStrainAssembly<kDim> assembly_;
   fem::SupernodalFactor factor_;

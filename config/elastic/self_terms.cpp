@@ -121,7 +121,7 @@ std::vector<Met> meet(const RestBody<kDim>& body, std::span<const int> nodes, do
     met[i / 2].sigma_m[i % 2] = sigma(i);
     met[i / 2].give_mpN[i % 2] =
         g.col(col).dot(u.col(col)) -
-        gaussian_self_compliance_mpN(kDim == 2, body.contact_modulus(), sigma(i), surface.extent_m());
+        gaussian_self_compliance_mpN(kDim == 2, body.contact_modulus(nodes[i / 2]), sigma(i), surface.extent_m());
   }
   return met;
 }
@@ -143,7 +143,7 @@ std::vector<SelfSample> self_samples(const RestBody<kDim>& body, const std::vect
       const Eigen::VectorXd& u = met[i].u_mpN;
       SelfSample sample;
       sample.node = some[i];
-      sample.width = WidthLaw(met[i].give_mpN, met[i].sigma_m, body.contact_modulus());
+      sample.width = WidthLaw(met[i].give_mpN, met[i].sigma_m, body.contact_modulus(some[i]));
       sample.curvature_1pm = node_curvature(surface, some[i]);
       const double scale = probe_m / u.cwiseAbs().maxCoeff();
       sample.third_mpN2 = (body.internal_force(scale * u) + body.internal_force(-scale * u)).dot(u) / (scale * scale);

@@ -54,6 +54,11 @@ PlaneStressPoint plane_stress_point(Gradient<2> f, double shear, double bulk) {
   return out;
 }
 
+ElementModuli moduli_of(double young_Pa, double poisson, double point_bulk) {
+  const double shear = young_Pa / (2 * (1 + poisson)), bulk = young_Pa / (3 * (1 - 2 * poisson));
+  return {shear, bulk, std::min(bulk, point_bulk * shear)};
+}
+
 }  // namespace
 
 template <int kDim>
@@ -68,12 +73,12 @@ LargeStrainAssembly<kDim>::LargeStrainAssembly(const StrainMesh<kDim>& mesh, con
                                                std::vector<int> equation_of_dof)
     : tables_(element_tables<kDim>(mesh.element)),
       body_(body),
-      shear_Pa_(body.youngs_modulus_Pa / (2 * (1 + body.poisson_ratio))),
-      bulk_Pa_(body.youngs_modulus_Pa / (3 * (1 - 2 * body.poisson_ratio))),
-      point_bulk_Pa_(std::min(bulk_Pa_, body.point_bulk * shear_Pa_)),
       connectivity_(mesh.connectivity),
       equation_(std::move(equation_of_dof)) {
   for (const int q : equation_) free_count_ = std::max(free_count_, q + 1);
+  if (body.element.empty()) moduli_.push_back(moduli_of(body.youngs_modulus_Pa, body.poisson_ratio, body.point_bulk));
+  for (const ElementMaterial& m : body.element)
+    moduli_.push_back(moduli_of(m.youngs_modulus_Pa, m.poisson_ratio, body.point_bulk));
   place_points(mesh);
   place_nodes(mesh);
   find_pattern();
@@ -185,6 +190,13 @@ void LargeStrainAssembly<kDim>::find_pattern() {
         value_index_.push_back(static_cast<int>(value - pattern_.valuePtr()));
       }
     });
+  for (const NodeSpring& s : body_.spring) {
+    const int row = equation(s.row), column = equation(s.column);
+    const bool held = row < 0 || column < 0;
+    spring_index_.push_back(held ? -1
+                                 : static_cast<int>(&pattern_.coeffRef(std::max(row, column), std::min(row, column)) -
+                                                    pattern_.valuePtr()));
+  }
 }
 
 template <int kDim>
@@ -244,14 +256,15 @@ template <int kDim>
 bool LargeStrainAssembly<kDim>::evaluate_element(int e, const Eigen::VectorXd& u, bool tangent,
                                                  ElementSums& out) const {
   const int dofs = tables_.nodes * kDim;
-  const double projected_Pa = bulk_Pa_ - point_bulk_Pa_;
+  const auto [shear_Pa, bulk_Pa, point_bulk_Pa] = moduli(e);
+  const double projected_Pa = bulk_Pa - point_bulk_Pa;
   out.energy = 0;
   out.force.head(dofs).setZero();
   if (tangent) out.stiffness.topLeftCorner(dofs, dofs).setZero();
   if constexpr (kDim == 2) {
     if (body_.kinematics == Kinematics::kPlaneStress) {
       for (int g = 0; g < tables_.points; ++g) {
-        const PlaneStressPoint point = plane_stress_point(gradient_at(e, g, u), shear_Pa_, bulk_Pa_);
+        const PlaneStressPoint point = plane_stress_point(gradient_at(e, g, u), shear_Pa, bulk_Pa);
         if (!std::isfinite(point.energy)) return false;
         out.energy += weight_[point_index(e, g)] * point.energy;
         add_point(e, g, point.stress, point.stiffness, tangent, out);
@@ -275,14 +288,14 @@ bool LargeStrainAssembly<kDim>::evaluate_element(int e, const Eigen::VectorXd& u
   Eigen::Matrix<double, kMaxDofs, kMaxModes> mode_slope;  // d moment_k / d u
   if (tangent) mode_slope.topLeftCorner(dofs, tables_.modes).setZero();
   for (int g = 0; g < tables_.points; ++g) {
-    const DistortionEnergy<kDim> w = distortion_energy<kDim>(f[g], v[g], shear_Pa_);
+    const DistortionEnergy<kDim> w = distortion_energy<kDim>(f[g], v[g], shear_Pa);
     double dilatation = -1;
     for (int k = 0; k < tables_.modes; ++k) dilatation += projected[k] * mode(g, k);
     const double own = v[g].value - 1, volume = weight_[point_index(e, g)];
-    const double p = projected_Pa * dilatation + point_bulk_Pa_ * own;
-    out.energy += volume * (w.value + 0.5 * projected_Pa * dilatation * dilatation + 0.5 * point_bulk_Pa_ * own * own);
+    const double p = projected_Pa * dilatation + point_bulk_Pa * own;
+    out.energy += volume * (w.value + 0.5 * projected_Pa * dilatation * dilatation + 0.5 * point_bulk_Pa * own * own);
     GradientSquare<kDim> curvature = w.curvature + p * v[g].curvature;
-    if (point_bulk_Pa_ > 0) curvature += point_bulk_Pa_ * v[g].slope * v[g].slope.transpose();
+    if (point_bulk_Pa > 0) curvature += point_bulk_Pa * v[g].slope * v[g].slope.transpose();
     add_point(e, g, w.slope + p * v[g].slope, curvature, tangent, out);
     if (!tangent) continue;
     const std::size_t first = point_index(e, g) * static_cast<std::size_t>(tables_.nodes);
@@ -326,7 +339,30 @@ double LargeStrainAssembly<kDim>::evaluate(const Eigen::VectorXd& u, Eigen::Vect
         tangent->valuePtr()[index] += (doubled ? 2 : 1) * sums.stiffness(p, q);
       }
   }
+  return energy + add_springs(u, force, tangent);
+}
+
+template <int kDim>
+double LargeStrainAssembly<kDim>::add_springs(const Eigen::VectorXd& u, Eigen::VectorXd* force,
+                                              Eigen::SparseMatrix<double>* tangent) const {
+  double energy = 0;
+  for (std::size_t i = 0; i < body_.spring.size(); ++i) {
+    const auto& [row, column, k] = body_.spring[i];
+    energy += (row == column ? 0.5 : 1) * k * u[row] * u[column];
+    if (force != nullptr) {
+      (*force)[row] += k * u[column];
+      if (row != column) (*force)[column] += k * u[row];
+    }
+    if (tangent != nullptr && spring_index_[i] >= 0) tangent->valuePtr()[spring_index_[i]] += k;
+  }
   return energy;
+}
+
+template <int kDim>
+Eigen::VectorXd LargeStrainAssembly<kDim>::spring_force(const Eigen::VectorXd& u) const {
+  Eigen::VectorXd force = Eigen::VectorXd::Zero(u.size());
+  add_springs(u, &force, nullptr);
+  return force;
 }
 
 template <int kDim>

@@ -12,6 +12,11 @@
 
 namespace palpate::fem {
 
+struct ElementModuli {
+  double shear_Pa = 0, bulk_Pa = 0;
+  double point_bulk_Pa = 0;  // of the bulk modulus, what acts point by point, not projected
+};
+
 template <int kDim>
 class LargeStrainAssembly {
  public:
@@ -27,6 +32,8 @@ class LargeStrainAssembly {
   // Adds weights_a weights_b block to the tangent's entries of every pair of nodes, which share an element.
   void add_nodes_block(const std::vector<int>& nodes, const std::vector<double>& weights,
                        const Eigen::Matrix<double, kDim, kDim>& block, Eigen::SparseMatrix<double>& tangent) const;
+  // Forces of the body's springs on what holds their other ends.
+  Eigen::VectorXd spring_force(const Eigen::VectorXd& u) const;
   int free_count() const { return free_count_; }
   int equation(int dof) const { return equation_[static_cast<std::size_t>(dof)]; }
 
@@ -41,12 +48,13 @@ class LargeStrainAssembly {
   Gradient<kDim> gradient_at(int e, int g, const Eigen::VectorXd& u) const;
   int* element_nodes(int e) { return &connectivity_[static_cast<std::size_t>(e * tables_.nodes)]; }
   const int* element_nodes(int e) const { return &connectivity_[static_cast<std::size_t>(e * tables_.nodes)]; }
+  const ElementModuli& moduli(int e) const { return moduli_[moduli_.size() == 1 ? 0 : static_cast<std::size_t>(e)]; }
+  double add_springs(const Eigen::VectorXd& u, Eigen::VectorXd* force, Eigen::SparseMatrix<double>* tangent) const;
   std::size_t point_index(int e, int g) const { return static_cast<std::size_t>(e * tables_.points + g); }
 
   ElementTables<kDim> tables_;
   StrainBody body_;
-  double shear_Pa_, bulk_Pa_;
-  double point_bulk_Pa_;  // of the bulk modulus, what acts point by point, not projected
+  std::vector<ElementModuli> moduli_;  // of each element, or of all
   std::vector<int> connectivity_;
   std::vector<int> equation_;  // per degree of freedom, -1 when fixed
   int free_count_ = 0;
@@ -55,7 +63,8 @@ class LargeStrainAssembly {
   std::vector<double> hoop_;                   // [element][point][node], N / R of rings, else empty
   std::vector<double> weight_;                 // [element][point], volume
   std::vector<Eigen::MatrixXd> inverse_mass_;  // [element], of the pressure modes
-  std::vector<int> value_index_;  // [element][lower triangle], place in the tangent's values, -1 when fixed
+  std::vector<int> value_index_;   // [element][lower triangle], place in the tangent's values, -1 when fixed
+  std::vector<int> spring_index_;  // [spring], the same
   Eigen::SparseMatrix<double> pattern_;
 };
 

@@ -27,6 +27,11 @@ void check_body(const StrainBody& body, int dim) {
   if (!(body.poisson_ratio > -1 && body.poisson_ratio <= 0.4999))
     throw ConfigError("large-strain solver: Poisson's ratio must lie in (-1, 0.4999], got " +
                       std::to_string(body.poisson_ratio) + "; write 0.4999 for an incompressible material");
+  for (const ElementMaterial& m : body.element)
+    if (!(m.youngs_modulus_Pa > 0) || !(m.poisson_ratio > -1 && m.poisson_ratio <= 0.4999))
+      throw ConfigError(
+          "large-strain solver: an element's Young's modulus must be above 0 Pa and Poisson's ratio in "
+          "(-1, 0.4999]");
   if ((dim == 3) != (body.kinematics == Kinematics::kSolid))
     throw ConfigError("large-strain solver: kinematics and dimension of the mesh differ");
 }
@@ -333,6 +338,8 @@ struct LargeStrainSolver<kDim>::Impl {
     state.penetration_m = penetration_m;
     for (int dof = 0; dof < u.size(); ++dof)
       if (assembly.equation(dof) < 0) state.support_reaction_N[static_cast<std::size_t>(dof % kDim)] += internal[dof];
+    const Eigen::VectorXd bed = assembly.spring_force(u);
+    for (int dof = 0; dof < u.size(); ++dof) state.support_reaction_N[static_cast<std::size_t>(dof % kDim)] -= bed[dof];
     state.force_on_tool_N.assign(tools.size(), Point<kDim>{});
     for (std::size_t c = 0; c < contacts.size(); ++c)
       for (std::size_t t = 0; t < tools.size(); ++t) {

@@ -25,6 +25,16 @@ enum class StrainLaw : std::uint8_t {
   kLinear,
 };
 
+// Between two degrees of freedom, node * dimension + component, or of one alone: energy k u_row u_column, half of it on
+// the diagonal. `row` >= `column`, of nodes that share an element.
+struct NodeSpring {
+  int row = 0, column = 0;
+  double stiffness_N_per_m = 0;
+};
+struct ElementMaterial {
+  double youngs_modulus_Pa = 0, poisson_ratio = 0;
+};
+
 struct StrainBody {
   double youngs_modulus_Pa = 0;
   double poisson_ratio = 0;  // in (-1, 0.4999]: 0.5 has no finite bulk modulus
@@ -34,6 +44,8 @@ struct StrainBody {
   // Of the shear modulus: the bulk modulus that acts point by point, the rest acts through an element's pressure modes.
   // T10 with its one mode alone is too soft where elements are as large as a wall.
   double point_bulk = 0;
+  std::vector<ElementMaterial> element;  // of each element; empty: all have that of above
+  std::vector<NodeSpring> spring;        // an elastic bed's, linear
 };
 
 struct StrainOptions {
@@ -52,7 +64,7 @@ struct PressState {
   bool converged = false;
   double energy_J = 0;                       // elastic
   std::vector<Point<kDim>> force_on_tool_N;  // per tool
-  Point<kDim> support_reaction_N{};          // on the body, from its fixed nodes
+  Point<kDim> support_reaction_N{};          // on the body, from its fixed nodes and its springs
   std::vector<double> u_m;                   // [node][component]
   double penetration_m = 0;                  // largest left
   int active_contacts = 0;

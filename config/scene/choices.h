@@ -28,10 +28,11 @@ PALPATE_CHOICE(FemOrder, PALPATE_FEM_ORDERS);
 PALPATE_CHOICE(FemPrecision, PALPATE_FEM_PRECISIONS);
 
 // Where an entry of body.fixed holds, and which components of the displacement.
-#define PALPATE_FIXED_REGIONS(X) X(kBase, base) X(kBox, box) X(kBall, ball)
+#define PALPATE_FIXED_REGIONS(X) X(kBase, base) X(kBox, box) X(kBall, ball) X(kPatch, patch) X(kVertices, vertices)
 PALPATE_CHOICE(FixedRegion, PALPATE_FIXED_REGIONS);
 
-#define PALPATE_HELD_COMPONENTS(X) X(kAll, all) X(kX, x) X(kY, y) X(kZ, z) X(kXy, xy) X(kXz, xz) X(kYz, yz)
+#define PALPATE_HELD_COMPONENTS(X) \
+  X(kAll, all) X(kX, x) X(kY, y) X(kZ, z) X(kXy, xy) X(kXz, xz) X(kYz, yz) X(kNormal, normal)
 PALPATE_CHOICE(HeldComponents, PALPATE_HELD_COMPONENTS);
 
 #define PALPATE_ANCHOR_SOURCES(X) X(kShape, auto) X(kMesh, mesh)

@@ -72,6 +72,9 @@ struct FixedDesc {
   Vec3 centre_m{kAuto, kAuto, kAuto};
   double radius_m = kAuto;
   HeldComponents holds = HeldComponents::kAll;
+  double stiffness_N_per_m3 = kAuto;  // of an elastic bed; unset: rigid
+  std::vector<std::int32_t> vertices;
+  std::string vertices_file;
 };
 
 struct SkeletonDesc {

@@ -216,6 +216,33 @@ void check_order(const SceneDesc& scene) {
          "\"mixed\" needs body.material.poisson_ratio of at most 0.49, where linear elements lock; use \"quadratic\"");
 }
 
+void check_vertices(const SceneDesc& scene, const FixedDesc& entry, const std::string& table,
+                    const std::string& because) {
+  if (entry.region != FixedRegion::kVertices)
+    return check_effect(scene, table, {"vertices", "vertices_file"}, {}, because);
+  if (entry.vertices.empty() == entry.vertices_file.empty())
+    fail(scene, table + ".vertices",
+         entry.vertices.empty() ? "missing; give the numbers here, or a text file of them as vertices_file"
+                                : "given twice; remove it or vertices_file");
+}
+
+// What only finite elements can be held by, and what an elastic body alone.
+void check_bed(const SceneDesc& scene, const FixedDesc& entry, const std::string& table) {
+  if (scene.contact.backend == Backend::kResponse) {
+    check_effect(scene, table, {"holds"}, {}, "with tool points, whose anchors stand still or do not");
+    if (entry.region == FixedRegion::kPatch || entry.region == FixedRegion::kVertices)
+      fail(scene, table + ".region",
+           "\"" + std::string(word_of(entry.region)) +
+               "\" is of finite elements; with tool points take a ball or a box");
+  }
+  if (scene.contact.backend != Backend::kElastic)
+    check_effect(scene, table, {"stiffness_N_per_m3"}, {}, "unless contact.backend = \"elastic\"");
+  if (entry.holds == HeldComponents::kNormal && is_auto(entry.stiffness_N_per_m3))
+    fail(scene, table + ".holds",
+         "\"normal\" is of elastic beds; add stiffness_N_per_m3 (a stiff plate: a thousand times E over the body's "
+         "size), or hold a component");
+}
+
 // Each entry of body.fixed has the keys of its region and no other.
 void check_fixed(const SceneDesc& scene) {
   for (std::size_t i = 0; i < scene.fixed.size(); ++i) {
@@ -232,12 +259,12 @@ void check_fixed(const SceneDesc& scene) {
     };
     if (region != FixedRegion::kBase) check_effect(scene, table, {"base_height_mm"}, {}, because);
     needs({"from_mm", "to_mm"}, FixedRegion::kBox);
-    needs({"centre_mm", "radius_mm"}, FixedRegion::kBall);
+    needs({"centre_mm", "radius_mm"}, region == FixedRegion::kPatch ? region : FixedRegion::kBall);
+    check_vertices(scene, entry, table, because);
     const Vec3 from = entry.from_m, to = entry.to_m;
     if (region == FixedRegion::kBox && !(from.x < to.x && from.y < to.y && from.z < to.z))
       fail(scene, table + ".to_mm", "must be greater than from_mm along x, y and z; exchange the corners");
-    if (scene.contact.backend == Backend::kResponse)
-      check_effect(scene, table, {"holds"}, {}, "with tool points, whose anchors stand still or do not");
+    check_bed(scene, entry, table);
   }
 }
 

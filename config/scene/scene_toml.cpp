@@ -58,6 +58,14 @@ std::string nearest(const std::string& name, const std::vector<std::string>& kno
   return best;
 }
 
+constexpr const char* kSupports = "body.fixed";
+// Inertia relief would give such a body a force: that of its mass carried along for ever, which no press at rest meets.
+constexpr const char* kNothingHolds =
+    "a body that nothing holds is not at rest under a tool: it goes off with it, and what a press at rest would feel "
+    "is "
+    "no force. Hold it as softly as what it lies in does: [body.fixed] region = \"box\" around all of it, with "
+    "stiffness_N_per_m3 (docs/scene_format.md, supports)";
+
 class Reader {
  public:
   explicit Reader(SceneDesc& scene) : scene_(scene) {}
@@ -143,6 +151,7 @@ class Reader {
     if (list_alone || (spec != nullptr && spec->count == TableCount::kOneOrList && value.is_array())) {
       const toml::array* list = value.as_array();
       if (list == nullptr) fail(value, path, "must be a list of tables; write [[" + path + "]]");
+      if (path == kSupports && list->empty()) fail(value, path, kNothingHolds);
       std::int32_t index = 0;
       for (const toml::node& element : *list) {
         const std::string label = path + "[" + std::to_string(index++) + "]";
@@ -152,6 +161,8 @@ class Reader {
       }
     } else if (const toml::table* table = value.as_table()) {
       read_table(*table, path, path);
+    } else if (path == kSupports && value.value<std::string>() == "none") {
+      fail(value, path, kNothingHolds);
     } else {
       fail(value, path, "must be a table; write [" + path + "]");
     }
@@ -211,6 +222,9 @@ class Reader {
       case KeyKind::kPoints:
         read_points(value, path, key, *static_cast<std::vector<Vec3>*>(key.field(fields)));
         return;
+      case KeyKind::kIntegers:
+        read_integers(value, path, key, *static_cast<std::vector<std::int32_t>*>(key.field(fields)));
+        return;
     }
   }
 
@@ -266,6 +280,14 @@ class Reader {
                    std::vector<Vec3>& points) const {
     if (!value.is_array()) fail_type(value, path, key);
     for (const toml::node& element : *value.as_array()) points.push_back(read_vector(element, path, key));
+  }
+  void read_integers(const toml::node& value, const std::string& path, const KeySpec& key,
+                     std::vector<std::int32_t>& numbers) const {
+    if (!value.is_array()) fail_type(value, path, key);
+    for (const toml::node& element : *value.as_array()) {
+      if (!element.is_integer()) fail_type(element, path, key);
+      numbers.push_back(static_cast<std::int32_t>(read_number(element, path, key)));
+    }
   }
 
   SceneDesc& scene_;

@@ -1,65 +1,10 @@
-#include "config/scene/schema.h"
+#include "config/scene/schema_keys.h"
 
 namespace palpate {
 
 namespace {
 
-template <class C, class T>
-C class_of(T C::*);
-template <class C, class T>
-T type_of(T C::*);
-
-template <auto member>
-void* field(void* table) {
-  return &(static_cast<decltype(class_of(member))*>(table)->*member);
-}
-template <auto member>
-void set(void* table, std::int32_t value) {
-  static_cast<decltype(class_of(member))*>(table)->*member = static_cast<decltype(type_of(member))>(value);
-}
-template <auto member>
-std::int32_t get(const void* table) {
-  return static_cast<std::int32_t>(static_cast<const decltype(class_of(member))*>(table)->*member);
-}
-
-template <auto member>
-constexpr KeySpec number(const char* key, double lowest, double highest, double scale, const char* meaning,
-                         bool required = false) {
-  return {key, KeyKind::kNumber, lowest, highest, scale, required, {}, meaning, field<member>, nullptr, nullptr};
-}
-template <auto member>
-constexpr KeySpec number_or_auto(const char* key, double lowest, double highest, double scale, const char* meaning) {
-  return {key, KeyKind::kNumberOrAuto, lowest, highest, scale, false, {}, meaning, field<member>, nullptr, nullptr};
-}
-template <auto member>
-constexpr KeySpec integer(const char* key, double lowest, double highest, const char* meaning) {
-  return {key, KeyKind::kInteger, lowest, highest, 1, false, {}, meaning, field<member>, nullptr, nullptr};
-}
-template <auto member>
-constexpr KeySpec boolean(const char* key, const char* meaning) {
-  return {key, KeyKind::kBool, 0, 1, 1, false, {}, meaning, field<member>, nullptr, nullptr};
-}
-// For text, `highest` is the greatest length.
-template <auto member>
-constexpr KeySpec text(const char* key, double longest, const char* meaning, bool required = false) {
-  return {key, KeyKind::kText, 1, longest, 1, required, {}, meaning, field<member>, nullptr, nullptr};
-}
-template <auto member>
-constexpr KeySpec choice(const char* key, const char* meaning, bool required = false) {
-  return {key,     KeyKind::kChoice, 0,           0,          1, required, ChoiceOf<decltype(type_of(member))>::kWord,
-          meaning, nullptr,          set<member>, get<member>};
-}
-template <auto member>
-constexpr KeySpec list(KeyKind kind, const char* key, double lowest, double highest, double scale,
-                       const char* meaning) {
-  return {key, kind, lowest, highest, scale, false, {}, meaning, field<member>, nullptr, nullptr};
-}
-
-constexpr double kMilli = 1e-3;
-constexpr double kMilliSquared = 1e-6;
-constexpr double kDegree = 3.14159265358979323846 / 180.0;
-constexpr KeyKind kVec3 = KeyKind::kVec3;
-constexpr TableCount kOne = TableCount::kOne;
+using namespace schema;
 
 const KeySpec kTop[] = {
     text<&SceneDesc::name>("name", kNameBytes - 1, "name stored in the image and shown everywhere", true),
@@ -70,91 +15,6 @@ const KeySpec kTop[] = {
                                    "\"3 %\": take the cheapest model that errs by no more; see docs/models_elastic.md"),
 };
 
-const KeySpec kBody[] = {
-    choice<&BodyDesc::shape>("shape", "kind of body, see the shapes below", true),
-    list<&BodyDesc::half_axes_m>(kVec3, "half_axes_mm", 1, 5000, kMilli, "half axes along x, y, z"),
-    number<&BodyDesc::radius_m>("radius_mm", 1, 5000, kMilli, "radius, the outer one where there are two"),
-    number<&BodyDesc::height_m>("height_mm", 1, 10000, kMilli, "length along the axis"),
-    list<&BodyDesc::size_m>(kVec3, "size_mm", 1, 10000, kMilli, "sides along x, y, z"),
-    number<&BodyDesc::width_m>("width_mm", 1, 10000, kMilli, "width along x"),
-    number<&BodyDesc::wall_m>("wall_mm", 0.1, 5000, kMilli, "wall, or thickness of a round section"),
-    number<&BodyDesc::e1>("e1", 0.2, 1.8, 1, "exponent seen from the side: 0.2 square, 1 round, 1.8 pointed"),
-    number<&BodyDesc::e2>("e2", 0.2, 1.8, 1, "exponent seen from above"),
-    choice<&BodyDesc::axis>("axis", "direction of the body's axis: y is up"),
-    list<&BodyDesc::profile>(KeyKind::kPairs, "profile_mm", -10000, 10000, kMilli,
-                             "points [radius, height] from bottom to top; turns above 35 degrees stay "
-                             "sharp, the rest is smoothed; open ends are closed by discs"),
-    text<&BodyDesc::mesh>("mesh", 4096, "file, relative to the scene file; y is up"),
-    number<&BodyDesc::scale>("scale", 1e-9, 1e6, 1, "metres per unit of the file"),
-    boolean<&BodyDesc::fix_orientation>("fix_orientation", "turn triangles that face inwards"),
-    integer<&BodyDesc::triangles>("triangles", kFewestTriangles, kMostTriangles,
-                                  "about this many triangles; the tick's cost hardly depends on it"),
-    list<&BodyDesc::position_m>(kVec3, "position_mm", -1e4, 1e4, kMilli,
-                                "where the origin of the shape or file goes in the world"),
-    list<&BodyDesc::rotation_rad>(kVec3, "rotation_deg", -360, 360, kDegree,
-                                  "rotation vector (axis times angle) about that origin, before it goes there"),
-};
-const KeySpec kFem[] = {
-    choice<&FemDesc::order>("order",
-                            "quadratic: 10-node tetrahedra; linear: 4-node ones, 12 to 22 % too stiff in bending; "
-                            "mixed: quadratic in a zone, linear elsewhere, with transition elements between"),
-    list<&FemDesc::zone_from_m>(kVec3, "zone_from_mm", -10000, 10000, kMilli,
-                                "mixed: lowest corner of the box, in the world, where elements are quadratic"),
-    list<&FemDesc::zone_to_m>(kVec3, "zone_to_mm", -10000, 10000, kMilli, "mixed: its highest corner"),
-    integer<&FemDesc::zone_layers>("zone_layers", 1, 10,
-                                   "mixed: layers of quadratic elements around the nodes in the box"),
-    number_or_auto<&FemDesc::edge_m>(
-        "edge_mm", 0.01, 1000, kMilli,
-        "about this long an edge of a tetrahedron; auto: an eighth of the largest extent, and "
-        "where an elastic body's volume by its surface (half a wall) is less, that; "
-        "box: an even number along x or z makes its mesh symmetric there; "
-        "clip, tets: the mesh has its own"),
-    integer<&FemDesc::level>("level", 1, 3, "clip: fineness of its mesh; 1 has 717 nodes"),
-    choice<&FemDesc::precision>("precision",
-                                "numbers of the compliance table; auto: single where its force error is below 1e-4"),
-    integer<&FemDesc::strain_gauges>("strain_gauges", 0, kMaxStrainGauges, "points whose strain is watched every tick"),
-};
-const KeySpec kElastic[] = {
-    integer<&ElasticDesc::soft>("soft_modes", 0, kMaxSoftModes,
-                                "softest modes of the surface, with their energy to the fourth order; raised where it "
-                                "would part a symmetric pair; 0: the fewest of 1, 2, 4, 8 that meet check_error"),
-    integer<&ElasticDesc::linear>("linear_modes", 0, kMaxLinearModes,
-                                  "further modes, linear, through which contact regions feel one another"),
-    integer<&ElasticDesc::check_presses>(
-        "check_presses", -1, 16,
-        "places where a ball as large as the tool's tip is pressed into large-strain elements to check the modes, up "
-        "to contact.max_depth_mm or three times device.force_max_N; 10 to 25 s each; -1: 5 where soft_modes = 0, "
-        "else none"),
-    number<&ElasticDesc::check_error>("check_error", 1e-4, 1, 1, "relative error of the force that they may show"),
-};
-const KeySpec kMaterial[] = {
-    number<&MaterialDesc::youngs_modulus_Pa>("youngs_modulus_Pa", 1, 1e13, 1, "Young's modulus E"),
-    number<&MaterialDesc::poisson_ratio>("poisson_ratio", -0.999, 1, 1,
-                                         "Poisson's ratio nu; at most 0.5 (larger is thermodynamically impossible)"),
-    number<&MaterialDesc::density_kg_per_m3>("density_kg_per_m3", 1, 1e5, 1, "density rho"),
-    list<&MaterialDesc::relaxation_share>(
-        kVec3, "relaxation_share", 0, 0.95, 1,
-        "parts of the force that relax when the body is held, one for each term (0: none); below 0.95 together"),
-    list<&MaterialDesc::relaxation_s>(kVec3, "relaxation_s", 1e-3, 1e4, 1, "and with which time constants"),
-    number<&MaterialDesc::lost_share>("lost_share", 0, 0.5, 1,
-                                      "part of a press's work that its release does not give back, however slow"),
-    boolean<&MaterialDesc::legacy_paper_material>(
-        "legacy_paper_material", "accept the nu = 1.0 printed by Cui & Xiao 2008 and use 0.47 instead, with a warning"),
-};
-const KeySpec kFixed[] = {
-    choice<&FixedDesc::region>("region",
-                               "what of the body is held: its base, or what lies in a box or a ball; with tool points "
-                               "the anchors there stand still, with finite elements the nodes"),
-    number<&FixedDesc::base_height_m>("base_height_mm", 0, 10000, kMilli,
-                                      "base: everything of the body up to this height above its lowest point"),
-    list<&FixedDesc::from_m>(kVec3, "from_mm", -10000, 10000, kMilli, "box: its lowest corner"),
-    list<&FixedDesc::to_m>(kVec3, "to_mm", -10000, 10000, kMilli, "box: its highest corner"),
-    list<&FixedDesc::centre_m>(kVec3, "centre_mm", -10000, 10000, kMilli, "ball: its centre"),
-    number<&FixedDesc::radius_m>("radius_mm", 0.001, 10000, kMilli, "ball: its radius"),
-    choice<&FixedDesc::holds>("holds",
-                              "components of the displacement that are held; y alone over a flat base is a rigid "
-                              "plate without friction. Finite elements only"),
-};
 const KeySpec kSkeleton[] = {
     choice<&SkeletonDesc::law>("law",
                                "beam skeleton: stiffness = sum of straight beams' stiffnesses; paper = the ratios of "
@@ -456,14 +316,15 @@ void* open_gripper(SceneDesc& scene) {
 
 const TableSpec kTables[] = {
     {"", kOne, "Top level.", kTop, open_top},
-    {"body", kOne, "The elastic object.", kBody, open<&SceneDesc::body>},
-    {"body.fem", kOne, "Finite elements, with contact.backend = \"nodal\" or \"elastic\".", kFem,
+    {"body", kOne, "The elastic object.", body_keys(), open<&SceneDesc::body>},
+    {"body.fem", kOne, "Finite elements, with contact.backend = \"nodal\" or \"elastic\".", fem_keys(),
      open<&SceneDesc::fem>},
-    {"body.elastic", kOne, "Its modes, with contact.backend = \"elastic\".", kElastic, open<&SceneDesc::elastic>},
-    {"body.material", kOne, "Homogeneous, isotropic.", kMaterial, open<&SceneDesc::material>},
+    {"body.elastic", kOne, "Its modes, with contact.backend = \"elastic\".", elastic_keys(), open<&SceneDesc::elastic>},
+    {"body.material", kOne, "Homogeneous, isotropic.", material_keys(), open<&SceneDesc::material>},
     {"body.fixed", TableCount::kOneOrList,
-     "What holds the body: one table, or several of [[body.fixed]]. Heights, boxes and balls are those of the world.",
-     kFixed, open_fixed},
+     "What holds the body: one table, or several of [[body.fixed]]. Heights, boxes, balls and points are those of the "
+     "world.",
+     fixed_keys(), open_fixed},
     {"skeleton", kOne, "Beams from each contact region to the anchors.", kSkeleton, open<&SceneDesc::skeleton>},
     {"contact", kOne, "The contact law.", kContact, open<&SceneDesc::contact>},
     {"contact.duffing", kOne, "With law = \"duffing\".", kDuffing, open<&SceneDesc::duffing>},

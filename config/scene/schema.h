@@ -9,7 +9,19 @@
 
 namespace palpate {
 
-enum class KeyKind { kNumber, kNumberOrAuto, kInteger, kBool, kText, kChoice, kVec3, kPairs, kPoints, kFingers };
+enum class KeyKind {
+  kNumber,
+  kNumberOrAuto,
+  kInteger,
+  kBool,
+  kText,
+  kChoice,
+  kVec3,
+  kPairs,
+  kPoints,
+  kFingers,
+  kIntegers
+};
 
 struct KeySpec {
   const char* key;  // with its unit as suffix

@@ -101,6 +101,7 @@ std::string default_text(const KeySpec& key, void* table) {
     case KeyKind::kPairs:
     case KeyKind::kPoints:
     case KeyKind::kFingers:
+    case KeyKind::kIntegers:
       return "-";
   }
   return "-";
@@ -130,6 +131,8 @@ std::string allowed_text(const KeySpec& key) {
       return "list of 1 or " + std::to_string(kMaxFingers) + " numbers, each " + range_text(key);
     case KeyKind::kPoints:
       return "list of [x, y, z], each " + range_text(key);
+    case KeyKind::kIntegers:
+      return "list of whole numbers, each " + range_text(key);
   }
   return "";
 }

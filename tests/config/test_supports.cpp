@@ -1,7 +1,10 @@
 // What a scene can say about where its body is and what holds it: regions, components, place and turn.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
+#include <cstdio>
+#include <fstream>
 
 #include "config/bake/fem_body.h"
 #include "config/body/anchors.h"
@@ -115,6 +118,49 @@ TEST(Supports, ABallHoldsWhatIsInIt) {
   EXPECT_GT(held, 20);
 }
 
+// A plate of 60 x 2 x 60 mm: the patch is of one face, the ball of both.
+TEST(Supports, APatchIsOfOneSide) {
+  const auto plate = [](const std::string& region) {
+    return Pressed(
+        "name = \"plate\"\n[body]\nshape = \"box\"\nsize_mm = [60, 2, 60]\n[body.material]\nyoungs_modulus_Pa = 1e6\n"
+        "poisson_ratio = 0.3\n[body.fem]\nedge_mm = 5\n[contact]\nbackend = \"elastic\"\n[body.fixed]\nregion = \"" +
+        region + "\"\ncentre_mm = [0, -4, 0]\nradius_mm = 8\n" + kTool);
+  };
+  const Pressed patch = plate("patch"), ball = plate("ball");
+  int held = 0, of_the_ball = 0;
+  for (std::size_t n = 0; n < patch.mesh.node_m.size(); ++n) {
+    const Vec3 x = patch.mesh.node_m[n];
+    // The middle is the foot of the point on the plate; the ball's own is 4 mm below.
+    EXPECT_EQ(patch.supports[n] != 0, x.y < 1e-9 && norm(x) <= 0.008 + 1e-9) << n;
+    held += patch.supports[n] != 0 ? 1 : 0;
+    of_the_ball += ball.supports[n] != 0 && x.y > 1e-3 ? 1 : 0;
+  }
+  EXPECT_GT(held, 20);
+  EXPECT_GT(of_the_ball, 3);
+}
+
+// The vertices of the base, by their numbers, are the base; in a file as well.
+TEST(Supports, ListedVerticesHoldTheTrianglesBetweenThem) {
+  const std::string file = testing::TempDir() + "palpate_vertices_" + std::to_string(getpid()) + ".txt";
+  const Pressed base(bar("[body.fixed]\nbase_height_mm = 0\n"));
+  std::vector<std::string> warnings;
+  const SurfaceMesh surface = make_body(base.scene, warnings);
+  std::string numbers, lines;
+  for (std::size_t v = 0; v < surface.vertex_m.size(); ++v) {
+    if (surface.vertex_m[v].y > 1e-9) continue;
+    numbers += (numbers.empty() ? "" : ", ") + std::to_string(v);
+    lines += std::to_string(v) + "\n";
+  }
+  std::ofstream(file) << lines;
+  const std::string entry = "[body.fixed]\nregion = \"vertices\"\n";
+  EXPECT_EQ(Pressed(bar(entry + "vertices = [" + numbers + "]\n")).supports, base.supports);
+  EXPECT_EQ(Pressed(bar(entry + "vertices_file = \"" + file + "\"\n")).supports, base.supports);
+  std::ofstream(file) << "1 2\n3x\n";
+  EXPECT_NE(refusal(bar(entry + "vertices_file = \"" + file + "\"\n")).find(":2: not a vertex's number"),
+            std::string::npos);
+  std::remove(file.c_str());
+}
+
 TEST(Supports, BadEntriesAreRefusedWithPlaceAndRemedy) {
   const auto names = [](const std::string& text, const char* what) {
     const std::string said = refusal(text);
@@ -131,7 +177,23 @@ TEST(Supports, BadEntriesAreRefusedWithPlaceAndRemedy) {
         "body.fixed.base_height_mm: has no effect with region = \"ball\"");
   names(bar("[body.fixed]\nregion = \"box\"\nfrom_mm = [0, 0, 0]\nto_mm = [0, 1, 1]\n"),
         "must be greater than from_mm");
-  names(bar("[body.fixed]\nregion = \"cube\"\n"), "'cube' is unknown; allowed one of base, box, ball");
+  names(bar("[body.fixed]\nregion = \"cube\"\n"), "'cube' is unknown; allowed one of base, box, ball, patch, vertices");
+  const std::string listed = "[body.fixed]\nregion = \"vertices\"\n";
+  names(bar(listed), "body.fixed.vertices: missing; give the numbers here");
+  names(bar(listed + "vertices = [0, 1]\nvertices_file = \"v\"\n"), "body.fixed.vertices: given twice");
+  names(bar(listed + "vertices = [0, 123456789]\n"), "vertex 123456789 is not of the body's surface");
+  names(bar(listed + "vertices = [0]\n"), "no triangle of the surface has all its corners among the 1 listed");
+  names(bar(listed + "vertices_file = \"no/such\"\n"), "no/such: cannot be opened");
+  names(bar("[body.fixed]\nregion = \"patch\"\nradius_mm = 1\n"), "body.fixed: centre_mm: missing; a patch");
+  names(bar("[body.fixed]\nregion = \"patch\"\ncentre_mm = [1, 99, 1]\nradius_mm = 0.1\n"), "holds no node");
+  names(bar("[body.fixed]\nholds = \"normal\"\n"), "\"normal\" is of elastic beds; add stiffness_N_per_m3");
+  names(
+      "name = \"s\"\n[body]\nshape = \"sphere\"\n[body.fixed]\nregion = \"patch\"\ncentre_mm = [0, 0, 0]\n"
+      "radius_mm = 9\n" +
+          std::string(kTool),
+      "\"patch\" is of finite elements; with tool points take a ball or a box");
+  names("name = \"s\"\n[body]\nshape = \"sphere\"\n[body.fixed]\nstiffness_N_per_m3 = 1e6\n" + std::string(kTool),
+        "stiffness_N_per_m3: has no effect unless contact.backend = \"elastic\"");
   names("name = \"s\"\n[body]\nshape = \"sphere\"\n[body.fixed]\nholds = \"y\"\n" + std::string(kTool),
         "body.fixed.holds: has no effect with tool points");
 }
