@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "config/bake/elastic_mesh.h"
+#include "config/bake/element_materials.h"
 #include "config/bake/image_rules.h"
 #include "config/bake/tick_memory.h"
 #include "config/bake/tool_points.h"
@@ -45,9 +46,22 @@ double contact_radius_m(double radius_m, double depth_m) {
   return square_root(radius_m * std::min(depth_m, radius_m));
 }
 // On a slender body most of the depth is bending, and the contact is as large as its force makes it (Hertz 1882).
-double pressed_radius_m(const ModelParams& p, double radius_m, double force_N) {
-  const double modulus_Pa = p.youngs_modulus_Pa / (1 - p.poisson_ratio * p.poisson_ratio);
+double pressed_radius_m(double modulus_Pa, double radius_m, double force_N) {
   return std::cbrt(0.75 * force_N * radius_m / modulus_Pa);
+}
+// Of the element nearest to the place.
+double contact_modulus_at(const SceneDesc& scene, const ModelParams& params, const TetMesh& mesh, Vec3 place_m) {
+  const std::vector<fem::ElementMaterial> of_element = element_materials(scene, mesh);
+  fem::ElementMaterial material{params.youngs_modulus_Pa, params.poisson_ratio};
+  double least = kHuge;
+  for (std::size_t t = 0; t < of_element.size(); ++t) {
+    Vec3 middle;
+    for (std::size_t k = 0; k < 4; ++k) middle += 0.25 * mesh.node_m[static_cast<std::size_t>(mesh.tet[t].node[k])];
+    if (!(norm(middle - place_m) < least)) continue;
+    least = norm(middle - place_m);
+    material = of_element[t];
+  }
+  return material.youngs_modulus_Pa / (1 - material.poisson_ratio * material.poisson_ratio);
 }
 // What the baked body makes of the press, up to what the device can render.
 double expected_N(const SceneDesc& scene, const ImageContents& image, const CheckPress& press) {
@@ -122,8 +136,9 @@ std::vector<CheckPress> check_places(const SceneDesc& scene, const ImageContents
 
 int press_elements(const SceneDesc& scene, const ImageContents& image, const TetMesh& mesh, CheckPress& press,
                    double edge_share) {
+  const double modulus_Pa = contact_modulus_at(scene, image.params, mesh, press.place_m);
   const double patch = std::min(contact_radius_m(press.radius_m, press.depth_m.back()),
-                                pressed_radius_m(image.params, press.radius_m, expected_N(scene, image, press)));
+                                pressed_radius_m(modulus_Pa, press.radius_m, expected_N(scene, image, press)));
   const Refinement zone{press.place_m, kReachShare * patch, edge_share * patch};
   const TetMesh fine = refine_elastic_mesh(scene, image, mesh, {&zone, 1});
   const fem::StrainMesh<3> solid = elastic::solid_mesh(fine, scene.source.where("body.shape"));

@@ -289,6 +289,22 @@ void add_own_slopes(const elastic::ElasticBody<3>& body, ImageContents& image) {
   }
 }
 
+// The contact modulus at the vertices, of that of the scene's own material, where a body has several.
+void add_moduli(const elastic::RestBody<3>& rest, const std::vector<FacetFoot>& feet, ImageContents& image) {
+  if (rest.material().element.empty()) return;
+  for (const FacetFoot& foot : feet) {
+    double sum = 0, weight = 0;  // a quadratic facet's weights may be negative; a modulus may not
+    for (std::size_t a = 0; a < foot.node.size(); ++a) {
+      const double share = std::max(foot.shape.value[a], 0.0);
+      sum += share * rest.contact_modulus(foot.node[a]);
+      weight += share;
+    }
+    image.elastic_vertex.push_back(
+        static_cast<float>(clamp_to(sum / weight / rest.contact_modulus(), elastic_layout::kLeastModulusRatio * 1.001,
+                                    elastic_layout::kMostModulusRatio * 0.999)));
+  }
+}
+
 std::vector<FacetFoot> feet_of(const ImageContents& image, const elastic::Surface<3>& surface) {
   const FacetFinder finder(surface);
   std::vector<FacetFoot> feet;
@@ -306,18 +322,20 @@ elastic::ElasticOptions options_of(int soft, int linear) {
 }
 
 // Of every sample, for the largest of the tool's balls; the tick scales it to the others.
-std::vector<double> betas_of(const elastic::SelfTerms& self, double modulus_Pa, const ImageContents& image) {
-  elastic::BallLaw ball{0, modulus_Pa, false};
+std::vector<double> betas_of(const elastic::SelfTerms& self, const elastic::RestBody<3>& rest,
+                             const ImageContents& image) {
+  elastic::BallLaw ball{0, rest.contact_modulus(), false};
   for (std::size_t p = 0; p < image.piece.size(); ++p) {
     const TipLaw& law = image.tip_law[p];
     if (image.piece[p].point_count == 0 || law.half_power != 3) continue;
     const double radius = image.tool_point[at(image.piece[p].first_point)].margin_m;
-    if (radius > ball.radius_m) ball = {radius, modulus_Pa, law.first_factor < 0};
+    if (radius > ball.radius_m) ball = {radius, rest.contact_modulus(), law.first_factor < 0};
   }
   std::vector<double> beta(self.nodes.size(), 0.0);
   if (!(ball.radius_m > 0)) return beta;
   for (std::size_t i = 0; i < beta.size(); ++i) {
     const std::size_t node = at(self.nodes[i]);
+    ball.modulus_Pa = rest.contact_modulus(self.nodes[i]);
     beta[i] = elastic::fit_beta(ball, self.width[node], self.self_mpN[node], image.params.max_depth_m);
   }
   return beta;
@@ -366,11 +384,11 @@ ElasticReport ElasticBake::write(int soft, int linear, double add_c_mpN, ImageCo
   const Parts& parts = *parts_;
   elastic::ElasticBody<3> body = elastic::make_elastic_body(parts.stock, options_of(soft, linear));
   for (const int node : body.self.nodes) body.self.self_mpN[at(node)] += add_c_mpN;
-  const SelfField self(parts.rest.surface(), body.self, betas_of(body.self, parts.rest.contact_modulus(), image),
-                       parts.spacing_m);
+  const SelfField self(parts.rest.surface(), body.self, betas_of(body.self, parts.rest, image), parts.spacing_m);
   add_energy(body.maps.potential, image);
   add_vertices(body, term_shapes(body, parts.gradient), self, parts.feet, image, parts.normals);
   add_own_slopes(body, image);
+  add_moduli(parts.rest, parts.feet, image);
   ModelParams& p = image.params;
   p.elastic_soft = body.soft;
   p.elastic_linear = static_cast<std::int32_t>(body.modes.lambda_Npm3.size()) - body.soft;

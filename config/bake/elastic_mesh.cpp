@@ -6,6 +6,7 @@
 #include <set>
 
 #include "config/bake/elastic_bed.h"
+#include "config/bake/element_materials.h"
 #include "config/bake/fem_body.h"
 #include "config/bake/image_rules.h"
 #include "config/body/body.h"
@@ -191,6 +192,7 @@ TetMesh refine_elastic_mesh(const SceneDesc& scene, const ImageContents& image, 
   split_edges(skin, wanted, [&](Vec3 p) { return smooth.nearest(p); });
   TetMesh mesh = tetrahedralise(skin, longest, label);
   bend_to(smooth, mesh, label);
+  take_groups(base, mesh);
   return mesh;
 }
 
@@ -215,6 +217,7 @@ fem::StrainBody elastic_material(const SceneDesc& scene, const ModelParams& para
   material.poisson_ratio = params.poisson_ratio;
   material.kinematics = fem::Kinematics::kSolid;
   material.point_bulk = kPointBulk;
+  material.element = element_materials(scene, mesh);
   const std::vector<ElasticBed> beds = beds_of(scene, mesh);
   if (!beds.empty()) {
     const elastic::Surface<3> surface(elastic::solid_mesh(mesh, scene.source.where("body.shape")), 1);

@@ -25,7 +25,7 @@ struct Refinement {
 TetMesh refine_elastic_mesh(const SceneDesc& scene, const ImageContents& image, const TetMesh& base,
                             std::span<const Refinement> zones);
 
-// Neo-Hookean, for T10, on the scene's elastic beds.
+// Neo-Hookean, for T10, of the scene's materials, on its elastic beds. Throws ConfigError for what they do not meet.
 fem::StrainBody elastic_material(const SceneDesc& scene, const ModelParams& params, const TetMesh& mesh);
 
 }  // namespace palpate

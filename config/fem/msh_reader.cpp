@@ -31,6 +31,13 @@ class Words {
     if (!next(w)) fail(std::string("the file ends where ") + what + " should follow; it may be truncated");
     return w;
   }
+  // What stands between two quotes.
+  std::string quoted(const char* what) {
+    std::string text = word(what);
+    while (text.size() < 2 || text.back() != '"') text += " " + word(what);
+    if (text.front() != '"') fail("'" + text + "' stands where " + what + " should be");
+    return text.substr(1, text.size() - 2);
+  }
   template <class Number>
   Number number(const char* what) {
     const std::string w = word(what);
@@ -94,6 +101,10 @@ class MshReader {
         format();
       else if (word == "$Nodes")
         version_ == 4 ? nodes_4() : nodes_2();
+      else if (word == "$PhysicalNames")
+        names();
+      else if (word == "$Entities" && version_ == 4)
+        entities_4();
       else if (word == "$Elements")
         version_ == 4 ? elements_4() : elements_2();
       else if (word.front() == '$')
@@ -103,8 +114,11 @@ class MshReader {
     }
     if (version_ == 0) in_.fail("there is no $MeshFormat; is this a Gmsh mesh?");
     if (elements_.empty()) in_.fail("the file holds no tetrahedra; mesh in three dimensions (gmsh -3) and save again");
-    return number_tets(numbers_, position_m_, elements_, other_elements_,
-                       [this](const std::string& w) { in_.fail(w); });
+    TetFile file =
+        number_tets(numbers_, position_m_, elements_, other_elements_, [this](const std::string& w) { in_.fail(w); });
+    for (auto& [number, name] : file.mesh.group_name)
+      if (const auto named = volume_name_.find(number); named != volume_name_.end()) name = named->second;
+    return file;
   }
 
  private:
@@ -133,6 +147,33 @@ class MshReader {
     for (double* c : {&p.x, &p.y, &p.z}) *c = scale_ * in_.number<double>("a node's coordinate");
     return p;
   }
+  void names() {
+    for (auto n = in_.count("the number of physical names"); n > 0; --n) {
+      const auto dimension = in_.number<int>("a physical group's dimension");
+      const auto number = in_.number<std::int32_t>("a physical group's number");
+      const std::string name = in_.quoted("a physical group's name");
+      if (dimension == 3) volume_name_[number] = name;
+    }
+    in_.end_section("PhysicalNames");
+  }
+  // Of the geometry's volumes, to which physical group each belongs: the first, if several.
+  void entities_4() {
+    std::int64_t count[4];
+    for (std::int64_t& n : count) n = in_.count("the number of entities");
+    for (std::size_t dimension = 0; dimension < 4; ++dimension)
+      for (std::int64_t i = 0; i < count[dimension]; ++i) {
+        const auto entity = in_.number<std::int32_t>("an entity's number");
+        for (int k = 0; k < (dimension == 0 ? 3 : 6); ++k) in_.number<double>("an entity's extent");
+        for (auto groups = in_.count("the number of physical groups"), k = groups; k > 0; --k) {
+          const auto group = in_.number<std::int32_t>("a physical group's number");
+          if (dimension == 3 && k == groups) volume_group_[entity] = group;
+        }
+        if (dimension == 0) continue;
+        for (auto k = in_.count("the number of bounding entities"); k > 0; --k)
+          in_.number<std::int64_t>("a bounding entity");
+      }
+    in_.end_section("Entities");
+  }
   void nodes_2() {
     need_format();
     for (auto n = in_.count("the number of nodes"); n > 0; --n) {
@@ -157,7 +198,7 @@ class MshReader {
     }
     in_.end_section("Nodes");
   }
-  void element(std::int32_t type) {
+  void element(std::int32_t type, std::int32_t group) {
     const auto known =
         std::find_if(kElementTypes.begin(), kElementTypes.end(), [&](const ElementType& t) { return t.type == type; });
     if (known == kElementTypes.end())
@@ -165,6 +206,7 @@ class MshReader {
                " is not supported; allowed are tetrahedra of 4 and 10 nodes (types 4 and 11)");
     FileTet tet;
     tet.nodes = known->nodes;
+    tet.group = group;
     for (std::int32_t k = 0; k < known->nodes; ++k) {
       const auto n = in_.number<std::int64_t>("an element's node");
       if (!known->skipped) tet.number[static_cast<std::size_t>(k)] = n;
@@ -181,8 +223,12 @@ class MshReader {
     for (auto n = in_.count("the number of elements"); n > 0; --n) {
       in_.number<std::int64_t>("an element's number");
       const auto type = in_.number<std::int32_t>("an element's type");
-      for (auto tags = in_.count("the number of tags"); tags > 0; --tags) in_.number<std::int64_t>("a tag");
-      element(type);
+      std::int32_t group = 0;  // the first tag
+      for (auto tags = in_.count("the number of tags"), k = tags; k > 0; --k) {
+        const auto tag = in_.number<std::int32_t>("a tag");
+        if (k == tags) group = tag;
+      }
+      element(type, group);
     }
     in_.end_section("Elements");
   }
@@ -190,12 +236,13 @@ class MshReader {
     auto blocks = in_.count("the number of element blocks");
     for (int k = 0; k < 3; ++k) in_.number<std::int64_t>("a count of elements");
     for (; blocks > 0; --blocks) {
-      in_.number<int>("an entity's dimension");
-      in_.number<std::int64_t>("an entity's number");
+      const auto dimension = in_.number<int>("an entity's dimension");
+      const auto entity = volume_group_.find(in_.number<std::int32_t>("an entity's number"));
+      const std::int32_t group = dimension == 3 && entity != volume_group_.end() ? entity->second : 0;
       const auto type = in_.number<std::int32_t>("an element's type");
       for (auto n = in_.count("the number of elements in the block"); n > 0; --n) {
         in_.number<std::int64_t>("an element's number");
-        element(type);
+        element(type, group);
       }
     }
     in_.end_section("Elements");
@@ -206,6 +253,8 @@ class MshReader {
   int version_ = 0;
   std::vector<std::int64_t> numbers_;
   std::vector<Vec3> position_m_;
+  std::map<std::int32_t, std::string> volume_name_;    // of physical groups
+  std::map<std::int32_t, std::int32_t> volume_group_;  // of the geometry's volumes
   std::vector<FileTet> elements_;
   std::int32_t other_elements_ = 0;
 };

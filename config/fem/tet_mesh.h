@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,8 @@ struct Tet {
 struct TetMesh {
   std::vector<Vec3> node_m;
   std::vector<Tet> tet;
+  std::vector<std::int32_t> group = {};                 // of each element, 0: in none; empty: the file has none
+  std::map<std::int32_t, std::string> group_name = {};  // "" where it has a number alone
 };
 
 // Volume of the corners' straight tetrahedron; negative when inverted. m^3

@@ -35,7 +35,10 @@ TetFile number_tets(const std::vector<std::int64_t>& node_number, const std::vec
     Tet tet;
     for (std::size_t k = 0; k < static_cast<std::size_t>(t.nodes); ++k) tet.node[k] = index[place.at(t.number[k])];
     out.mesh.tet.push_back(tet);
+    out.mesh.group.push_back(t.group);
+    if (t.group != 0) out.mesh.group_name.try_emplace(t.group);
   }
+  if (out.mesh.group_name.empty()) out.mesh.group.clear();
   return out;
 }
 

@@ -14,6 +14,7 @@ namespace palpate {
 struct FileTet {
   std::int32_t nodes = 4;               // 4 or 10
   std::array<std::int64_t, 10> number;  // of the nodes, in our order of edges
+  std::int32_t group = 0;
 };
 
 // Keeps the nodes that tetrahedra use, in the file's order. Calls `fail`, which throws, with what is wrong: a node

@@ -35,6 +35,10 @@ PALPATE_CHOICE(FixedRegion, PALPATE_FIXED_REGIONS);
   X(kAll, all) X(kX, x) X(kY, y) X(kZ, z) X(kXy, xy) X(kXz, xz) X(kYz, yz) X(kNormal, normal)
 PALPATE_CHOICE(HeldComponents, PALPATE_HELD_COMPONENTS);
 
+// Where an entry of body.material_region is.
+#define PALPATE_MATERIAL_SHAPES(X) X(kBox, box) X(kBall, ball) X(kGroup, group)
+PALPATE_CHOICE(MaterialShape, PALPATE_MATERIAL_SHAPES);
+
 #define PALPATE_ANCHOR_SOURCES(X) X(kShape, auto) X(kMesh, mesh)
 PALPATE_CHOICE(AnchorSource, PALPATE_ANCHOR_SOURCES);
 

@@ -64,6 +64,15 @@ struct MaterialDesc {
   double lost_share = 0;
   bool legacy_paper_material = false;
 };
+// One place of another material; see config/bake/element_materials.h.
+struct MaterialRegionDesc {
+  MaterialShape region = MaterialShape::kBox;
+  Vec3 from_m{kAuto, kAuto, kAuto}, to_m{kAuto, kAuto, kAuto};
+  Vec3 centre_m{kAuto, kAuto, kAuto};
+  double radius_m = kAuto;
+  std::string group;
+  double youngs_modulus_Pa = kAuto, poisson_ratio = kAuto;
+};
 // One place where the body is held; see config/body/supports.h.
 struct FixedDesc {
   FixedRegion region = FixedRegion::kBase;
@@ -268,6 +277,7 @@ struct SceneDesc {
   BodyDesc body;
   FemDesc fem;
   MaterialDesc material;
+  std::vector<MaterialRegionDesc> material_region;
   std::vector<FixedDesc> fixed;  // none: the default base
   SkeletonDesc skeleton;
   ContactDesc contact;

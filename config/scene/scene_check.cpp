@@ -243,6 +243,18 @@ void check_bed(const SceneDesc& scene, const FixedDesc& entry, const std::string
          "size), or hold a component");
 }
 
+// Keys of a table whose region is `word`: all there when that is `of`, none otherwise.
+void needs_keys(const SceneDesc& scene, const std::string& table, std::initializer_list<const char*> keys,
+                const std::string& word, const std::string& of) {
+  if (word != of) return check_effect(scene, table, keys, {}, "with region = \"" + word + "\"");
+  for (const char* key : keys)
+    if (!scene.source.has(table + "." + key)) fail(scene, table, std::string(key) + ": missing; a " + of + " needs it");
+}
+void check_corners(const SceneDesc& scene, const std::string& table, Vec3 from, Vec3 to) {
+  if (!(from.x < to.x && from.y < to.y && from.z < to.z))
+    fail(scene, table + ".to_mm", "must be greater than from_mm along x, y and z; exchange the corners");
+}
+
 // Each entry of body.fixed has the keys of its region and no other.
 void check_fixed(const SceneDesc& scene) {
   for (std::size_t i = 0; i < scene.fixed.size(); ++i) {
@@ -250,21 +262,28 @@ void check_fixed(const SceneDesc& scene) {
     const std::string numbered = "body.fixed[" + std::to_string(i) + "]";
     const std::string table = scene.source.has(numbered) ? numbered : "body.fixed";
     const FixedRegion region = entry.region;
-    const std::string because = "with region = \"" + std::string(word_of(region)) + "\"";
-    const auto needs = [&](std::initializer_list<const char*> keys, FixedRegion of) {
-      if (region != of) return check_effect(scene, table, keys, {}, because);
-      for (const char* key : keys)
-        if (!scene.source.has(table + "." + key))
-          fail(scene, table, std::string(key) + ": missing; a " + std::string(word_of(of)) + " needs it");
-    };
+    const std::string word = word_of(region), because = "with region = \"" + word + "\"";
     if (region != FixedRegion::kBase) check_effect(scene, table, {"base_height_mm"}, {}, because);
-    needs({"from_mm", "to_mm"}, FixedRegion::kBox);
-    needs({"centre_mm", "radius_mm"}, region == FixedRegion::kPatch ? region : FixedRegion::kBall);
+    needs_keys(scene, table, {"from_mm", "to_mm"}, word, word_of(FixedRegion::kBox));
+    needs_keys(scene, table, {"centre_mm", "radius_mm"}, word,
+               word_of(region == FixedRegion::kPatch ? region : FixedRegion::kBall));
     check_vertices(scene, entry, table, because);
-    const Vec3 from = entry.from_m, to = entry.to_m;
-    if (region == FixedRegion::kBox && !(from.x < to.x && from.y < to.y && from.z < to.z))
-      fail(scene, table + ".to_mm", "must be greater than from_mm along x, y and z; exchange the corners");
+    if (region == FixedRegion::kBox) check_corners(scene, table, entry.from_m, entry.to_m);
     check_bed(scene, entry, table);
+  }
+}
+
+// Each entry of body.material_region has the keys of its shape and no other.
+void check_material_regions(const SceneDesc& scene) {
+  for (std::size_t i = 0; i < scene.material_region.size(); ++i) {
+    const MaterialRegionDesc& entry = scene.material_region[i];
+    const std::string table = "body.material_region[" + std::to_string(i) + "]";
+    if (scene.contact.backend != Backend::kElastic)
+      fail(scene, table, "has no effect unless contact.backend = \"elastic\"; remove it or set that");
+    needs_keys(scene, table, {"from_mm", "to_mm"}, word_of(entry.region), word_of(MaterialShape::kBox));
+    needs_keys(scene, table, {"centre_mm", "radius_mm"}, word_of(entry.region), word_of(MaterialShape::kBall));
+    needs_keys(scene, table, {"group"}, word_of(entry.region), word_of(MaterialShape::kGroup));
+    if (entry.region == MaterialShape::kBox) check_corners(scene, table, entry.from_m, entry.to_m);
   }
 }
 
@@ -440,6 +459,7 @@ void check_scene(const SceneDesc& scene) {
   check_error_target(scene);
   check_body(scene);
   check_fixed(scene);
+  check_material_regions(scene);
   check_contact(scene);
   check_friction(scene);
   check_backend(scene);

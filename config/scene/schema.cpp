@@ -302,6 +302,7 @@ void* open(SceneDesc& scene) {
 }
 void* open_top(SceneDesc& scene) { return &scene; }
 void* open_fixed(SceneDesc& scene) { return &scene.fixed.emplace_back(); }
+void* open_region(SceneDesc& scene) { return &scene.material_region.emplace_back(); }
 void* open_piece(SceneDesc& scene) { return &scene.piece.emplace_back(); }
 void* open_pair(SceneDesc& scene) { return &scene.pair.emplace_back(); }
 void* open_point(SceneDesc& scene) { return &scene.path.point.emplace_back(); }
@@ -321,6 +322,9 @@ const TableSpec kTables[] = {
      open<&SceneDesc::fem>},
     {"body.elastic", kOne, "Its modes, with contact.backend = \"elastic\".", elastic_keys(), open<&SceneDesc::elastic>},
     {"body.material", kOne, "Homogeneous, isotropic.", material_keys(), open<&SceneDesc::material>},
+    {"body.material_region", TableCount::kList,
+     "Places of other materials, on an elastic body; where they overlap the last counts.", material_region_keys(),
+     open_region},
     {"body.fixed", TableCount::kOneOrList,
      "What holds the body: one table, or several of [[body.fixed]]. Heights, boxes, balls and points are those of the "
      "world.",

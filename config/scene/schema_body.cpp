@@ -76,6 +76,20 @@ const KeySpec kMaterial[] = {
     boolean<&MaterialDesc::legacy_paper_material>(
         "legacy_paper_material", "accept the nu = 1.0 printed by Cui & Xiao 2008 and use 0.47 instead, with a warning"),
 };
+const KeySpec kMaterialRegion[] = {
+    choice<&MaterialRegionDesc::region>("region",
+                                        "where the material is: in a box or a ball of the world, or in the elements of "
+                                        "a physical group of a .msh file (shape = \"tets\")",
+                                        true),
+    list<&MaterialRegionDesc::from_m>(kVec3, "from_mm", -10000, 10000, kMilli, "box: its lowest corner"),
+    list<&MaterialRegionDesc::to_m>(kVec3, "to_mm", -10000, 10000, kMilli, "box: its highest corner"),
+    list<&MaterialRegionDesc::centre_m>(kVec3, "centre_mm", -10000, 10000, kMilli, "ball: its centre"),
+    number<&MaterialRegionDesc::radius_m>("radius_mm", 0.001, 10000, kMilli, "ball: its radius"),
+    text<&MaterialRegionDesc::group>("group", 127, "group: its name, or its number in quotes"),
+    number<&MaterialRegionDesc::youngs_modulus_Pa>("youngs_modulus_Pa", 1, 1e13, 1, "Young's modulus E there", true),
+    number<&MaterialRegionDesc::poisson_ratio>("poisson_ratio", -0.999, 0.4999, 1,
+                                               "Poisson's ratio nu there; left out: that of body.material"),
+};
 const KeySpec kFixed[] = {
     choice<&FixedDesc::region>("region",
                                "what of the body is held: its base; what lies in a box or a ball; a patch of its "
@@ -112,6 +126,7 @@ std::span<const KeySpec> body_keys() { return kBody; }
 std::span<const KeySpec> fem_keys() { return kFem; }
 std::span<const KeySpec> elastic_keys() { return kElastic; }
 std::span<const KeySpec> material_keys() { return kMaterial; }
+std::span<const KeySpec> material_region_keys() { return kMaterialRegion; }
 std::span<const KeySpec> fixed_keys() { return kFixed; }
 
 }  // namespace palpate::schema

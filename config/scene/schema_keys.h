@@ -67,6 +67,7 @@ std::span<const KeySpec> body_keys();
 std::span<const KeySpec> fem_keys();
 std::span<const KeySpec> elastic_keys();
 std::span<const KeySpec> material_keys();
+std::span<const KeySpec> material_region_keys();
 std::span<const KeySpec> fixed_keys();
 
 }  // namespace palpate::schema

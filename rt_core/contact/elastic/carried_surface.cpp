@@ -256,6 +256,19 @@ struct VertexCubic {
   }
 };
 
+void show_modulus(const Model& model, ElasticRow& row) PALPATE_RT {
+  row.modulus = 1;
+  row.modulus_gradient = {};
+  if (!has_moduli(model)) return;
+  const Triangle& triangle = model.triangle[static_cast<std::size_t>(row.foot.triangle)];
+  row.modulus = 0;
+  for (int k = 0; k < 3; ++k) {  // bound: 3
+    const Real ratio = modulus_ratio(model, triangle.vertex[k]);
+    row.modulus += row.foot.weight[k] * ratio;
+    row.modulus_gradient += ratio * row.foot.gradient_per_m[k];
+  }
+}
+
 void show_own_terms(const Model& model, ElasticRow& row) PALPATE_RT {
   const Triangle& triangle = model.triangle[static_cast<std::size_t>(row.foot.triangle)];
   const float* own[3];
@@ -280,6 +293,7 @@ void show_own_terms(const Model& model, ElasticRow& row) PALPATE_RT {
   row.c1_gradient = gradient[1];
   row.curvature_gradient = gradient[2];
   row.beta_gradient = gradient[3];
+  show_modulus(model, row);
 }
 
 // One Newton step along a capsule's axis to where its height is least; `rise` and how the normal turns as the centre

@@ -102,6 +102,16 @@ void rub(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   sum_up(model, state, scratch);
 }
 
+ImageResult check_moduli(const Model& model) noexcept {
+  if (!has_moduli(model)) return {};
+  for (std::int32_t v = 0; v < static_cast<std::int32_t>(model.sizes.n_vertex); ++v) {
+    const Real ratio = modulus_ratio(model, v);
+    if (!(ratio >= kLeastModulusRatio && ratio <= kMostModulusRatio))
+      return broken("elastic_vertex", static_cast<std::size_t>(all_vertex_floats(model) + v));
+  }
+  return {};
+}
+
 ImageResult check_data(const Model& model) noexcept {
   const ModelParams& p = model.params;
   const ModelSizes& n = model.sizes;
@@ -109,14 +119,15 @@ ImageResult check_data(const Model& model) noexcept {
   if (p.elastic_soft < 1) return broken("elastic_soft", 0);
   if (!(p.elastic_radius_rootJ > 0)) return broken("elastic_radius_rootJ", 0);
   const std::int64_t pair = pairs(p.elastic_soft);
-  if (n.n_elastic_vertex != n.n_vertex * vertex_floats(model)) return broken("n_elastic_vertex", 0);
+  const std::int64_t blocks = all_vertex_floats(model);
+  if (n.n_elastic_vertex != blocks && n.n_elastic_vertex != blocks + n.n_vertex) return broken("n_elastic_vertex", 0);
   if (n.n_elastic_cubic != pair * p.elastic_soft) return broken("n_elastic_cubic", 0);
   if (n.n_elastic_quartic != pair * pair) return broken("n_elastic_quartic", 0);
   for (const ImageResult& result :
        {check_tip_laws(model), check_numbers(model.elastic_vertex, "elastic_vertex"),
         check_numbers(model.elastic_cubic, "elastic_cubic"), check_numbers(model.elastic_quartic, "elastic_quartic")})
     if (result.error != ImageError::kNone) return result;
-  return {};
+  return check_moduli(model);
 }
 
 std::size_t work_bytes(const Model&) noexcept { return sizeof(ElasticWork); }

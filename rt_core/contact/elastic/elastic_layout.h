@@ -4,6 +4,9 @@
 //   per term t 12: u, and du_i/dX_j row by row;  c (m/N), c1 (m/N2), mean curvature (1/m), beta (1/(m N)); the
 //   gradients of these four along the surface;
 //   per linear mode 3: its shape in m/J^1/2. Rounded up to whole lanes of four.
+// After all vertices, where a body has several materials, one float each: the contact modulus E / (1 - nu^2) there over
+// that of the parameters.
+//
 // V = p.p/2 + p_a p_b W3_ab + p_a p_b W4_ab,  W3 = cubic . p,  W4 = quartic . y2  (y2 the pairs' products).
 #pragma once
 
@@ -13,6 +16,8 @@
 namespace palpate::elastic_layout {
 
 inline constexpr std::int32_t kTermFloats = 12, kOwnSlopes = 4, kOwnValues = 4, kOwnFloats = 16;
+
+inline constexpr Real kLeastModulusRatio = 1e-6, kMostModulusRatio = 1e6;
 
 constexpr std::int32_t pairs(std::int32_t soft) { return soft * (soft + 1) / 2; }
 constexpr std::int32_t terms(std::int32_t soft) { return soft + pairs(soft); }
@@ -38,6 +43,17 @@ inline const float* own_terms(const Model& model, std::int32_t vertex) PALPATE_R
 }
 inline const float* linear_shapes(const Model& model, std::int32_t vertex) PALPATE_RT {
   return own_terms(model, vertex) + kOwnFloats;
+}
+
+inline std::int64_t all_vertex_floats(const Model& model) PALPATE_RT {
+  return model.sizes.n_vertex * vertex_floats(model);
+}
+inline bool has_moduli(const Model& model) PALPATE_RT {
+  return model.sizes.n_elastic_vertex > all_vertex_floats(model);
+}
+// Of a body that has them.
+inline Real modulus_ratio(const Model& model, std::int32_t vertex) PALPATE_RT {
+  return static_cast<Real>(model.elastic_vertex[static_cast<std::size_t>(all_vertex_floats(model) + vertex)]);
 }
 
 }  // namespace palpate::elastic_layout

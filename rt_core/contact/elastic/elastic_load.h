@@ -16,9 +16,9 @@ struct FarChange {
 FarChange far_change(const FarField& far, Real force_N) PALPATE_RT;
 
 // What a place does to a tip's law there, and how that changes along the surface: c of the place where it is negative
-// and beta of it (config/elastic/width_law.h), and its curvature.
+// and beta of it (config/elastic/width_law.h), its curvature, and its modulus.
 struct PlacedLaw {
-  Real scale = 1, scale_by_curvature = 0, scale_by_c = 0;  // of the tip's law
+  Real scale = 1, scale_by_curvature = 0, scale_by_c = 0, scale_by_modulus = 0;  // of the tip's law
   PlaceTerms terms, by_c, by_beta, by_scale;
 };
 PlacedLaw placed_law(const TipLaw& law, const ElasticRow& row) PALPATE_RT;
@@ -70,8 +70,15 @@ struct ElasticLoad : TipLaws {
     const Real alone = (energy_J - place_energy_J(here.terms, range_m, e)) / here.scale;
     const Real by_c = placed[i]->c_m_per_N < 0 ? alone * here.scale_by_c + place_energy_J(here.by_c, range_m, e) : 0.0;
     const Real by_scale = alone + place_energy_J(here.by_scale, range_m, e);
-    return by_c * placed[i]->c_gradient + (here.scale_by_curvature * by_scale) * placed[i]->curvature_gradient +
-           place_energy_J(here.by_beta, range_m, e) * placed[i]->beta_gradient;
+    const Vec3 aside = by_c * placed[i]->c_gradient +
+                       (here.scale_by_curvature * by_scale) * placed[i]->curvature_gradient +
+                       place_energy_J(here.by_beta, range_m, e) * placed[i]->beta_gradient;
+    if (placed[i]->modulus_gradient == Vec3{}) return aside;
+    const Real inverse = 1.0 / placed[i]->modulus;  // the terms' powers of it: rho's by their own, beta's as of m^2
+    const PlaceTerms by_modulus = {2 * inverse * here.terms.second_N_per_m2, 3 * inverse * here.terms.between_N_per_m25,
+                                   2 * inverse * here.terms.third_N_per_m3, 3 * inverse * here.terms.fourth_N_per_m4};
+    return aside +
+           (alone * here.scale_by_modulus + place_energy_J(by_modulus, range_m, e)) * placed[i]->modulus_gradient;
   }
   // What the last forces ask for; a new region as if it were alone.
   Real start(std::int32_t r) const PALPATE_RT { return before_N[r] > 0 ? shift_under(before_N, r) : TipLaws::start(r); }

@@ -33,6 +33,8 @@ struct ElasticRow {
   Real turn[elastic_layout::kMaxPairs];  // d2 travel / d p2, with the foot's slide
   Vec3 sweep_w[kMaxSoftModes];           // of the material at the foot, by each amplitude
   Real c_m_per_N, c1_m_per_N2, curvature_1_per_m, beta_1_per_mN;  // there; config/elastic/self_terms.h, width_law.h
+  Real modulus;  // contact modulus there, of that of the parameters; its gradient is zero on bodies of one material
+  Vec3 modulus_gradient;
   Vec3 rise;  // gradient of the tip's height: the normal but for the facets' share
   Vec3 c_gradient, c1_gradient, curvature_gradient, beta_gradient;
 };

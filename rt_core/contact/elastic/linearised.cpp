@@ -110,14 +110,16 @@ PlacedLaw placed_law(const TipLaw& law, const ElasticRow& row) PALPATE_RT {
   PlacedLaw out;
   const Real rho = max_of(-row.c_m_per_N, 0.0), c_falls = rho > 0 ? -1.0 : 0.0;
   if (law.half_power == 2) {
-    const Real share = rho * law.coefficient;
-    out.scale = 1.0 / (1.0 - min_of(share, kMostOfPunch));
+    const Real share = rho * law.coefficient * row.modulus, gain = 1.0 / (1.0 - min_of(share, kMostOfPunch));
+    out.scale = row.modulus * gain;
     out.scale_by_c = share < kMostOfPunch ? c_falls * law.coefficient * out.scale * out.scale : 0.0;
+    out.scale_by_modulus = share < kMostOfPunch ? gain * gain : gain;
     return out;
   }
   const CurvatureFactor factor = curvature_factor(law, row);
-  out.scale = factor.value;
-  out.scale_by_curvature = factor.per_curvature;
+  out.scale = factor.value * row.modulus;
+  out.scale_by_curvature = factor.per_curvature * row.modulus;
+  out.scale_by_modulus = factor.value;
   const Real base = out.scale * law.coefficient, square = base * base;
   if (law.half_power == 4) {
     out.terms = {0, 0, 2 * rho * square, 5 * rho * rho * square * base};
@@ -125,7 +127,7 @@ PlacedLaw placed_law(const TipLaw& law, const ElasticRow& row) PALPATE_RT {
     return out;
   }
   // beta goes with the tip's own radius on the body, R scale^2.
-  const Real wide = row.tip.margin_m * out.scale * out.scale * square;
+  const Real wide = row.tip.margin_m * factor.value * factor.value * square;
   out.terms = {1.5 * rho * square, 2.625 * rho * rho * square * base, row.beta_1_per_mN * wide, 0};
   out.by_c = {1.5 * c_falls * square, 5.25 * c_falls * rho * square * base, 0, 0};
   out.by_beta = {0, 0, wide, 0};
