@@ -193,6 +193,9 @@ struct PieceDesc {
   double length_m = kAuto;
   Vec3 size_m{kAuto, kAuto, kAuto};
   std::vector<Vec3> vertices_m;
+  bool is_mesh = false;  // until it is cut into hulls (config/tool/tool_mesh.h)
+  std::string mesh;
+  double scale = 1e-3;
   double margin_m = kAuto;
   std::int32_t points = 1;
   std::int32_t part = 0;

@@ -23,6 +23,7 @@
 #include "config/scene/config_error.h"
 #include "config/scene/scene.h"
 #include "config/scene/schema.h"
+#include "config/tool/tool_mesh.h"
 
 namespace palpate {
 
@@ -372,6 +373,7 @@ SceneDesc scene_from(toml::table&& root, const std::string& file, const SceneOve
   // Whole tips have no points' springs: of the laws they take, the default is the one without a constant to choose.
   if (!scene.source.has("friction.law") && scene.contact.backend != Backend::kNodal && is_tip_law(scene.contact.law))
     scene.friction.law = FrictionLaw::kMindlin;
+  cut_tool_meshes(scene);
   check_scene(scene);
   check_effects(scene);
   return scene;

@@ -1,5 +1,7 @@
 #include "config/scene/schema_keys.h"
 
+#include <array>
+
 namespace palpate {
 
 namespace {
@@ -184,9 +186,30 @@ const KeySpec kCoupling[] = {
     number_or_auto<&CouplingDesc::radius_m>("radius_mm", 0.001, 1000, kMilli,
                                             "core radius of the far field; auto: sqrt(reference area / pi)"),
 };
+// The shapes of the core, and "mesh", which the reader cuts into hulls.
+constexpr std::int32_t kMeshWord = ChoiceOf<PieceShape>::kCount;
+constexpr std::array<const char*, kMeshWord + 1> piece_words() {
+  std::array<const char*, kMeshWord + 1> words{};
+  for (std::size_t i = 0; i < kMeshWord; ++i) words[i] = ChoiceOf<PieceShape>::kWord[i];
+  words[kMeshWord] = "mesh";
+  return words;
+}
+constexpr auto kPieceWords = piece_words();
+void set_piece_shape(void* table, std::int32_t value) {
+  PieceDesc& piece = *static_cast<PieceDesc*>(table);
+  piece.is_mesh = value == kMeshWord;
+  piece.shape = piece.is_mesh ? PieceShape::kHull : static_cast<PieceShape>(value);
+}
+std::int32_t get_piece_shape(const void* table) {
+  const PieceDesc& piece = *static_cast<const PieceDesc*>(table);
+  return piece.is_mesh ? kMeshWord : static_cast<std::int32_t>(piece.shape);
+}
+
 const KeySpec kPiece[] = {
-    choice<&PieceDesc::shape>(
-        "shape", "kind of piece, see the shapes below; its axis is its z axis; a cone's apex is at +z", true),
+    {"shape", KeyKind::kChoice, 0, 0, 1, true, kPieceWords,
+     "kind of piece, see the shapes below; its axis is its z axis; a cone's apex is at +z; mesh: the convex hulls that "
+     "make up the surface in a file, so many of the tool's pieces",
+     nullptr, set_piece_shape, get_piece_shape},
     choice<&PieceDesc::touches>("touches",
                                 "part that carries tool points: all of it, or only the end face (with its rounding) at "
                                 "the +z or -z end; only shapes with ends"),
@@ -198,6 +221,9 @@ const KeySpec kPiece[] = {
     list<&PieceDesc::size_m>(kVec3, "size_mm", 0.01, 10000, kMilli, "outer sides: see the shapes below"),
     list<&PieceDesc::vertices_m>(KeyKind::kPoints, "vertices_mm", -1e4, 1e4, kMilli,
                                  "corners of the core: see the shapes below"),
+    text<&PieceDesc::mesh>("mesh", 4096,
+                           "mesh: file (.obj, .stl, .ply), relative to the scene file; margin_mm is added to it"),
+    number<&PieceDesc::scale>("scale", 1e-9, 1e6, 1, "mesh: metres per unit of the file"),
     number_or_auto<&PieceDesc::margin_m>("margin_mm", 0.01, 5000, kMilli,
                                          "rounding radius, where the shape has one to choose (see below); contact is "
                                          "exact while penetration stays below "

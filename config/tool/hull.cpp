@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "config/tool/piece_card.h"
+#include "config/tool/tool_mesh.h"
 
 namespace palpate {
 
@@ -43,8 +44,9 @@ namespace {
 constexpr CardKey kSizes[] = {{"vertices_mm", "corners of the core, up to 64"}};
 
 Refusal check(const PieceDesc& piece) {
-  if (piece.vertices_m.size() <= 64) return {};
-  return {"vertices_mm", std::to_string(piece.vertices_m.size()) + " corners; allowed 1 to 64"};
+  if (piece.vertices_m.size() <= kMostHullCorners) return {};
+  return {"vertices_mm",
+          std::to_string(piece.vertices_m.size()) + " corners; allowed 1 to " + std::to_string(kMostHullCorners)};
 }
 
 PieceCore core(const PieceDesc& piece) {

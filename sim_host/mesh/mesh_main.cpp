@@ -6,10 +6,12 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 
 #include "config/body/mesh_io.h"
 #include "config/scene/schema.h"
 #include "sim_host/exit_codes.h"
+#include "sim_host/mesh/convex_parts.h"
 #include "sim_host/mesh/mesh_picture.h"
 #include "sim_host/mesh/surface_repair.h"
 
@@ -19,7 +21,7 @@ namespace {
 struct MeshOptions {
   std::string input, output, picture;
   double scale = 1e-3, edge_mm = 0, hole_mm = 0, sharp_deg = 60;
-  bool keep_largest = false, no_remesh = false, check = false;
+  bool keep_largest = false, no_remesh = false, check = false, convex = false;
 };
 
 void print_state(const char* when, const SurfaceState& s) {
@@ -44,13 +46,29 @@ void check_files(const MeshOptions& options) {
     throw std::runtime_error(options.output + ": exists; name another file with -o, or remove it");
 }
 
-std::string default_output(const std::string& input) {
-  return std::filesystem::path(input).filename().replace_extension("").string() + "_repaired.obj";
+std::string default_output(const std::string& input, bool convex) {
+  return std::filesystem::path(input).filename().replace_extension("").string() +
+         (convex ? "_parts.txt" : "_repaired.obj");
+}
+
+// A line x y z in metres a corner, an empty line after each part: what config/tool/tool_mesh.cpp reads.
+int write_parts(const MeshOptions& options) {
+  const std::vector<std::vector<Vec3>> parts =
+      convex_parts(read_mesh(options.input, options.scale).mesh, options.input);
+  std::ofstream out(options.output);
+  for (const std::vector<Vec3>& part : parts) {
+    for (const Vec3& p : part) out << fmt::format("{:.17g} {:.17g} {:.17g}\n", p.x, p.y, p.z);
+    out << "\n";
+  }
+  if (!out.flush()) throw std::runtime_error(options.output + ": cannot be written; check the folder and its space");
+  fmt::print("wrote   {}: {} convex parts\n", options.output, parts.size());
+  return kExitOk;
 }
 
 int run(MeshOptions options) {
-  if (options.output.empty()) options.output = default_output(options.input);
+  if (options.output.empty()) options.output = default_output(options.input, options.convex);
   check_files(options);
+  if (options.convex) return write_parts(options);
   const MeshFile file = read_mesh(options.input, options.scale);
   if (file.welded_vertices > 0) fmt::print("read    joined {} vertices that coincide\n", file.welded_vertices);
   if (file.collapsed_triangles > 0)
@@ -101,6 +119,8 @@ void add_options(CLI::App& app, MeshOptions& options) {
   app.add_flag("--keep-largest", options.keep_largest, "leave out every part but the largest");
   app.add_flag("--no-remesh", options.no_remesh, "repair only; keep the file's triangles");
   app.add_option("--picture", options.picture, "PNG of before and after, places of repairs marked");
+  app.add_flag("--convex", options.convex,
+               "cut it into convex parts, for a tool, and write their corners in metres: FILE's name with _parts.txt");
   app.add_flag("--check", options.check, "only say what the surface is like; exit code 1 if it is not sound");
   app.footer(
       "Examples:\n"
