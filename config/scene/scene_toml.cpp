@@ -336,6 +336,13 @@ void lay_over(toml::table& base, toml::table&& over) {
   }
 }
 
+// A device's profile is laid over a scene with its [device]; where the device stands and how it is driven is no
+// property of a scene (hal/device/arm_profile.h).
+toml::table without_drives(toml::table&& over) {
+  for (const char* table : {"frame", "linkage", "drives", "axis"}) over.erase(table);
+  return std::move(over);
+}
+
 // "key=value" with a dotted key; a value that is not TOML is taken as text, so that words need no quotes.
 toml::table parse_setting(const std::string& setting) {
   const auto equals = setting.find('=');
@@ -353,7 +360,7 @@ SceneDesc scene_from(toml::table&& root, const std::string& file, const SceneOve
   scene.source.file = file;
   const std::filesystem::path parent = std::filesystem::path(file).parent_path();
   scene.source.directory = parent.empty() ? "" : parent.string() + "/";
-  for (const std::string& path : overlays.file) lay_over(root, parse_text(read_text_file(path), path));
+  for (const std::string& path : overlays.file) lay_over(root, without_drives(parse_text(read_text_file(path), path)));
   for (const std::string& setting : overlays.setting) lay_over(root, parse_setting(setting));
   Reader(scene).read(root);
   if (!scene.source.has("body.shape"))

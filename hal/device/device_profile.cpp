@@ -1,40 +1,23 @@
 #include "hal/device/device_profile.h"
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
-#include <iterator>
 #include <span>
 #include <sstream>
 #include <vector>
 
+#include "hal/device/profile_key.h"
 #include "hal/system/private_file.h"
 
 namespace palpate {
 namespace {
 
-struct Key {
-  double DeviceProfile::*member;
-  const char* name;
-  double lowest, highest, scale;
-  bool may_lack;  // a default of 0: the device cannot do it
-};
-
-constexpr Key kKeys[] = {
+constexpr ProfileKey<DeviceProfile> kKeys[] = {
 #define PALPATE_KEY(member, key, value, lowest, highest, scale, meaning) \
-  {&DeviceProfile::member, key, lowest, highest, scale, (value) == 0},
+  {&DeviceProfile::member, key, lowest, highest, scale, (value) == 0},  // a default of 0: the device cannot do it
     PALPATE_PROFILE_KEYS(PALPATE_KEY)
 #undef PALPATE_KEY
 };
-constexpr std::size_t kLongestName = 63, kLongestFile = 1 << 16;
-
-std::string short_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
-
-std::string range(const Key& key) { return short_text(key.lowest) + " to " + short_text(key.highest); }
+constexpr std::size_t kLongestFile = 1 << 16;
 
 std::string trimmed(const std::string& text) {
   const auto first = text.find_first_not_of(" \t\r");
@@ -46,61 +29,42 @@ class Reader {
  public:
   std::string line(const std::string& text) {
     if (text == "[device]") {
-      if (in_device_) return "a second [device]; one file describes one device";
-      in_device_ = true;
-      return "";
+      if (begun_) return "a second [device]; one file describes one device";
+      return begun_ = in_device_ = true, "";
     }
-    if (text[0] == '[') return text + ": a profile holds only [device]";
+    if (text[0] == '[') {
+      if (!begun_) return text + ": begin the file with [device]";
+      in_device_ = false;
+      return arm_.table(text);
+    }
     const auto equals = text.find('=');
     if (equals == std::string::npos) return "'" + text + "': write KEY = VALUE";
-    if (!in_device_) return "a key before [device]; begin the file with [device]";
+    if (!begun_) return "a key before [device]; begin the file with [device]";
     const std::string key = trimmed(text.substr(0, equals)), value = trimmed(text.substr(equals + 1));
+    if (!in_device_) return arm_.key(key, value);
     if (std::ranges::find(seen_, key) != seen_.end()) return key + ": given twice; keep one";
     seen_.push_back(key);
-    return key == "name" ? name(value) : number(key, value);
+    return key == "name" ? read_text(key, value, profile.name) : read_key(kKeys, key, value, profile);
   }
 
-  // Keys that no line gave.
-  std::string missing() const {
-    std::string text;
-    const auto add = [&](const std::string& key) {
-      if (std::ranges::find(seen_, key) == seen_.end()) text += (text.empty() ? "" : ", ") + key;
-    };
-    add("name");
-    for (const Key& key : kKeys)
-      if (!key.may_lack) add(key.name);
-    return text;
+  std::string finish() {
+    std::string missing = std::ranges::find(seen_, "name") == seen_.end() ? "name" : "";
+    add_missing(kKeys, seen_, missing);
+    if (!missing.empty())
+      return "missing: " + missing + "; a profile gives every key (docs/devices.md says how to measure them)";
+    const std::string wrong = arm_.finish();
+    profile.frame = arm_.frame();
+    profile.clutch_buttons = arm_.clutch_buttons();
+    if (arm_.given()) profile.arm = arm_.arm();
+    return wrong;
   }
 
   DeviceProfile profile;
 
  private:
-  std::string name(const std::string& value) {
-    const bool quoted = value.size() > 2 && value.front() == '"' && value.back() == '"';
-    const std::string text = quoted ? value.substr(1, value.size() - 2) : "";
-    const bool printable =
-        std::ranges::all_of(text, [](char c) { return c >= ' ' && c <= '~' && c != '"' && c != '\\'; });
-    if (text.empty() || text.size() > kLongestName || !printable)
-      return "name: allowed is \"text\" of 1 to 63 printable letters of ASCII";
-    profile.name = text;
-    return "";
-  }
-
-  std::string number(const std::string& name, const std::string& value) {
-    const Key* key = std::ranges::find_if(kKeys, [&](const Key& k) { return name == k.name; });
-    if (key == std::end(kKeys)) return name + ": unknown key; see docs/devices.md";
-    // Only what TOML and C read alike: no hexadecimal, no "inf".
-    const bool plain = !value.empty() && value.find_first_not_of("+-.0123456789eE") == std::string::npos;
-    char* end = nullptr;
-    const double read = plain ? std::strtod(value.c_str(), &end) : 0;
-    if (!plain || *end != '\0' || !(read >= key->lowest && read <= key->highest))
-      return name + ": '" + value + "' is not a number in the range " + range(*key);
-    profile.*key->member = read * key->scale;
-    return "";
-  }
-
+  ArmReader arm_;
   std::vector<std::string> seen_;
-  bool in_device_ = false;
+  bool begun_ = false, in_device_ = false;
 };
 
 // A number that the scene states and the device must reach.
@@ -139,8 +103,8 @@ std::optional<DeviceProfile> parse_device_profile(const std::string& text, const
     error = file + ": the last line has no end: cut off? Add an empty line";
     return std::nullopt;
   }
-  if (const std::string missing = reader.missing(); !missing.empty()) {
-    error = file + ": missing: " + missing + "; a profile gives every key (docs/devices.md says how to measure them)";
+  if (const std::string wrong = reader.finish(); !wrong.empty()) {
+    error = file + ": " + wrong;
     return std::nullopt;
   }
   return reader.profile;

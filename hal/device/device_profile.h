@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "hal/device/arm_profile.h"
 #include "rt_core/device_profile.h"
 #include "rt_core/model.h"
 
@@ -15,11 +16,15 @@ struct DeviceProfile {
 #define PALPATE_KEY(member, key, value, lowest, highest, scale, meaning) double member = 0;
   PALPATE_PROFILE_KEYS(PALPATE_KEY)
 #undef PALPATE_KEY
+  CartesianKinematics frame;
+  std::uint32_t clutch_buttons = 0;
+  std::optional<ArmProfile> arm;  // a device whose drives report joints
 };
 
-// Reads the file: a [device] table of `key = number` lines and `name = "text"`, a subset of TOML, so that the
-// controller needs no parser of it and the file can be laid over a scene too (palpate bake --with). Every key is
-// needed: what was not measured is not known. On failure empty, and `error` names file, line, key, range and remedy.
+// Reads the file: a [device] table of `key = number` lines and `name = "text"`, and the tables of arm_profile.h: a
+// subset of TOML, so that the controller needs no parser of it and the file can be laid over a scene too (palpate bake
+// --with, which takes [device] alone). Every key of [device] is needed: what was not measured is not known. On failure
+// empty, and `error` names file, line, key, range and remedy.
 std::optional<DeviceProfile> read_device_profile(const std::string& path, std::string& error);
 // The same from text; `file` names it in errors.
 std::optional<DeviceProfile> parse_device_profile(const std::string& text, const std::string& file, std::string& error);

@@ -48,6 +48,7 @@ inline double local_valid_s(const ModelParams& params) noexcept {
 struct LoopOptions {
   DeadlineLimits deadline;
   LinkLimits link;
+  std::uint32_t clutch_buttons = 0;  // while one is pressed the tool stays and the handle moves; the force is let go
   double local_valid_s = 0;  // > 0: the scene is baked for a device that evaluates the local model, and needs one
   std::uint64_t ticks = 0;   // controller ticks before an orderly stop; 0: until stopped
   std::uint32_t start_timeout_ticks = 2000;  // without any sample at start
@@ -228,6 +229,9 @@ class Loop {
     if (sample_.fresh) {
       const bool believed = in_workspace(kinematics_, sample_);
       // A position outside the workspace is passed on as not a number: the core rejects and reports it.
+      const Pose seen_w = pose_in_world(kinematics_, sample_);
+      clutched_ = (sample_.buttons & options_.clutch_buttons) != 0;
+      if (clutched_ && summary_.ticks > 0 && believed && is_finite(input_.pose_w)) clutch(seen_w.position_m);
       input_.pose_w = pose_in_world(kinematics_, sample_);
       if (!believed) input_.pose_w.position_m.x = std::numeric_limits<double>::quiet_NaN();
       input_.buttons = sample_.buttons;
@@ -237,7 +241,7 @@ class Loop {
     input_.commands = host_.poll() | (stopping ? Command::kStop : 0u);
     const bool lacks_model = options_.local_valid_s > 0 && (sample_.flags & DeviceFlag::kLocalModel) == 0;
     if (!link_.proven() || lacks_model) input_.commands &= ~Command::kArm;  // nobody there to render it
-    if (link_.unheard()) input_.commands |= Command::kUnheard;
+    if (link_.unheard() || clutched_) input_.commands |= Command::kUnheard;
     if constexpr (requires { host_.joints(); }) input_.joints = host_.joints();
     if constexpr (requires { host_.live(); }) input_.live = host_.live();
     input_.device_fault = sample_.faults;
@@ -252,6 +256,9 @@ class Loop {
     }
     input_.drive = Drive::kDevice;
   }
+
+  // The device's origin moves so that the tool stays where it was. Orientation goes on: a hand cannot let go of it.
+  void clutch(Vec3 seen_w_m) noexcept { kinematics_.position_w += input_.pose_w.position_m - seen_w_m; }
 
   // A stall on a simulated device: force is let go until the machine has kept up for a while. What the core is told of
   // lateness stays below the limit at which it would latch by itself.
@@ -326,6 +333,7 @@ class Loop {
   Stamps stamps_{};
   LoopSummary summary_;
   std::uint32_t stale_ = 0;
+  bool clutched_ = false;
   bool riding_ = false;  // through a stall
   std::uint32_t calm_ticks_ = 0;
   std::int64_t woke_ns_ = 0;

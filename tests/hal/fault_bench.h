@@ -140,7 +140,8 @@ struct FaultRun {
 // The real tick and loop on `device`, whose time `clock` is.
 template <class D>
 FaultRun run_on(D& device, VirtualClock& clock, std::uint64_t ticks, double rate_max_N_per_s = 2e4,
-                const Meddle& meddle = {}, std::uint32_t ride_through_ticks = 0) {
+                const Meddle& meddle = {}, std::uint32_t ride_through_ticks = 0,
+                const CartesianKinematics& kinematics = {}, std::uint32_t clutch_buttons = 0) {
   ImageBytes image = tiny_image();
   image.params().force_rate_max_N_per_s = rate_max_N_per_s;
   image.seal();
@@ -161,7 +162,8 @@ FaultRun run_on(D& device, VirtualClock& clock, std::uint64_t ticks, double rate
   LoopOptions options;
   options.ticks = ticks;
   options.ride_through_ticks = ride_through_ticks;
-  Loop loop(supervised, clock, controller, recorder, port, CartesianKinematics{}, options, stop);
+  options.clutch_buttons = clutch_buttons;
+  Loop loop(supervised, clock, controller, recorder, port, kinematics, options, stop);
   FaultRun run;
   run.limits = model.params;
   run.summary = loop.run();

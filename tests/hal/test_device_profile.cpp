@@ -8,6 +8,7 @@
 #include <random>
 
 #include "hal/device/device_profile.h"
+#include "tests/hal/arm_text.h"
 #include "tests/support/tiny_image.h"
 
 namespace palpate {
@@ -74,7 +75,7 @@ TEST(DeviceProfile, IsRefusedWithFileLineKeyRangeAndRemedy) {
   EXPECT_THAT(refusal(with("delay_ms = 0.5", "delay_ms = 0.5\ndelay_ms = 1")),
               HasSubstr("arm.toml:13: delay_ms: given twice"));
   EXPECT_THAT(refusal(with("[device]", "[device]\n[device]")), HasSubstr("a second [device]"));
-  EXPECT_THAT(refusal(with("[device]", "[body]")), HasSubstr("[body]: a profile holds only [device]"));
+  EXPECT_THAT(refusal(with("[device]", "[body]")), HasSubstr("[body]: begin the file with [device]"));
   EXPECT_THAT(refusal(with("delay_ms = 0.5", "delay")), HasSubstr("write KEY = VALUE"));
   for (const char* bad : {"nan", "inf", "-1", "1e999", "0x10", "", "0.5 ms", "\"0.5\"", "101", "--1", "1e", "."})
     EXPECT_THAT(refusal(with("delay_ms = 0.5", std::string("delay_ms = ") + bad)), HasSubstr("arm.toml:12: delay_ms:"))
@@ -119,6 +120,62 @@ TEST(DeviceProfile, NoOrdinaryFileOfItsSizeIsRefused) {
   std::ofstream(large) << kGood;
   EXPECT_TRUE(read_device_profile(large, error)) << error;
   std::filesystem::remove(large);
+}
+
+std::string arm_with(const std::string& old, const std::string& line) {
+  std::string text = std::string(kGood) + test::kArm;
+  const auto at = text.find(old);
+  EXPECT_NE(at, std::string::npos) << old;
+  return refusal(text.replace(at, old.size(), line));
+}
+
+TEST(DeviceProfile, AnArmIsReadInSiUnits) {
+  std::string error;
+  const auto profile = parse_device_profile(std::string(kGood) + test::kArm, "arm.toml", error);
+  ASSERT_TRUE(profile && profile->arm) << error;
+  const ArmProfile& arm = *profile->arm;
+  EXPECT_EQ(arm.linkage.kind, LinkageKind::kSerial3r);
+  EXPECT_DOUBLE_EQ(arm.linkage.fore_m, 0.245);
+  EXPECT_EQ(arm.protocol, DriveProtocol::kODrive);
+  EXPECT_EQ(arm.firmware, "0.6.10");
+  EXPECT_DOUBLE_EQ(arm.drives.watchdog_s, 0.02);
+  ASSERT_EQ(arm.axes.size(), 3u);
+  EXPECT_EQ(arm.axes[1].direction, -1);
+  EXPECT_DOUBLE_EQ(arm.axes[1].home_joint, 80 * kPi / 180);
+  EXPECT_EQ(arm.axes[2].serial, 61925406831667.0);
+  // A quarter turn about z carries the device's x onto the world's y, twice as far.
+  DeviceSample sample;
+  sample.position_m = {0.01, 0, 0};
+  const Vec3 seen = pose_in_world(profile->frame, sample).position_m;
+  EXPECT_LT(norm(seen - Vec3{-0.1, 0.02, 0}), 1e-15);
+  EXPECT_EQ(profile->clutch_buttons, 2u);
+  EXPECT_TRUE(valid(profile->frame));
+}
+
+TEST(DeviceProfile, AnArmThatCannotBeIsRefused) {
+  EXPECT_THAT(arm_with("kind = \"serial_3r\"", "kind = \"scara\""),
+              HasSubstr("kind: \"scara\": allowed are \"cartesian\""));
+  EXPECT_THAT(arm_with("upper_mm = 205\n", ""), HasSubstr("missing in the table above: upper_mm"));
+  EXPECT_THAT(arm_with("upper_mm = 205", "upper_mm = 0"), HasSubstr("range 1 to 10000"));
+  EXPECT_THAT(arm_with("[[axis]]\nnode = 1", "[axis]\nnode = 1"), HasSubstr("[axis]: a profile holds only"));
+  EXPECT_THAT(arm_with("direction = -1", "direction = 0"), HasSubstr("axis 2: direction: 1 or -1"));
+  EXPECT_THAT(arm_with("node = 2", "node = 1"), HasSubstr("axis 2: node 1 is that of axis 1"));
+  EXPECT_THAT(arm_with("node = 2", "node = 63"), HasSubstr("an ODrive's is 1 to 62"));
+  EXPECT_THAT(arm_with("node = 2", "node = 2.5"), HasSubstr("whole numbers"));
+  EXPECT_THAT(arm_with("831667", "831666"), HasSubstr("axis 3: serial is that of axis 2"));
+  EXPECT_THAT(arm_with("home_deg = 80", "home_deg = 130"), HasSubstr("between lowest and highest"));
+  EXPECT_THAT(arm_with("ratio = 16\n", ""), HasSubstr("missing in the table above: ratio"));
+  EXPECT_THAT(arm_with("ratio = 16", "ratio = 16\nmm_per_turn = 3"), HasSubstr("only a slide has it"));
+  EXPECT_THAT(arm_with("kind = \"serial_3r\"", "kind = \"serial_3r_gimbal\""), HasSubstr("has 6 axes, not 3"));
+  EXPECT_THAT(arm_with("firmware = \"0.6.10\"\n", ""), HasSubstr("missing in the table above: firmware"));
+  EXPECT_THAT(arm_with("watchdog_ms = 20", "watchdog_ms = 0"), HasSubstr("range 5 to 100"));
+  EXPECT_THAT(arm_with("watchdog_ms = 20\n", ""), HasSubstr("missing in the table above: watchdog_ms"));
+  EXPECT_THAT(arm_with("calibrate = \"home_pose\"", "calibrate = \"absolute\""), HasSubstr("home_turns"));
+  EXPECT_THAT(arm_with("protocol = \"odrive\"", "protocol = \"cia402\""), HasSubstr("vendor_id"));
+  EXPECT_THAT(arm_with("scale = 2", "scale = 2\nscale = 2"), HasSubstr("arm.toml:20: scale: given twice"));
+  EXPECT_THAT(arm_with("[linkage]", "[frame]"), HasSubstr("a second [frame]"));
+  EXPECT_THAT(refusal(std::string(kGood) + "[linkage]\nkind = \"cartesian\"\ncalibrate = \"absolute\"\n"),
+              HasSubstr("[drives]"));
 }
 
 TEST(DeviceProfile, ASceneAtTheDevicesLimitsFits) { EXPECT_EQ(profile_contradictions(good(), scene()), ""); }

@@ -50,11 +50,13 @@ struct ScriptedDevice {
   explicit ScriptedDevice(SimulatedDevice& device) : inner(device) {}
   SimulatedDevice& inner;
   std::function<bool(int)> silent;
-  int receives = 0;
+  std::function<void(DeviceSample&, int)> change;  // with the number of the call, from 0
+  int receives = 0, samples = 0;
   DeviceSample last;
   std::vector<DeviceCommand> sent;
   void receive(DeviceSample& sample) noexcept {
     inner.receive(sample);
+    if (change) change(sample, samples++);
     if (silent && silent(receives++)) {
       sample = last;
       sample.fresh = false;
@@ -112,6 +114,31 @@ TEST(Loop, FreeMotionHasOneTickPerSlotAndNoForce) {
     EXPECT_EQ(r.output.device_w.force_N, Vec3{});
   }
   expect_ends_with_zero_force(bench);
+}
+
+// While the button is pressed the tool stays where it was and the force is asked to go; afterwards it moves on from
+// there, by as much as the handle.
+TEST(Loop, TheClutchHoldsTheToolWhileTheHandleMoves) {
+  Bench bench({}, HandPath({{0, {{0.01, 0, 0}, {}}}, {0.4, {{0.05, 0.02, 0}, {}}}}));
+  bench.options.clutch_buttons = 2;
+  std::vector<Vec3> handle_m;
+  handle_m.reserve(400);
+  bench.device.change = [&](DeviceSample& sample, int call) {
+    sample.buttons = call >= 100 && call < 200 ? 3u : 1u;
+    handle_m.push_back(sample.position_m);
+  };
+  bench.run(300);
+  const auto& records = bench.recorder.records;
+  const Vec3 held = records[99].input.pose_w.position_m;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    const bool pressed = i >= 100 && i < 200;
+    EXPECT_EQ((records[i].input.commands & Command::kUnheard) != 0, pressed) << i;
+    EXPECT_TRUE(!pressed || norm(records[i].input.pose_w.position_m - held) < 1e-15) << i;
+  }
+  const Vec3 lost = handle_m[199] - handle_m[99];
+  EXPECT_GT(norm(lost), 5e-3);
+  for (std::size_t i = 200; i < records.size(); ++i)
+    EXPECT_LT(norm(records[i].input.pose_w.position_m + lost - handle_m[i]), 1e-15) << i;
 }
 
 // The hand pulls to 10 mm behind the wall: static balance k_wall d = k_hand (10 mm - d), in the plant's exact position.
