@@ -12,6 +12,7 @@ struct Frame {
   std::uint32_t id = 0;     // 11-bit identifier
   std::uint8_t length = 0;  // bytes of data: 0..8, or an FD length up to 64
   bool fd = false;
+  bool remote = false;  // asks for the frame of this identifier; carries no data
   std::uint8_t data[64] = {};
 };
 
@@ -43,6 +44,8 @@ class Transport {
   virtual int send(std::span<const Frame> frames) noexcept = 0;
   // Reads what has arrived, at most frames.size() and at most kMaxFramesPerReceive; returns how many, 0 if none.
   virtual int receive(std::span<Frame> frames) noexcept = 0;
+  // Remote frames are handed out from now on; by default they are counted as malformed.
+  virtual void accept_remote() noexcept {}
   virtual TransportState state() const noexcept = 0;
   virtual const TransportCounters& counters() const noexcept = 0;
 };

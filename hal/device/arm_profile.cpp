@@ -25,7 +25,9 @@ constexpr ProfileKey<LinkageProfile> kLinkageKeys[] = {{&LinkageProfile::upper_m
                                                        {&LinkageProfile::fore_m, "fore_mm", 1, 1e4, 1e-3, true},
                                                        {&LinkageProfile::base_m, "base_mm", 1, 1e4, 1e-3, true},
                                                        {&LinkageProfile::plate_m, "plate_mm", 1, 1e4, 1e-3, true},
-                                                       {&LinkageProfile::weight_N, "weight_N", 0, 100, 1, true}};
+                                                       {&LinkageProfile::weight_x_N, "weight_x_N", -100, 100, 1, true},
+                                                       {&LinkageProfile::weight_y_N, "weight_y_N", -100, 100, 1, true},
+                                                       {&LinkageProfile::weight_z_N, "weight_z_N", -100, 100, 1, true}};
 constexpr ProfileKey<DrivesProfile> kDrivesKeys[] = {
     {&DrivesProfile::bit_rate_Hz, "bit_rate_kHz", 10, 1000, 1e3, true},
     {&DrivesProfile::watchdog_s, "watchdog_ms", 5, 100, 1e-3, false},
@@ -161,7 +163,7 @@ std::string ArmReader::check_axis(const AxisProfile& a, std::size_t number) cons
 std::string ArmReader::check_linkage() {
   arm_.linkage = {kKindOf[kind_],  kind_ == kGimbalKind, linkage_.upper_m,
                   linkage_.fore_m, linkage_.base_m,      linkage_.plate_m};
-  arm_.weight_N = linkage_.weight_N;
+  arm_.weight_N = {linkage_.weight_x_N, linkage_.weight_y_N, linkage_.weight_z_N};
   arm_.home_pose = calibrate_ == 0;
   arm_.protocol = static_cast<DriveProtocol>(protocol_);
   const auto joints = static_cast<std::size_t>(joint_count(arm_.linkage));

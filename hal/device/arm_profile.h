@@ -23,7 +23,7 @@ struct FrameProfile {
 // [linkage]; which lengths are needed depends on the kind.
 struct LinkageProfile {
   double upper_m = 0, fore_m = 0, base_m = 0, plate_m = 0;
-  double weight_N = 0;  // of handle and forearms, held by the motors; along the world's -z
+  double weight_x_N = 0, weight_y_N = 0, weight_z_N = 0;  // of handle and forearms, device frame; the motors hold it
 };
 
 enum class DriveProtocol : int { kODrive = 0, kCia402 };
@@ -55,7 +55,7 @@ struct AxisProfile {
 
 struct ArmProfile {
   Linkage linkage;
-  double weight_N = 0;
+  Vec3 weight_N;
   bool home_pose = true;  // the handle rests in a known pose at start; otherwise drives are absolute
   DriveProtocol protocol = DriveProtocol::kODrive;
   std::string firmware;  // "0.6.10": of every drive; "" asks for none

@@ -2,6 +2,7 @@
 // itself a real-time thread, and runs the loop. No parser, no graphics; everything is allocated before the first tick.
 #include <getopt.h>
 
+#include <concepts>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -16,6 +17,8 @@
 #include "hal/bus/link_report.h"
 #include "hal/bus/loopback.h"
 #include "hal/device/device_profile.h"
+#include "hal/drives/axis_device.h"
+#include "hal/drives/drive_link.h"
 #include "hal/loop/lockstep.h"
 #include "hal/loop/loop.h"
 #include "hal/system/device_lock.h"
@@ -162,59 +165,74 @@ void connect_host(const Arguments& arguments, const Model& model, HostConnection
 }
 
 // A set-up that cannot carry its traffic in every period is refused before anything is sent, with the table.
-void check_bus(const DeviceAddress& address, double period_s) {
+void check_bus(const DeviceAddress& address, const DeviceProfile& profile, double period_s) {
   if (address.kind != TransportKind::kCan) return;
   BusBudget budget = haptic_node_budget(address.profile == WireProfile::kFd);
   budget.period_us = period_s * 1e6;
-  const BusVerdict verdict = check_bus_budget(budget);
+  const BusVerdict verdict = profile.arm ? check_drives_budget(*profile.arm, period_s) : check_bus_budget(budget);
   std::fprintf(stderr, "%s", verdict.text.c_str());
   if (!verdict.fits) throw Failure{kUnavailable, "the bus cannot carry this traffic in every period"};
 }
 
 // Nothing is driven that the scene could overstrain, and nothing real of which that is not known.
-void check_profile(const Arguments& arguments, const DeviceAddress& address, const ModelParams& scene) {
+DeviceProfile check_profile(const Arguments& arguments, const DeviceAddress& address, const ModelParams& scene) {
   DeviceProfile profile;
   const bool real = address.kind != TransportKind::kLoopback;
   const std::string refusal = refuse_profile(real, arguments.device, arguments.profile, scene, &profile);
   if (!refusal.empty()) throw Failure{kUsage, refusal};
   if (!arguments.profile.empty()) std::fprintf(stderr, "profile %s\n", profile_text(profile, scene).c_str());
+  return profile;
 }
 
-std::unique_ptr<Transport> connect_device(const Arguments& arguments, const ModelParams& scene, DeviceAddress& address,
-                                          DeviceLock& lock) {
+// The other end, and what is known of it.
+struct Connection {
+  DeviceAddress address;
+  DeviceProfile profile;
+  DeviceLock lock;
+  std::unique_ptr<Transport> transport;
+};
+
+Connection connect_device(const Arguments& arguments, const ModelParams& scene) {
+  Connection c;
   std::string line, error;
   const std::optional<DeviceAddress> parsed = parse_device_address(arguments.device, line, error);
   if (!parsed) throw Failure{kUsage, error};
-  address = *parsed;
+  c.address = *parsed;
   std::fprintf(stderr, "%s\n", line.c_str());
-  check_profile(arguments, address, scene);
-  check_bus(address, scene.period_s);
+  c.profile = check_profile(arguments, c.address, scene);
+  check_bus(c.address, c.profile, scene.period_s);
   // A real device has one controller at a time.
-  if (const std::string name = lock_name(address); !name.empty()) {
-    lock = DeviceLock::take(name, error);
-    if (!lock) throw Failure{kUnavailable, error};
+  if (const std::string name = lock_name(c.address); !name.empty()) {
+    c.lock = DeviceLock::take(name, error);
+    if (!c.lock) throw Failure{kUnavailable, error};
   }
-  std::unique_ptr<Transport> transport =
-      arguments.device_fd >= 0 ? adopt_loopback(arguments.device_fd, error)
-                               : open_transport(address, DeviceSide::kController, 5 * kSocketTimeout_ms, error);
-  if (!transport) throw Failure{kUnavailable, error};
-  return transport;
+  constexpr int kWait_ms = 5 * kSocketTimeout_ms;
+  if (arguments.device_fd >= 0) {
+    c.transport = adopt_loopback(arguments.device_fd, error);
+  } else if (c.profile.arm) {
+    c.transport = open_drives(c.address, *c.profile.arm, DeviceSide::kController, kWait_ms, error);
+  } else {
+    c.transport = open_transport(c.address, DeviceSide::kController, kWait_ms, error);
+  }
+  if (!c.transport) throw Failure{kUnavailable, error};
+  return c;
 }
 
 // Ticks in time after a stall before the force comes back, on the loopback: as many as before arming at the start.
 constexpr std::uint32_t kRideThroughTicks = 50;
 
-LoopOptions loop_options(const Model& model, const Arguments& arguments, TransportKind transport) {
+LoopOptions loop_options(const Model& model, const Arguments& arguments, const Connection& connection) {
   const double period_s = model.params.period_s;
   LoopOptions options;
   options.deadline = deadline_limits(model.params);
   options.ticks = static_cast<std::uint64_t>(arguments.duration_s / period_s);
   options.start_timeout_ticks = static_cast<std::uint32_t>(kStartTimeout_s / period_s);
   options.silence_fault_ticks = static_cast<std::uint32_t>(model.params.silence_fault_ticks);
-  const bool ride_through = transport == TransportKind::kLoopback && !arguments.virtual_time();
+  const bool ride_through = connection.address.kind == TransportKind::kLoopback && !arguments.virtual_time();
   options.ride_through_ticks = ride_through ? kRideThroughTicks : 0;
   options.link = link_limits(model.params);
   options.local_valid_s = local_valid_s(model.params);
+  options.clutch_buttons = connection.profile.clutch_buttons;
   if (!arguments.virtual_time()) options.phase_ns = slot_phase_ns(options.deadline.period_ns);
   // Long enough for the ramp, with room for ticks that come late.
   options.stop_ticks = static_cast<std::uint32_t>(3.0 * model.params.ramp_out_s / period_s) + 20;
@@ -228,13 +246,22 @@ struct Core {
 };
 
 // What the device sent before the loop started is old, and reading it all would make the first tick late.
-void drain(DeviceBus& bus) {
+template <Device D>
+void drain(D& device) {
   constexpr int kMostReads = 16;  // 1024 frames: more than a socket holds
   DeviceSample sample;
   for (int i = 0; i < kMostReads; ++i) {
-    bus.receive(sample);
+    device.receive(sample);
     if (!sample.fresh) return;
   }
+}
+
+// Drives are found, proved and set up; none is enabled.
+template <Clock C>
+void start_drives(AxisDevice& arm, C& clock) {
+  std::fprintf(stderr, "drives: looking for them\n");
+  const std::string wrong = arm.start([&clock] { clock.wait_until(clock.now_ns() + 1'000'000); });
+  if (!wrong.empty()) throw Failure{kUnavailable, "refused, and no motor was enabled: " + wrong};
 }
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -272,9 +299,9 @@ std::string missing_rights(const RtSetup& setup, const Arguments& arguments) {
 }
 
 // The real-time thread: set-up, system-call filter, loop. Prints only before the filter is in place.
-template <Clock C>
-LoopSummary run_loop(const Arguments& arguments, const Model& model, Core& core, HostConnection& host, DeviceBus& bus,
-                     TransportKind transport, C& clock, const std::atomic<bool>& interrupted, LoopUsage& usage) {
+template <Device D, Clock C>
+LoopSummary run_loop(const Arguments& arguments, const Model& model, Core& core, HostConnection& host, D& bus,
+                     const Connection& connection, C& clock, const std::atomic<bool>& interrupted, LoopUsage& usage) {
   std::string missing;
   std::atomic<bool> stop{false};
   const auto* mailbox = static_cast<const MailboxRegion*>(host.mailbox.data());
@@ -284,7 +311,7 @@ LoopSummary run_loop(const Arguments& arguments, const Model& model, Core& core,
   TelemetrySink sink(mailbox != nullptr ? &host.writer : nullptr);
   SupervisedDevice device(bus, port);
   ModelController controller(model, *core.state, *core.scratch);
-  const CartesianKinematics kinematics;
+  if constexpr (std::same_as<D, AxisDevice>) start_drives(bus, clock);
   LoopSummary summary;
   std::thread thread([&] {
     const RtSetup setup(rt_options(arguments));
@@ -300,7 +327,8 @@ LoopSummary run_loop(const Arguments& arguments, const Model& model, Core& core,
     drain(bus);
     const ThreadUsage before = thread_usage();
     const long heap_calls_before = heap_calls();
-    Loop loop(device, clock, controller, sink, port, kinematics, loop_options(model, arguments, transport), stop);
+    Loop loop(device, clock, controller, sink, port, connection.profile.frame,
+              loop_options(model, arguments, connection), stop);
     summary = loop.run();
     const long heap_calls_after = heap_calls();
     usage.heap_calls = heap_calls_after < 0 ? -1 : heap_calls_after - heap_calls_before;
@@ -326,14 +354,15 @@ LoopSummary run_loop(const Arguments& arguments, const Model& model, Core& core,
   return summary;
 }
 
+template <Device D>
 LoopSummary run_in_virtual_time(const Arguments& arguments, const Model& model, Core& core, HostConnection& host,
-                                DeviceBus& bus, TransportKind transport, const std::atomic<bool>& interrupted,
+                                D& bus, const Connection& connection, const std::atomic<bool>& interrupted,
                                 LoopUsage& usage) {
   LockstepClock clock;
   // The device first: a host that looks in the same step sees the sample's tick not yet, but everything before it.
   if (arguments.device_turn_fd >= 0) clock.add(arguments.device_turn_fd, "device");
   if (arguments.host_turn_fd >= 0) clock.add(arguments.host_turn_fd, "host");
-  const LoopSummary summary = run_loop(arguments, model, core, host, bus, transport, clock, interrupted, usage);
+  const LoopSummary summary = run_loop(arguments, model, core, host, bus, connection, clock, interrupted, usage);
   if (clock.lost() != nullptr) {
     std::fprintf(stderr, "virtual time: the %s %s at %.3f s; time went on without it\n", clock.lost(),
                  clock.lost_closed() ? "closed its end" : "did not take its turn for 10 s",
@@ -372,6 +401,23 @@ void check_tick_fits(const Model& model, bool real) {
   }
 }
 
+void print_run(const LoopSummary& summary) {
+  std::fprintf(
+      stderr,
+      "controller: %llu ticks, %llu missed, %u stalls ridden through, %llu without a fresh sample, faults 0x%x\n",
+      static_cast<unsigned long long>(summary.ticks), static_cast<unsigned long long>(summary.missed_slots),
+      summary.stalls, static_cast<unsigned long long>(summary.stale_ticks), summary.faults);
+}
+
+template <Device D>
+LoopSummary run_on(const Arguments& arguments, const Model& model, Core& core, HostConnection& host, D& device,
+                   const Connection& connection, const std::atomic<bool>& interrupted, LoopUsage& usage) {
+  if (arguments.virtual_time())
+    return run_in_virtual_time(arguments, model, core, host, device, connection, interrupted, usage);
+  MonotonicClock clock;
+  return run_loop(arguments, model, core, host, device, connection, clock, interrupted, usage);
+}
+
 int run(int argc, char** argv) {
   Arguments arguments = parse(argc, argv);
   const std::atomic<bool>& interrupted = install_stop_signals();
@@ -380,29 +426,31 @@ int run(int argc, char** argv) {
   Core core(model);
   HostConnection host;
   if (arguments.control_fd >= 0) connect_host(arguments, model, host);
-  DeviceAddress address;
-  DeviceLock lock;
-  const std::unique_ptr<Transport> transport = connect_device(arguments, model.params, address, lock);
-  DeviceBus bus(*transport, address.profile, address.node);
-  const bool real = address.kind != TransportKind::kLoopback;
+  const Connection connection = connect_device(arguments, model.params);
+  const bool real = connection.address.kind != TransportKind::kLoopback;
   arguments.require_rt = (arguments.require_rt || real) && !arguments.allow_no_rt && !arguments.virtual_time();
   if (!arguments.virtual_time()) check_tick_fits(model, real);
   LoopUsage usage;
-  MonotonicClock clock;
-  const LoopSummary summary =
-      arguments.virtual_time()
-          ? run_in_virtual_time(arguments, model, core, host, bus, address.kind, interrupted, usage)
-          : run_loop(arguments, model, core, host, bus, address.kind, clock, interrupted, usage);
-  if (summary.end == LoopEnd::kSilentAtStart) {
-    const LinkReport report = report_link(bus, transport->state());
-    throw Failure{kSilentAtStart, "no sample at start: " + report.found + "; " + report.remedy};
+  LoopSummary summary;
+  if (connection.profile.arm) {
+    const std::unique_ptr<AxisDrives> drives =
+        make_drives(*connection.transport, *connection.profile.arm, model.params.period_s);
+    AxisDevice device(*drives, *connection.profile.arm, model.params.period_s);
+    summary = run_on(arguments, model, core, host, device, connection, interrupted, usage);
+    if (summary.end == LoopEnd::kSilentAtStart) throw Failure{kSilentAtStart, "no positions from the drives at start"};
+    print_run(summary);
+    std::fprintf(stderr, "drives: %llu ticks without force beyond a limit of joints or linkage\n",
+                 static_cast<unsigned long long>(device.limited_ticks()));
+  } else {
+    DeviceBus bus(*connection.transport, connection.address.profile, connection.address.node);
+    summary = run_on(arguments, model, core, host, bus, connection, interrupted, usage);
+    if (summary.end == LoopEnd::kSilentAtStart) {
+      const LinkReport report = report_link(bus, connection.transport->state());
+      throw Failure{kSilentAtStart, "no sample at start: " + report.found + "; " + report.remedy};
+    }
+    print_run(summary);
+    print_link(summary, bus, connection.transport->state());
   }
-  std::fprintf(
-      stderr,
-      "controller: %llu ticks, %llu missed, %u stalls ridden through, %llu without a fresh sample, faults 0x%x\n",
-      static_cast<unsigned long long>(summary.ticks), static_cast<unsigned long long>(summary.missed_slots),
-      summary.stalls, static_cast<unsigned long long>(summary.stale_ticks), summary.faults);
-  print_link(summary, bus, transport->state());
   print_usage(usage);
   return summary.faults != 0 ? kFaulted : kOk;
 }

@@ -17,7 +17,9 @@
 #include "hal/bus/device_address.h"
 #include "hal/bus/loopback.h"
 #include "hal/device/device_node.h"
+#include "hal/device/device_profile.h"
 #include "hal/device/fault_player.h"
+#include "hal/drives/drive_link.h"
 #include "hal/loop/clock.h"
 #include "hal/loop/deadline.h"
 #include "hal/loop/lockstep.h"
@@ -41,6 +43,8 @@ constexpr char kHelp[] =
     "  --path FILE        the hand's motion: time_s,x_mm,y_mm,z_mm[,rx_deg,ry_deg,rz_deg[,closing]]; default: rests at "
     "the "
     "origin\n"
+    "  --profile FILE     of a device with drives: these are simulated, each by its own protocol (docs/devices.md);\n"
+    "                     the path is in the world then, the device where the profile says\n"
     "  --duration S       stop after S seconds; default: when the controller is gone (loopback) or on a signal\n"
     "  --bus-model B      classic or fd: frames take the time they need at 1 Mbit/s (fd: data at 5 Mbit/s)\n"
     "  --hand-fd N        inherited memory that says where the hand is pulled (palpate view); it leaves its motion "
@@ -56,7 +60,7 @@ struct Failure {
 };
 
 struct Arguments {
-  std::string device = "loopback", path, faults, bus_model;
+  std::string device = "loopback", path, faults, bus_model, profile;
   int device_fd = -1, turn_fd = -1, hand_fd = -1, priority = 0, cpu = -1;
   double duration_s = 0;
   PlantOptions plant;
@@ -111,13 +115,14 @@ Arguments parse(int argc, char** argv) {
                             {"duration", 1, nullptr, 's'}, {"priority", 1, nullptr, 'r'},  {"cpu", 1, nullptr, 'u'},
                             {"faults", 1, nullptr, 'a'},   {"bus-model", 1, nullptr, 'b'}, {"set", 1, nullptr, 'x'},
                             {"help", 0, nullptr, 'h'},     {"turn-fd", 1, nullptr, 't'},   {"hand-fd", 1, nullptr, 'w'},
-                            {nullptr, 0, nullptr, 0}};
+                            {"profile", 1, nullptr, 'P'},  {nullptr, 0, nullptr, 0}};
   for (int c; (c = getopt_long(argc, argv, "", options, nullptr)) != -1;) {
     if (c == 'd') arguments.device = optarg;
     if (c == 'f') arguments.device_fd = static_cast<int>(number("--device-fd", optarg, 0, 1 << 20));
     if (c == 't') arguments.turn_fd = static_cast<int>(number("--turn-fd", optarg, 0, 1 << 20));
     if (c == 'w') arguments.hand_fd = static_cast<int>(number("--hand-fd", optarg, 0, 1 << 20));
     if (c == 'p') arguments.path = optarg;
+    if (c == 'P') arguments.profile = optarg;
     if (c == 's') arguments.duration_s = number("--duration", optarg, 0.001, 1e6);
     if (c == 'r') arguments.priority = static_cast<int>(number("--priority", optarg, 0, 98));
     if (c == 'u') arguments.cpu = static_cast<int>(number("--cpu", optarg, -1, 1023));
@@ -134,11 +139,17 @@ Arguments parse(int argc, char** argv) {
   return arguments;
 }
 
-HandPath load_path(const std::string& file) {
-  if (file.empty()) return {};
+std::vector<HandPose> load_poses(const std::string& file) {
   std::vector<HandPose> poses;
   std::string error;
-  if (!read_hand_path(file, poses, error)) throw Failure{kUsage, error};
+  if (!file.empty() && !read_hand_path(file, poses, error)) throw Failure{kUsage, error};
+  return poses;
+}
+
+// The path as a device sees it that stands where its profile says.
+HandPath path_in(const CartesianKinematics& frame, std::vector<HandPose> poses) {
+  if (poses.empty()) poses.emplace_back();
+  for (HandPose& pose : poses) pose.pose = pose_in_device(frame, pose.pose);
   return HandPath(std::move(poses));
 }
 
@@ -198,11 +209,21 @@ SharedMemory hand_memory(int fd) {
   return memory;
 }
 
-void pull_hand(const SharedMemory& memory, DevicePlant& plant) {
+void pull_hand(const SharedMemory& memory, DevicePlant& plant, const CartesianKinematics* frame = nullptr) {
   HandWish wish;
   if (!memory || !read_hand_target(*static_cast<const HandTargetRegion*>(memory.data()), wish)) return;
-  if (wish.kind == HandWish::kPull) plant.pull(wish.pose, wish.closing != 0);
+  if (wish.kind == HandWish::kPull)
+    plant.pull(frame != nullptr ? pose_in_device(*frame, wish.pose) : wish.pose, wish.closing != 0);
   if (wish.kind == HandWish::kHold) plant.hold();
+}
+
+template <Clock C>
+bool leader_is_there(const C& clock) {
+  if constexpr (requires { clock.connected(); }) {
+    return clock.connected();
+  } else {
+    return true;  // a clock of its own: nobody leads it
+  }
 }
 
 // The device's own clock, one step per period. A late step is made up for at once: mechanics does not skip time.
@@ -211,17 +232,9 @@ template <Clock C>
 void run_node(DeviceNode& node, FaultPlayer& faults, BusModel* bus, const Arguments& arguments, C& clock,
               std::int64_t deadline_ns, const std::atomic<bool>& stop) {
   const SharedMemory hand = hand_memory(arguments.hand_fd);
-  const auto leader_is_there = [&clock] {
-    if constexpr (requires { clock.connected(); }) {
-      return clock.connected();
-    } else {
-      static_cast<void>(clock);  // a clock of its own: nobody leads it
-      return true;
-    }
-  };
   const auto steps = static_cast<std::uint64_t>(arguments.duration_s / arguments.plant.period_s);
-  for (std::uint64_t i = 0; (steps == 0 || i < steps) && !stop.load(std::memory_order_relaxed) && leader_is_there() &&
-                            (node.connected() || faults.unplugged());
+  for (std::uint64_t i = 0; (steps == 0 || i < steps) && !stop.load(std::memory_order_relaxed) &&
+                            leader_is_there(clock) && (node.connected() || faults.unplugged());
        ++i) {
     deadline_ns += faults.period_ns();
     while (bus != nullptr && bus->next_ns() >= 0 && bus->next_ns() < deadline_ns) {
@@ -236,11 +249,55 @@ void run_node(DeviceNode& node, FaultPlayer& faults, BusModel* bus, const Argume
   }
 }
 
+// The drives of a profile, one step per period.
+template <Clock C>
+void run_drives(DriveSim& drives, const CartesianKinematics& frame, const Transport& transport,
+                const Arguments& arguments, C& clock, std::int64_t deadline_ns, const std::atomic<bool>& stop) {
+  const SharedMemory hand = hand_memory(arguments.hand_fd);
+  const auto period_ns = static_cast<std::int64_t>(1e9 * arguments.plant.period_s + 0.5);
+  const auto steps = static_cast<std::uint64_t>(arguments.duration_s / arguments.plant.period_s);
+  for (std::uint64_t i = 0; (steps == 0 || i < steps) && !stop.load(std::memory_order_relaxed) &&
+                            transport.state() == TransportState::kUp && leader_is_there(clock);
+       ++i) {
+    deadline_ns += period_ns;
+    clock.wait_until(deadline_ns);
+    pull_hand(hand, drives.plant().plant(), &frame);
+    drives.step();
+  }
+}
+
+int simulate_drives(const Arguments& arguments, const DeviceAddress& address, const std::atomic<bool>& stop) {
+  std::string error;
+  const std::optional<DeviceProfile> profile = read_device_profile(arguments.profile, error);
+  if (!profile) throw Failure{kUsage, error};
+  if (!profile->arm) throw Failure{kUsage, arguments.profile + ": has no [drives]; leave --profile out"};
+  if (!arguments.faults.empty() || !arguments.bus_model.empty())
+    throw Failure{kUsage, "--profile: simulated drives take no --faults and no --bus-model"};
+  constexpr int kTimeout_ms = 10'000;
+  const std::unique_ptr<Transport> transport =
+      arguments.device_fd >= 0 ? adopt_loopback(arguments.device_fd, error)
+                               : open_drives(address, *profile->arm, DeviceSide::kDevice, kTimeout_ms, error);
+  if (!transport) throw Failure{kUnavailable, error};
+  const std::unique_ptr<DriveSim> drives =
+      make_drive_sim(*transport, *profile->arm, arguments.plant, path_in(profile->frame, load_poses(arguments.path)));
+  if (arguments.turn_fd >= 0) {
+    FollowerClock clock(arguments.turn_fd, stop);
+    run_drives(*drives, profile->frame, *transport, arguments, clock, clock.now_ns(), stop);
+  } else {
+    MonotonicClock clock;
+    const auto period_ns = static_cast<std::int64_t>(1e9 * arguments.plant.period_s + 0.5);
+    const std::int64_t first_ns = first_slot_ns(clock.now_ns(), period_ns, step_phase_ns(period_ns));
+    run_drives(*drives, profile->frame, *transport, arguments, clock, first_ns - period_ns, stop);
+  }
+  return kOk;
+}
+
 int run(int argc, char** argv) {
   const Arguments arguments = parse(argc, argv);
   const std::atomic<bool>& stop = install_stop_signals();
   const DeviceAddress address = read_address(arguments);
-  HandPath path = load_path(arguments.path);
+  if (!arguments.profile.empty()) return simulate_drives(arguments, address, stop);
+  HandPath path(load_poses(arguments.path));
   std::vector<FaultLine> script = load_faults(arguments.faults);
   const bool bus_off = std::any_of(script.begin(), script.end(),
                                    [](const FaultLine& line) { return line.fault == DeviceFault::kBusOff; });

@@ -95,7 +95,8 @@ std::vector<std::string> plant_arguments(const SceneDesc& scene) {
 }
 
 DeviceProcess::DeviceProcess(const std::string& program, const SceneImage& scene, const std::string& path,
-                             const std::string& device, int priority, int turn_fd, int hand_fd) {
+                             const std::string& device, int priority, int turn_fd, int hand_fd,
+                             const std::string& profile) {
   if (path.empty() && (!scene.scene || scene.scene->path.point.empty())) {
     throw std::runtime_error("the simulated hand needs a motion: give --path CSV, or a .toml scene with a [path]");
   }
@@ -109,6 +110,7 @@ DeviceProcess::DeviceProcess(const std::string& program, const SceneImage& scene
     const std::vector<std::string> plant = plant_arguments(*scene.scene);
     arguments.insert(arguments.end(), plant.begin(), plant.end());
   }
+  if (!profile.empty()) arguments.insert(arguments.end(), {"--profile", profile});
   if (turn_fd >= 0) {
     descriptors.emplace_back(turn_fd, kTurns);
     arguments.insert(arguments.end(), {"--turn-fd", std::to_string(kTurns)});

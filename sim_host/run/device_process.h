@@ -15,9 +15,9 @@ class DeviceProcess {
   // `path`: CSV of the hand's motion; empty: the scene's own. Throws std::runtime_error when there is neither.
   // `priority`: SCHED_FIFO of the device, below the controller's; 0: ordinary scheduling. `turn_fd` >= 0: virtual time
   // in lock step with the controller at the other end. `hand_fd` >= 0: memory that says where the hand is pulled
-  // (rings/hand_target.h).
+  // (rings/hand_target.h). `profile`: of a device with drives, which it then simulates; or empty.
   DeviceProcess(const std::string& program, const SceneImage& scene, const std::string& path, const std::string& device,
-                int priority, int turn_fd = -1, int hand_fd = -1);
+                int priority, int turn_fd = -1, int hand_fd = -1, const std::string& profile = "");
   ~DeviceProcess();
   DeviceProcess(const DeviceProcess&) = delete;
   DeviceProcess& operator=(const DeviceProcess&) = delete;

@@ -15,6 +15,7 @@
 #include "hal/bus/bus_budget.h"
 #include "hal/bus/device_address.h"
 #include "hal/device/device_profile.h"
+#include "hal/drives/drive_link.h"
 #include "sim_host/bake/image_file.h"
 #include "sim_host/bake/scene_image.h"
 #include "sim_host/exit_codes.h"
@@ -101,11 +102,11 @@ bool wants_simulated_device(const DeviceAddress& address, const std::string& dev
 }
 
 // Before anything is started: a bus that cannot carry the scene's traffic in every period is refused with the table.
-void check_bus(const DeviceAddress& address, double period_s) {
+void check_bus(const DeviceAddress& address, const DeviceProfile& profile, double period_s) {
   if (address.kind != TransportKind::kCan) return;
   BusBudget budget = haptic_node_budget(address.profile == WireProfile::kFd);
   budget.period_us = 1e6 * period_s;
-  const BusVerdict verdict = check_bus_budget(budget);
+  const BusVerdict verdict = profile.arm ? check_drives_budget(*profile.arm, period_s) : check_bus_budget(budget);
   if (verdict.fits) return;
   throw std::runtime_error(
       fmt::format("{} cannot carry this scene's traffic in every period:\n{}", address.name, verdict.text));
@@ -113,16 +114,17 @@ void check_bus(const DeviceAddress& address, double period_s) {
 
 // The controller refuses the same; here it is said before a scene is baked, and the simulated device becomes the one
 // that the profile describes.
-void check_profile(const RunOptions& options, const DeviceAddress& address, const ModelParams& params,
-                   SceneImage& scene) {
+DeviceProfile check_profile(const RunOptions& options, const DeviceAddress& address, const ModelParams& params,
+                            SceneImage& scene) {
   DeviceProfile profile;
   const bool real = address.kind != TransportKind::kLoopback;
   const std::string refusal = refuse_profile(real, options.device, options.profile, params, &profile);
   if (!refusal.empty()) throw std::runtime_error(refusal);
-  if (options.profile.empty() || !scene.scene) return;
+  if (options.profile.empty() || !scene.scene) return profile;
 #define PALPATE_KEY(member, key, value, lowest, highest, scale, meaning) scene.scene->device.member = profile.member;
   PALPATE_PROFILE_KEYS(PALPATE_KEY)
 #undef PALPATE_KEY
+  return profile;
 }
 
 // The motion over and over, with a second to return to its first pose, until `duration_s` is over.
@@ -383,8 +385,8 @@ RunResult run_session(const RunOptions& options) {
     throw std::runtime_error(error);
   SceneImage scene = prepare_scene(options.scene, options.image, options.record);
   const ImageFile image(scene.image_path);
-  check_profile(options, address, image.model().params, scene);
-  check_bus(address, image.model().params.period_s);
+  const DeviceProfile profile = check_profile(options, address, image.model().params, scene);
+  check_bus(address, profile, image.model().params.period_s);
   if (record) require_space(options.record, recording_bytes(options.duration_s, image));
   std::vector<TimedJoints> scripted;
   if (scene.scene && options.path.empty()) scripted = scripted_joints(scene.scene->path);
@@ -410,7 +412,8 @@ RunResult run_session(const RunOptions& options) {
   if (wants_simulated_device(address, options.device)) {
     device.emplace(program("palpate-device"), scene, options.path, options.device,
                    virtual_time ? 0 : std::max(0, options.priority - kDevicePriorityBelow),
-                   virtual_time ? device_turns->end(1) : -1, options.companion.hand_fd);
+                   virtual_time ? device_turns->end(1) : -1, options.companion.hand_fd,
+                   profile.arm ? options.profile : "");
   }
   ControllerLink link(program("palpate-rt"),
                       controller_arguments(options, scene.image_path, options.device, device.has_value(), virtual_time),

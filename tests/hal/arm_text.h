@@ -17,7 +17,7 @@ kind = "serial_3r"
 calibrate = "home_pose"
 upper_mm = 205
 fore_mm = 245
-weight_N = 0.5
+weight_z_N = -0.5
 [drives]
 protocol = "odrive"
 firmware = "0.6.10"

@@ -1,0 +1,140 @@
+#include "hal/drives/axis_device.h"
+
+#include <cstdio>
+
+#include "hal/drives/axis_map.h"
+#include "rt_core/math.h"
+
+namespace palpate {
+
+AxisDevice::AxisDevice(AxisDrives& drives, const ArmProfile& arm, double period_s) noexcept
+    : drives_(drives),
+      arm_(arm),
+      share_per_tick_(0.1 * 1e3 * period_s),
+      count_(joint_count(arm.linkage)),
+      turns_handle_(arm.linkage.gimbal) {
+  for (int i = arm_joint_count(arm.linkage); i < count_; ++i)
+    turns_handle_ = turns_handle_ && arm.axes[static_cast<std::size_t>(i)].torque_max_Nm > 0;
+}
+
+std::string AxisDevice::start(const AxisDrives::Pause& pause) {
+  if (std::string wrong = drives_.start(pause); !wrong.empty()) return wrong;
+  return find_home(pause);
+}
+
+// A tenth of a second of positions: there must be some, and in the home pose the handle must lie still.
+std::string AxisDevice::find_home(const AxisDrives::Pause& pause) {
+  constexpr int kWatched_ms = 100;
+  constexpr double kStill_rad = 0.01;
+  double lowest[kMaxAxes] = {}, highest[kMaxAxes] = {};
+  int samples = 0;
+  for (int ms = 0; ms < kWatched_ms; ++ms) {
+    pause();
+    drives_.transmit({});
+    drives_.receive(axes_);
+    if (!axes_.fresh) continue;
+    for (int i = 0; i < count_; ++i) {
+      lowest[i] = samples == 0 ? axes_.turns[i] : min_of(lowest[i], axes_.turns[i]);
+      highest[i] = samples == 0 ? axes_.turns[i] : max_of(highest[i], axes_.turns[i]);
+    }
+    samples += 1;
+  }
+  if (samples == 0) return "the drives sent no positions of all axes within 0.1 s";
+  for (int i = 0; i < count_; ++i) {
+    const AxisProfile& axis = arm_.axes[static_cast<std::size_t>(i)];
+    const double moved = (highest[i] - lowest[i]) * abs_of(joint_per_turn(axis));
+    if (arm_.home_pose && !(moved < kStill_rad))
+      return "axis " + std::to_string(i + 1) +
+             " moved while its home was taken: lay the handle into its home pose and start again";
+    home_turns_[i] = arm_.home_pose ? axes_.turns[i] : axis.home_turns;
+  }
+  return "";
+}
+
+// Joints and pose of the newest positions.
+void AxisDevice::locate() noexcept {
+  within_limits_ = true;
+  for (int i = 0; i < count_; ++i) {
+    const AxisProfile& axis = arm_.axes[static_cast<std::size_t>(i)];
+    joint_[i] = axis.home_joint + joint_per_turn(axis) * (axes_.turns[i] - home_turns_[i]);
+    within_limits_ = within_limits_ && joint_[i] >= axis.lowest && joint_[i] <= axis.highest;
+  }
+  state_ = linkage_at(arm_.linkage, joint_);
+  within_limits_ = within_limits_ && state_.place == LinkagePlace::kGood;
+}
+
+void AxisDevice::receive(DeviceSample& sample) noexcept {
+  drives_.receive(axes_);
+  sample_.fresh = axes_.fresh;
+  sample_.received = axes_.received;
+  sample_.faults = axes_.faults;
+  if (axes_.fresh) {
+    locate();
+    sample_.sequence = (sample_.sequence + 1) & 0xFFFFu;
+    if (state_.place != LinkagePlace::kUnreachable) {
+      sample_.position_m = state_.pose.position_m;
+      sample_.orientation = state_.pose.orientation;
+    }
+  }
+  const bool lost = sample_.sequence > 0 && state_.place == LinkagePlace::kUnreachable;
+  sample_.flags = axes_.flags | DeviceFlag::kCalibrated | (saturated_ ? DeviceFlag::kSaturated : 0u);
+  sample_.error_code = axes_.error_code;
+  if (lost) {
+    sample_.flags |= DeviceFlag::kError;
+    sample_.error_code = kNoHandle;
+  }
+  constexpr std::uint32_t kReported = DeviceFlag::kError | DeviceFlag::kStopButton;
+  if ((sample_.flags & kReported) != 0) sample_.faults |= Fault::kDeviceReported;
+  sample = sample_;
+}
+
+// Torques of the motors: the wrench by virtual work, the handle's weight, and what holds each link.
+void AxisDevice::wanted_torques(const DeviceCommand& command, double* torque_Nm) noexcept {
+  const Wrench wrench{command.force_N - arm_.weight_N, turns_handle_ ? command.torque_Nm : Vec3{}};
+  double joint_Nm[kMaxAxes] = {};
+  joint_torques(arm_.linkage, state_, wrench, joint_Nm);
+  for (int i = 0; i < count_; ++i) {
+    const AxisProfile& axis = arm_.axes[static_cast<std::size_t>(i)];
+    const double held_Nm = axis.gravity_Nm != 0 ? axis.gravity_Nm * math::cos(joint_[i]) : 0.0;
+    torque_Nm[i] = axis.torque_max_Nm > 0 ? motor_torque(axis, joint_Nm[i] + held_Nm) : 0.0;
+  }
+}
+
+// All are shortened together where one exceeds its motor: the force keeps its direction.
+void AxisDevice::bound_torques(double* torque_Nm) noexcept {
+  double share = 1;
+  for (int i = 0; i < count_; ++i) {
+    const double most = arm_.axes[static_cast<std::size_t>(i)].torque_max_Nm;
+    if (!is_finite(torque_Nm[i])) share = 0;
+    if (abs_of(torque_Nm[i]) > most) share = min_of(share, most / abs_of(torque_Nm[i]));
+  }
+  saturated_ = share < 1;
+  for (int i = 0; i < count_; ++i) torque_Nm[i] = share > 0 ? share * torque_Nm[i] : 0.0;
+}
+
+bool AxisDevice::transmit(const DeviceCommand& command) noexcept {
+  AxisCommand out;
+  out.enable = (command.flags & CommandFlag::kEnable) != 0;
+  const bool obey = out.enable && (axes_.flags & DeviceFlag::kEnabled) != 0;
+  limited_ticks_ += obey && !within_limits_;
+  double wanted_Nm[kMaxAxes] = {};
+  saturated_ = false;
+  if (obey && within_limits_) {
+    wanted_torques(command, wanted_Nm);
+    bound_torques(wanted_Nm);
+  }
+  // Approached together, so that the force turns no corner on its way.
+  double share = 1;
+  for (int i = 0; i < count_; ++i) {
+    const double step = abs_of(wanted_Nm[i] - torque_Nm_[i]);
+    const double most = share_per_tick_ * arm_.axes[static_cast<std::size_t>(i)].torque_max_Nm;
+    if (step > most) share = min_of(share, most / step);
+  }
+  for (int i = 0; i < count_; ++i) {
+    torque_Nm_[i] = obey ? torque_Nm_[i] + share * (wanted_Nm[i] - torque_Nm_[i]) : 0.0;
+    out.torque_Nm[i] = torque_Nm_[i];
+  }
+  return drives_.transmit(out);
+}
+
+}  // namespace palpate

@@ -1,0 +1,66 @@
+#include "hal/drives/drive_link.h"
+
+#include <vector>
+
+#include "hal/bus/loopback.h"
+#include "hal/bus/socketcan.h"
+#include "hal/drives/odrive_drives.h"
+#include "hal/drives/odrive_sim.h"
+
+namespace palpate {
+namespace {
+
+std::vector<std::uint32_t> replies(const ArmProfile& arm) {
+  std::vector<std::uint32_t> ids;
+  for (const AxisProfile& axis : arm.axes) {
+    const int node = static_cast<int>(axis.node);
+    using namespace odrive;
+    for (const Message message : {kGetVersion, kHeartbeat, kTxSdo, kAddress, kGetEncoderEstimates})
+      ids.push_back(frame_id(node, message));
+  }
+  return ids;
+}
+
+}  // namespace
+
+std::unique_ptr<AxisDrives> make_drives(Transport& transport, const ArmProfile& arm, double period_s) {
+  return std::make_unique<ODriveDrives>(transport, arm, period_s);
+}
+
+std::unique_ptr<DriveSim> make_drive_sim(Transport& transport, const ArmProfile& arm, const PlantOptions& plant,
+                                         HandPath path) {
+  return std::make_unique<ODriveSim>(transport, arm, plant, std::move(path));
+}
+
+std::unique_ptr<Transport> open_drives(const DeviceAddress& address, const ArmProfile& arm, DeviceSide side,
+                                       int timeout_ms, std::string& error) {
+  if (address.kind == TransportKind::kUsb) {
+    error = "drives are spoken to over CAN: give --device can:IFACE, or loopback:NAME for simulated ones";
+    return nullptr;
+  }
+  if (address.kind == TransportKind::kLoopback) return open_transport(address, side, timeout_ms, error);
+  const std::vector<std::uint32_t> ids = side == DeviceSide::kDevice ? std::vector<std::uint32_t>{} : replies(arm);
+  return open_socketcan({address.name, false, ids}, error);
+}
+
+BusBudget drives_budget(const ArmProfile& arm, double period_s) {
+  BusBudget budget;
+  budget.rate.nominal_bit_per_s = arm.drives.bit_rate_Hz;
+  budget.rate.data_bit_per_s = 5 * arm.drives.bit_rate_Hz;  // no frame has a data phase of its own
+  budget.period_us = 1e6 * period_s;
+  const int axes = static_cast<int>(arm.axes.size());
+  budget.messages = {{"SetInputTorque", 4, false, false, axes}, {"GetEncoderEstimates", 8, false, false, axes}};
+  return budget;
+}
+
+BusVerdict check_drives_budget(const ArmProfile& arm, double period_s) {
+  BusVerdict verdict = check_bus_budget(drives_budget(arm, period_s));
+  if (verdict.fits) return verdict;
+  const bool slower = check_bus_budget(drives_budget(arm, 2 * period_s)).fits;
+  const BusVerdict node = check_bus_budget(haptic_node_budget(true));
+  verdict.text += slower ? "  half the rate fits: bake the scene with device.period_ms doubled\n" : "";
+  verdict.text += node.fits ? "  one node on CAN FD that drives all axes fits at 1 kHz (docs/wire_protocol.md)\n" : "";
+  return verdict;
+}
+
+}  // namespace palpate
