@@ -4,19 +4,27 @@
 
 #include "hal/bus/loopback.h"
 #include "hal/bus/socketcan.h"
+#include "hal/drives/cia402_drives.h"
+#include "hal/drives/cia402_sim.h"
 #include "hal/drives/odrive_drives.h"
 #include "hal/drives/odrive_sim.h"
 
 namespace palpate {
 namespace {
 
+// Identifiers of what the drives send.
 std::vector<std::uint32_t> replies(const ArmProfile& arm) {
   std::vector<std::uint32_t> ids;
   for (const AxisProfile& axis : arm.axes) {
-    const int node = static_cast<int>(axis.node);
-    using namespace odrive;
-    for (const Message message : {kGetVersion, kHeartbeat, kTxSdo, kAddress, kGetEncoderEstimates})
-      ids.push_back(frame_id(node, message));
+    const auto node = static_cast<std::uint32_t>(axis.node);
+    if (arm.protocol == DriveProtocol::kCia402) {
+      using namespace canopen;
+      for (const std::uint32_t cob : {kEmergency, kTpdo1, kSdoReply, kHeartbeat}) ids.push_back(cob + node);
+    } else {
+      using namespace odrive;
+      for (const Message message : {kGetVersion, odrive::kHeartbeat, kTxSdo, kAddress, kGetEncoderEstimates})
+        ids.push_back(frame_id(static_cast<int>(node), message));
+    }
   }
   return ids;
 }
@@ -24,11 +32,14 @@ std::vector<std::uint32_t> replies(const ArmProfile& arm) {
 }  // namespace
 
 std::unique_ptr<AxisDrives> make_drives(Transport& transport, const ArmProfile& arm, double period_s) {
+  if (arm.protocol == DriveProtocol::kCia402) return std::make_unique<Cia402Drives>(transport, arm, period_s);
   return std::make_unique<ODriveDrives>(transport, arm, period_s);
 }
 
 std::unique_ptr<DriveSim> make_drive_sim(Transport& transport, const ArmProfile& arm, const PlantOptions& plant,
                                          HandPath path) {
+  if (arm.protocol == DriveProtocol::kCia402)
+    return std::make_unique<Cia402Sim>(transport, arm, plant, std::move(path));
   return std::make_unique<ODriveSim>(transport, arm, plant, std::move(path));
 }
 
@@ -49,7 +60,14 @@ BusBudget drives_budget(const ArmProfile& arm, double period_s) {
   budget.rate.data_bit_per_s = 5 * arm.drives.bit_rate_Hz;  // no frame has a data phase of its own
   budget.period_us = 1e6 * period_s;
   const int axes = static_cast<int>(arm.axes.size());
-  budget.messages = {{"SetInputTorque", 4, false, false, axes}, {"GetEncoderEstimates", 8, false, false, axes}};
+  if (arm.protocol == DriveProtocol::kCia402) {
+    budget.messages = {{"RPDO torque", 4, false, false, axes},
+                       {"TPDO position", 6, false, false, axes},
+                       {"SYNC", 0, false, false, 1},
+                       {"heartbeat", 1, false, false, 1}};
+  } else {
+    budget.messages = {{"SetInputTorque", 4, false, false, axes}, {"GetEncoderEstimates", 8, false, false, axes}};
+  }
   return budget;
 }
 

@@ -1,0 +1,194 @@
+// Three CiA 402 drives on a bus, simulated byte by byte: found, proved, mapped, enabled step by step, rendering the
+// real tick's force, and every wrong thing noticed before a motor is on.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "hal/drives/cia402_drives.h"
+#include "hal/drives/cia402_sim.h"
+#include "hal/drives/drive_link.h"
+#include "tests/hal/arm_bench.h"
+
+namespace palpate {
+namespace {
+
+using namespace canopen;
+using test::replaced;
+using testing::HasSubstr;
+using Cia402Arm = test::WiredArm<Cia402Drives, Cia402Sim>;
+
+// The arm of kArm with other drives; weightless, so that what the hand feels is the tick's force alone.
+std::string tables() {
+  std::string text = test::kArm;
+  const auto drives = text.find("[drives]"), axes = text.find("[[axis]]");
+  text = text.substr(0, drives) +
+         "[drives]\nprotocol = \"cia402\"\nwatchdog_ms = 20\nvendor_id = 739\nproduct_code = 4660\nrevision = 65538\n" +
+         text.substr(axes);
+  for (int i = 0; i < 3; ++i) {
+    text = replaced(text, "serial = 6192540683166" + std::to_string(5 + i), "serial = 10" + std::to_string(i));
+    text = replaced(text, "torque_max_Nm = 0.1\n", "torque_max_Nm = 0.10\nrated_Nm = 0.125\n");
+  }
+  return replaced(replaced(replaced(text, "scale = 2\n", ""), "weight_z_N = -0.5\n", ""), "gravity_Nm = 0.2\n", "");
+}
+
+template <class Meddle>
+std::string refusal(Meddle meddle) {
+  VirtualClock clock;
+  Cia402Arm arm(tables(), clock);
+  meddle(arm.sim());
+  const std::string wrong = arm.start();
+  for (int i = 0; i < 3; ++i) EXPECT_FALSE(arm.sim().enabled(i)) << "enabled before it was proved";
+  return wrong;
+}
+
+TEST(Cia402, ThreeDrivesAreFoundMappedAndWatched) {
+  VirtualClock clock;
+  Cia402Arm arm(tables(), clock);
+  EXPECT_EQ(arm.start(), "");
+  for (int i = 0; i < 3; ++i) {
+    const auto node = static_cast<std::uint32_t>(i + 1);
+    EXPECT_EQ(arm.sim().object(i, kConsumerHeartbeat), 127u << 16 | 20u);
+    EXPECT_EQ(arm.sim().object(i, kAbortOption), 1u);
+    EXPECT_EQ(arm.sim().object(i, kMaxTorque), 800u) << "0.1 of 0.125 N m";
+    EXPECT_EQ(arm.sim().object(i, kRpdoCount + 2), 0x60710010u);
+    EXPECT_EQ(arm.sim().object(i, kTpdoCount + 2), 0x60640020u);
+    EXPECT_EQ(arm.sim().object(i, kTpdoCob), 0x40000180u + node);
+    EXPECT_FALSE(arm.sim().enabled(i));
+  }
+}
+
+TEST(Cia402, WhatIsWrongIsSaidBeforeAMotorIsEnabled) {
+  EXPECT_THAT(refusal([](Cia402Sim& s) { s.mute(1); }), HasSubstr("axis 2 (CANopen node 2): does not answer"));
+  EXPECT_THAT(refusal([](Cia402Sim& s) { s.set_object(1, kDeviceType, 0x191); }), HasSubstr("is no CiA 402 drive"));
+  EXPECT_THAT(refusal([](Cia402Sim& s) { s.set_object(1, kVendor, 1); }),
+              HasSubstr("vendor is 1, the profile says 739"));
+  EXPECT_THAT(refusal([](Cia402Sim& s) { s.set_object(1, kRevision, 1); }), HasSubstr("another drive or firmware"));
+  EXPECT_THAT(refusal([](Cia402Sim& s) { s.set_object(1, kSerial, 7); }), HasSubstr("serial number 7 is not that"));
+  EXPECT_THAT(refusal([](Cia402Sim& s) { s.set_object(1, kSerial, 102); }),
+              HasSubstr("of axis 3: the axes are swapped"));
+  EXPECT_THAT(refusal([](Cia402Sim& s) { s.set_object(0, kPolarity, 0x80); }), HasSubstr("polarity is reversed"));
+  EXPECT_THAT(refusal([](Cia402Sim& s) { s.set_object(0, kEncoderIncrements, 4096); }),
+              HasSubstr("encoder increments is 4096, the profile says 8192"));
+  EXPECT_THAT(refusal([](Cia402Sim& s) { s.set_object(0, kRatedTorque, 250); }),
+              HasSubstr("rated torque in mN m is 250"));
+  EXPECT_THAT(refusal([](Cia402Sim& s) { s.set_object(2, kSupportedModes, 1); }),
+              HasSubstr("no cyclic synchronous torque"));
+  EXPECT_THAT(refusal([](Cia402Sim& s) { s.freeze_object(2, kModeDisplay); }),
+              HasSubstr("stays in mode 0, asked for 10"));
+  EXPECT_THAT(refusal([](Cia402Sim& s) { s.freeze_object(2, kConsumerHeartbeat); }), HasSubstr("its watchdog is off"));
+  EXPECT_THAT(refusal([](Cia402Sim& s) { s.freeze_object(2, kAbortOption); }), HasSubstr("its watchdog is off"));
+  EXPECT_THAT(refusal([](Cia402Sim& s) { s.freeze_object(2, kTpdoCount + 2); }), HasSubstr("object 1A00h:2 holds 0x0"));
+  EXPECT_THAT(refusal([](Cia402Sim& s) { s.freeze_object(2, kMaxTorque); }), HasSubstr("object 6072h:0 holds 0x3E8"));
+  EXPECT_THAT(refusal([](Cia402Sim& s) { s.fail(0, 0x4210); }), HasSubstr("axis 1 (CANopen node 1): is in fault"));
+}
+
+// As for ODrives; torque goes out in thousandths of 0.125 N m: half a step over the lever of 0.2 m, geared up by 12, is
+// 4 mN an axis, and the hand feels at most the three together.
+TEST(Cia402, TheHandFeelsTheTicksForce) {
+  VirtualClock clock;
+  Cia402Arm arm(tables(), clock);
+  ASSERT_EQ(arm.start(), "");
+  const test::FaultRun run = test::run_on(arm, clock, 1500, 2e4, {}, 0, arm.frame());
+  EXPECT_EQ(run.summary.faults, 0u);
+  EXPECT_EQ(run.summary.stale_ticks + run.summary.gaps + run.summary.send_failures + run.summary.link_drops, 0u);
+  EXPECT_EQ(arm.sim().heartbeats_lost(), 0u);
+  for (std::size_t i = 1200; i < 1500; ++i) {
+    const Vec3 asked = run.records[i].output.device_w.force_N;
+    EXPECT_GT(norm(asked), 1.0) << "it presses";
+    ASSERT_LT(norm(arm.rendered_N()[i + 1] - asked), 0.015) << i;
+  }
+  clock.advance(2'000'000);  // the drives take what the loop sent last
+  DeviceSample sample;
+  arm.receive(sample);
+  EXPECT_EQ(arm.rendered_N().back(), Vec3{});
+  for (int i = 0; i < 3; ++i) EXPECT_FALSE(arm.sim().enabled(i));
+}
+
+// Heartbeats go every 5 ms, drives wait 20 ms: 12 ms of silence cost nothing, after 17 ms each drive has let go by
+// itself, and the loop makes the edge that enables anew.
+TEST(Cia402, SilenceMakesTheDrivesLetGoAndForceComesBack) {
+  for (const std::uint64_t silent_ticks : {12u, 17u}) {
+    VirtualClock clock;
+    Cia402Arm arm(tables(), clock);
+    ASSERT_EQ(arm.start(), "");
+    const test::FaultRun run = test::run_on(
+        arm, clock, 2500, 2e4,
+        [&arm, silent_ticks](const test::Surroundings& s) {
+          arm.silence_controller(s.tick >= 800 && s.tick < 800 + silent_ticks);
+        },
+        0, arm.frame());
+    EXPECT_EQ(run.summary.faults, 0u);
+    EXPECT_EQ(arm.sim().heartbeats_lost(), silent_ticks == 12 ? 0u : 3u);
+    EXPECT_EQ(run.summary.link_drops, silent_ticks == 12 ? 0u : 1u);
+    EXPECT_GT(norm(arm.rendered_N()[2400]), 1.0);
+  }
+}
+
+// Without SYNC there are no samples: a controller silent for longer latches that. The drives have let go by then.
+TEST(Cia402, ALongSilenceEndsInTheDrivesFaultState) {
+  VirtualClock clock;
+  Cia402Arm arm(tables(), clock);
+  ASSERT_EQ(arm.start(), "");
+  const test::FaultRun run = test::run_on(
+      arm, clock, 1200, 2e4,
+      [&arm](const test::Surroundings& s) { arm.silence_controller(s.tick >= 800 && s.tick < 860); }, 0, arm.frame());
+  EXPECT_EQ(arm.sim().heartbeats_lost(), 3u);
+  EXPECT_GT(norm(arm.rendered_N()[790]), 0.5);
+  for (std::size_t i = 822; i < 860; ++i) ASSERT_EQ(arm.rendered_N()[i], Vec3{}) << i;
+  EXPECT_EQ(run.summary.faults & Fault::kDeviceSilent, Fault::kDeviceSilent);
+}
+
+std::uint32_t fault_after(const std::function<void(Cia402Sim&)>& meddle, std::uint32_t& code) {
+  VirtualClock clock;
+  Cia402Arm arm(tables(), clock);
+  EXPECT_EQ(arm.start(), "");
+  const test::FaultRun run = test::run_on(
+      arm, clock, 1500, 2e4,
+      [&](const test::Surroundings& s) {
+        if (s.tick == 800) meddle(arm.sim());
+      },
+      0, arm.frame());
+  code = arm.last().error_code;
+  EXPECT_EQ(arm.rendered_N().back(), Vec3{}) << "the hand is free";
+  return run.summary.faults;
+}
+
+TEST(Cia402, AnEmergencyIsAFaultWithItsCode) {
+  std::uint32_t code = 0;
+  EXPECT_EQ(fault_after([](Cia402Sim& s) { s.fail(1, 0x4210); }, code) & Fault::kDeviceReported,
+            Fault::kDeviceReported);
+  EXPECT_EQ(code, 0x4210u);
+}
+
+TEST(Cia402, ADriveThatStartsAnewIsAFault) {
+  std::uint32_t code = 0;
+  const std::uint32_t faults = fault_after([](Cia402Sim& s) { s.restart(2); }, code);
+  EXPECT_EQ(faults & Fault::kDeviceReported, Fault::kDeviceReported);
+  EXPECT_EQ(code, Cia402Drives::kRestarted);
+}
+
+TEST(Cia402, ATransitionThatIsNotConfirmedIsAFault) {
+  VirtualClock clock;
+  Cia402Arm arm(tables(), clock);
+  ASSERT_EQ(arm.start(), "");
+  arm.sim().stick(1);
+  const test::FaultRun run = test::run_on(arm, clock, 1500, 2e4, {}, 0, arm.frame());
+  EXPECT_EQ(run.summary.faults & Fault::kDeviceReported, Fault::kDeviceReported);
+  for (const Vec3 force : arm.rendered_N()) ASSERT_EQ(force, Vec3{}) << "torque before all axes obey";
+}
+
+// 95 + 115 us an axis, 55 for SYNC, 65 for the heartbeat, 146 for an error: three fit 900 us, six do not.
+TEST(DriveBudget, Cia402) {
+  ArmProfile arm = *test::arm_profile(tables()).arm;
+  const BusVerdict three = check_drives_budget(arm, 1e-3);
+  EXPECT_TRUE(three.fits);
+  EXPECT_NEAR(three.used_us, 3 * (95 + 115) + 55 + 65 + 31 + 115, 1e-9);
+  for (int i = 0; i < 3; ++i) arm.axes.push_back(arm.axes[0]);
+  const BusVerdict six = check_drives_budget(arm, 1e-3);
+  EXPECT_FALSE(six.fits);
+  EXPECT_NEAR(six.used_us, 1526, 1e-9);
+  EXPECT_THAT(six.text, HasSubstr("half the rate fits"));
+  EXPECT_THAT(six.text, HasSubstr("one node on CAN FD"));
+}
+
+}  // namespace
+}  // namespace palpate
