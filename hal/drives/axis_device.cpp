@@ -7,9 +7,11 @@
 
 namespace palpate {
 
-AxisDevice::AxisDevice(AxisDrives& drives, const ArmProfile& arm, double period_s) noexcept
+AxisDevice::AxisDevice(AxisDrives& drives, const ArmProfile& arm, const CartesianKinematics& frame,
+                       double period_s) noexcept
     : drives_(drives),
       arm_(arm),
+      back_(conjugate(frame.orientation_w)),
       share_per_tick_(0.1 * 1e3 * period_s),
       count_(joint_count(arm.linkage)),
       turns_handle_(arm.linkage.gimbal) {
@@ -73,7 +75,7 @@ void AxisDevice::receive(DeviceSample& sample) noexcept {
     sample_.sequence = (sample_.sequence + 1) & 0xFFFFu;
     if (state_.place != LinkagePlace::kUnreachable) {
       sample_.position_m = state_.pose.position_m;
-      sample_.orientation = state_.pose.orientation;
+      sample_.orientation = state_.pose.orientation * back_;
     }
   }
   const bool lost = sample_.sequence > 0 && state_.place == LinkagePlace::kUnreachable;

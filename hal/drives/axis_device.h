@@ -14,8 +14,10 @@ namespace palpate {
 
 class AxisDevice {
  public:
-  // Both must outlive this.
-  AxisDevice(AxisDrives& drives, const ArmProfile& arm, double period_s) noexcept;
+  // `drives` and `arm` must outlive this. A tool stands in the world as its scene has it where the handle's axes are
+  // the device's (always, without a gimbal): with R the handle in the device's frame and F the frame in the world, the
+  // sample says R F^-1, of which the loop makes F R F^-1, the handle's turn as the world sees it.
+  AxisDevice(AxisDrives& drives, const ArmProfile& arm, const CartesianKinematics& frame, double period_s) noexcept;
 
   // drives.start(), then where the joints are: from the home pose the handle must rest in, or the drives' own zeros.
   std::string start(const AxisDrives::Pause& pause);
@@ -37,6 +39,7 @@ class AxisDevice {
 
   AxisDrives& drives_;
   const ArmProfile& arm_;
+  Quat back_;              // F^-1
   double share_per_tick_;  // of a motor's limit
   int count_;
   bool turns_handle_;  // motors on the gimbal

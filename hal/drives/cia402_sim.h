@@ -20,6 +20,11 @@ class Cia402Sim : public DriveSim {
 
   void step() noexcept override;
   void step_bus() noexcept override;
+  bool any_enabled() const noexcept override {
+    bool any = false;
+    for (int i = 0; i < plant_.count(); ++i) any = any || enabled(i);
+    return any;
+  }
   AxisPlant& plant() noexcept override { return plant_; }
 
   // What may be wrong with one drive, by axis from 0.

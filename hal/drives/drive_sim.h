@@ -11,6 +11,7 @@ class DriveSim {
   // One period: takes what came, sends, moves the handle. step_bus: the same with the handle held.
   virtual void step() noexcept = 0;
   virtual void step_bus() noexcept = 0;
+  virtual bool any_enabled() const noexcept = 0;
   virtual AxisPlant& plant() noexcept = 0;
 };
 

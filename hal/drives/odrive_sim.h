@@ -32,6 +32,11 @@ class ODriveSim : public DriveSim {
   void step() noexcept override;
   void step_bus() noexcept override;
   void set_fault(const ODriveFault& fault) noexcept { fault_ = fault; }
+  bool any_enabled() const noexcept override {
+    bool any = false;
+    for (int i = 0; i < plant_.count(); ++i) any = any || on(i);
+    return any;
+  }
   AxisPlant& plant() noexcept override { return plant_; }
   double torque_Nm(int axis) const noexcept { return on(axis) ? drive_[axis].torque_Nm : 0.0; }
   bool closed_loop(int axis) const noexcept { return drive_[axis].state == 8; }

@@ -435,7 +435,7 @@ int run(int argc, char** argv) {
   if (connection.profile.arm) {
     const std::unique_ptr<AxisDrives> drives =
         make_drives(*connection.transport, *connection.profile.arm, model.params.period_s);
-    AxisDevice device(*drives, *connection.profile.arm, model.params.period_s);
+    AxisDevice device(*drives, *connection.profile.arm, connection.profile.frame, model.params.period_s);
     summary = run_on(arguments, model, core, host, device, connection, interrupted, usage);
     if (summary.end == LoopEnd::kSilentAtStart) throw Failure{kSilentAtStart, "no positions from the drives at start"};
     print_run(summary);

@@ -44,7 +44,8 @@ constexpr char kHelp[] =
     "the "
     "origin\n"
     "  --profile FILE     of a device with drives: these are simulated, each by its own protocol (docs/devices.md);\n"
-    "                     the path is in the world then, the device where the profile says\n"
+    "                     the path is in the world then, the device where the profile says;\n"
+    "                     the hand waits until a drive is enabled\n"
     "  --duration S       stop after S seconds; default: when the controller is gone (loopback) or on a signal\n"
     "  --bus-model B      classic or fd: frames take the time they need at 1 Mbit/s (fd: data at 5 Mbit/s)\n"
     "  --hand-fd N        inherited memory that says where the hand is pulled (palpate view); it leaves its motion "
@@ -146,10 +147,15 @@ std::vector<HandPose> load_poses(const std::string& file) {
   return poses;
 }
 
-// The path as a device sees it that stands where its profile says.
+// A tool's pose as the handle of a device of drives has it that stands where its profile says (see AxisDevice).
+Pose handle_of(const CartesianKinematics& frame, const Pose& tool_w) {
+  const Pose seen = pose_in_device(frame, tool_w);
+  return {seen.position_m, seen.orientation * frame.orientation_w};
+}
+
 HandPath path_in(const CartesianKinematics& frame, std::vector<HandPose> poses) {
   if (poses.empty()) poses.emplace_back();
-  for (HandPose& pose : poses) pose.pose = pose_in_device(frame, pose.pose);
+  for (HandPose& pose : poses) pose.pose = handle_of(frame, pose.pose);
   return HandPath(std::move(poses));
 }
 
@@ -213,7 +219,7 @@ void pull_hand(const SharedMemory& memory, DevicePlant& plant, const CartesianKi
   HandWish wish;
   if (!memory || !read_hand_target(*static_cast<const HandTargetRegion*>(memory.data()), wish)) return;
   if (wish.kind == HandWish::kPull)
-    plant.pull(frame != nullptr ? pose_in_device(*frame, wish.pose) : wish.pose, wish.closing != 0);
+    plant.pull(frame != nullptr ? handle_of(*frame, wish.pose) : wish.pose, wish.closing != 0);
   if (wish.kind == HandWish::kHold) plant.hold();
 }
 
@@ -249,11 +255,13 @@ void run_node(DeviceNode& node, FaultPlayer& faults, BusModel* bus, const Argume
   }
 }
 
-// The drives of a profile, one step per period.
+// The drives of a profile, one step per period. The hand holds the handle at its path's first pose until the controller
+// has found them and enables one: a search takes about a second, in which a path would be half over.
 template <Clock C>
 void run_drives(DriveSim& drives, const CartesianKinematics& frame, const Transport& transport,
                 const Arguments& arguments, C& clock, std::int64_t deadline_ns, const std::atomic<bool>& stop) {
   const SharedMemory hand = hand_memory(arguments.hand_fd);
+  bool begun = false;
   const auto period_ns = static_cast<std::int64_t>(1e9 * arguments.plant.period_s + 0.5);
   const auto steps = static_cast<std::uint64_t>(arguments.duration_s / arguments.plant.period_s);
   for (std::uint64_t i = 0; (steps == 0 || i < steps) && !stop.load(std::memory_order_relaxed) &&
@@ -262,7 +270,8 @@ void run_drives(DriveSim& drives, const CartesianKinematics& frame, const Transp
     deadline_ns += period_ns;
     clock.wait_until(deadline_ns);
     pull_hand(hand, drives.plant().plant(), &frame);
-    drives.step();
+    begun = begun || drives.any_enabled();
+    begun ? drives.step() : drives.step_bus();
   }
 }
 

@@ -36,7 +36,7 @@ struct Bench {
   DeviceProfile profile = test::arm_profile(test::kArm);
   const ArmProfile& arm = *profile.arm;
   FakeDrives drives;
-  AxisDevice device{drives, arm, 1e-3};
+  AxisDevice device{drives, arm, profile.frame, 1e-3};
   DeviceSample sample;
 
   // Turns of the motors that bring the joints this far from home.
@@ -65,6 +65,14 @@ TEST(AxisDevice, TurnsOfMotorsBecomeThePose) {
   const Vec3 expected{r * std::cos(0.1), r * std::sin(0.1), 0.205 * std::sin(b) + 0.245 * std::sin(c)};
   EXPECT_LT(norm(bench.sample.position_m - expected), 1e-15);
   EXPECT_EQ(bench.sample.flags & DeviceFlag::kCalibrated, DeviceFlag::kCalibrated);
+}
+
+// The device stands turned by a quarter; a handle that cannot turn holds the tool as the scene has it.
+TEST(AxisDevice, WithoutAGimbalTheToolKeepsItsOrientation) {
+  Bench bench;
+  bench.move(0.3, -0.2, 0.1);
+  const Quat seen = pose_in_world(bench.profile.frame, bench.sample).orientation;
+  EXPECT_LT(norm(small_rotation_vector(seen)), 1e-15);
 }
 
 // At home with no force: the weight of 0.5 N on the forearm's lever and what holds the upper arm, geared down by 12.
@@ -157,7 +165,7 @@ TEST(AxisDevice, NoTorqueUntilEveryDriveObeysAndNoneAfterDisabling) {
 TEST(AxisDevice, AHandleThatMovesIsNotAtHome) {
   const DeviceProfile profile = test::arm_profile(test::kArm);
   FakeDrives drives;
-  AxisDevice device(drives, *profile.arm, 1e-3);
+  AxisDevice device(drives, *profile.arm, profile.frame, 1e-3);
   EXPECT_THAT(device.start([] {}), HasSubstr("no positions of all axes"));
   drives.now.fresh = true;
   EXPECT_THAT(device.start([&] { drives.now.turns[2] += 0.01; }), HasSubstr("axis 3 moved while its home was taken"));

@@ -176,6 +176,8 @@ TEST(Cia402, ATransitionThatIsNotConfirmedIsAFault) {
   for (const Vec3 force : arm.rendered_N()) ASSERT_EQ(force, Vec3{}) << "torque before all axes obey";
 }
 
+TEST(Cia402, BadCablesAreBorneOrNoticed) { test::expect_bad_cables_are_borne<Cia402Arm>(tables()); }
+
 // 95 + 115 us an axis, 55 for SYNC, 65 for the heartbeat, 146 for an error: three fit 900 us, six do not.
 TEST(DriveBudget, Cia402) {
   ArmProfile arm = *test::arm_profile(tables()).arm;

@@ -116,5 +116,7 @@ TEST(ODrive, ADriveThatTakesNoClosedLoopIsAFault) {
   for (const Vec3 force : arm.rendered_N()) ASSERT_EQ(force, Vec3{}) << "torque before all axes obey";
 }
 
+TEST(ODrive, BadCablesAreBorneOrNoticed) { test::expect_bad_cables_are_borne<ODriveArm>(tables()); }
+
 }  // namespace
 }  // namespace palpate

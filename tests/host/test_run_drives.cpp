@@ -1,0 +1,93 @@
+// Whole runs on simulated drives: the programs of a run, the shipped profiles, either protocol.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <iterator>
+
+#include "config/scene/scene.h"
+#include "sim_host/exit_codes.h"
+#include "tests/support/ball_run.h"
+
+namespace palpate {
+namespace {
+
+using testing::HasSubstr;
+
+class RunDrives : public BallRun {
+ protected:
+  RunDrives() {
+    options_.time = RunTime::kVirtual;
+    options_.duration_s = 2.5;  // the search for the drives takes up to 0.8 s of it
+  }
+  static std::string read(const std::string& file) {
+    std::ifstream stream(file);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+  static std::string shipped(const char* name) { return std::string(PALPATE_SOURCE_DIR) + "/config/devices/" + name; }
+  std::string write(const char* name, const std::string& text) const {
+    const std::string file = (folder_ / name).string();
+    std::ofstream(file) << text;
+    return file;
+  }
+};
+
+// The hand feels what it feels of the plain simulated device with the same [device]: the positions of either differ by
+// less than an encoder step of 0.03 mm, times a coupling of 2 N/mm is 0.06 N.
+TEST_F(RunDrives, FeelLikeADeviceThatReportsItsPose) {
+  for (const char* name : {"example-arm-odrive.toml", "example-delta-cia402.toml"}) {
+    options_.profile = shipped(name);
+    const RunResult drives = run_session(options_);
+    const std::string whole = read(options_.profile);
+    options_.profile = write("plain.toml", whole.substr(0, whole.find("[frame]")));
+    const RunResult plain = run_session(options_);
+    for (const RunResult* run : {&drives, &plain}) {
+      EXPECT_EQ(run->summary.fault, 0u) << name;
+      EXPECT_EQ(run->summary.armed_stale_ticks + run->summary.missed_ticks, 0u) << name;
+      EXPECT_GT(run->summary.device_force_max_N, 0.5) << name;
+    }
+    EXPECT_NEAR(drives.summary.device_force_max_N, plain.summary.device_force_max_N, 0.06) << name;
+  }
+}
+
+// The same bytes in the same order, whatever the machine does meanwhile.
+TEST_F(RunDrives, GiveTheSameRecordingTwice) {
+  options_.profile = shipped("example-delta-cia402.toml");
+  options_.record = (folder_ / "run.plr").string();
+  run_session(options_);
+  const std::string first = read(options_.record);
+  run_session(options_);
+  EXPECT_GT(first.size(), 10'000u);
+  EXPECT_TRUE(first == read(options_.record));
+}
+
+TEST_F(RunDrives, AProfileWithDrivesIsLaidOverASceneByItsDeviceTable) {
+  SceneOverlays overlays;
+  overlays.file = {shipped("example-arm-odrive.toml")};
+  const SceneDesc scene = load_scene(options_.scene, overlays);
+  EXPECT_DOUBLE_EQ(scene.device.mass_kg, 0.2);
+}
+
+// The controller's profile names another drive on axis 2 than there is.
+TEST_F(RunDrives, AnotherDriveThanTheProfilesIsNotDriven) {
+  const std::string true_profile = shipped("example-arm-odrive.toml"), name = "drives" + std::to_string(getpid());
+  std::string text = read(true_profile);
+  text.replace(text.find("61925406831666"), 14, "61925406831999");
+  const std::string other = write("other.toml", text), out = (folder_ / "out.txt").string(),
+                    image = (folder_ / "ball.pal").string(), bin = options_.program_folder + "/";
+  ASSERT_EQ(std::system((bin + "palpate bake " + options_.scene + " --with " + true_profile + " -o " + image + " > " +
+                         out + " 2>&1")
+                            .c_str()),
+            0)
+      << read(out);
+  const int status = std::system((bin + "palpate-device --device loopback:" + name + " --profile " + true_profile +
+                                  " & " + bin + "palpate-rt --image " + image + " --device loopback:" + name +
+                                  " --profile " + other + " --priority 0 > " + out + " 2>&1")
+                                     .c_str());
+  EXPECT_EQ(WEXITSTATUS(status), kExitUnavailable);
+  EXPECT_THAT(read(out),
+              HasSubstr("no motor was enabled: axis 2 (ODrive node 2): serial number 61925406831666 is not that"));
+}
+
+}  // namespace
+}  // namespace palpate
