@@ -6,6 +6,9 @@
 #include <stdexcept>
 
 #include "hal/bus/device_address.h"
+#include "hal/device/device_profile.h"
+#include "hal/drives/axis_device.h"
+#include "hal/drives/drive_link.h"
 #include "hal/loop/clock.h"
 #include "hal/system/device_lock.h"
 #include "sim_host/cli.h"
@@ -15,7 +18,30 @@ namespace palpate {
 
 namespace {
 
-int run_device_test(const std::string& device) {
+// Drives are found, identified and set up as before a run, and none is enabled.
+int run_drives_test(const DeviceAddress& address, const ArmProfile& arm) {
+  constexpr int kTimeout_ms = 10'000;
+  constexpr double kUsualPeriod_s = 1e-3;
+  std::string error;
+  const std::unique_ptr<Transport> transport = open_drives(address, arm, DeviceSide::kController, kTimeout_ms, error);
+  if (!transport) {
+    fmt::print(stderr, "palpate: {}\n", error);
+    return kExitUnavailable;
+  }
+  MonotonicClock clock;
+  const std::unique_ptr<AxisDrives> drives = make_drives(*transport, arm, kUsualPeriod_s);
+  AxisDevice device(*drives, arm, {}, kUsualPeriod_s);
+  const std::string wrong = device.start([&clock] { clock.wait_until(clock.now_ns() + 1'000'000); });
+  drives->transmit({});
+  const std::string found = fmt::format("{} drives are those of the profile, with their watchdogs on", arm.axes.size());
+  fmt::print(
+      "{}",
+      doctor_table({{"drives", wrong.empty() ? Verdict::kPass : Verdict::kFail, wrong.empty() ? found : wrong, ""}}));
+  fmt::print("No motor was enabled.\n");
+  return wrong.empty() ? kExitOk : kExitFailed;
+}
+
+int run_device_test(const std::string& device, const std::string& profile) {
   std::string line, error;
   const std::optional<DeviceAddress> address = parse_device_address(device, line, error);
   if (!address) throw std::runtime_error(error);
@@ -27,6 +53,11 @@ int run_device_test(const std::string& device) {
       fmt::print(stderr, "palpate: {}\n", error);
       return kExitUnavailable;
     }
+  }
+  if (!profile.empty()) {
+    const std::optional<DeviceProfile> known = read_device_profile(profile, error);
+    if (!known) throw std::runtime_error(error);
+    if (known->arm) return run_drives_test(*address, *known->arm);
   }
   constexpr int kTimeout_ms = 10'000;
   const std::unique_ptr<Transport> transport = open_transport(*address, DeviceSide::kController, kTimeout_ms, error);
@@ -50,11 +81,12 @@ int run_device_test(const std::string& device) {
 }  // namespace
 
 void add_device_test_command(CLI::App& app, int& exit_code) {
-  auto device = std::make_shared<std::string>();
+  auto device = std::make_shared<std::string>(), profile = std::make_shared<std::string>();
   CLI::App* command = app.add_subcommand(
       "device-test", "Grade a device's firmware by the wire protocol's rules, with zero force throughout");
   command->add_option("ADDRESS", *device, "can:IFACE, usb:/dev/hidrawN or loopback:NAME, with ,classic and ,node=N")
       ->required();
+  command->add_option("--profile", *profile, "of a device of drives: finds and identifies each, enables none");
   command->footer(
       "It takes the controller's place for 2 s: nothing else may drive the device meanwhile. Commands are lost, late,\n"
       "repeated, spoilt and withheld; each row says what the device made of it and, where a rule of\n"
@@ -63,8 +95,9 @@ void add_device_test_command(CLI::App& app, int& exit_code) {
       "Examples:\n"
       "  palpate device-test can:can0\n"
       "  palpate device-test can:can0,classic,node=3\n"
+      "  palpate device-test can:can0 --profile arm.toml      # of drives\n"
       "  palpate-device --device loopback:x & palpate device-test loopback:x");
-  command->callback([device, &exit_code] { exit_code = run_device_test(*device); });
+  command->callback([device, profile, &exit_code] { exit_code = run_device_test(*device, *profile); });
 }
 
 }  // namespace palpate

@@ -53,7 +53,7 @@ void add_doctor_command(CLI::App& app, int& exit_code) {
     items.insert(items.end(), device.begin(), device.end());
     const std::vector<DoctorItem> profile = examine_profile(options->device, options->profile);
     items.insert(items.end(), profile.begin(), profile.end());
-    const std::vector<DoctorItem> heard = listen_to_device(options->device);
+    const std::vector<DoctorItem> heard = listen_to_device(options->device, options->profile);
     items.insert(items.end(), heard.begin(), heard.end());
     fmt::print("{}", doctor_table(items));
     exit_code = print_summary(items) == 0 ? kExitOk : kExitFailed;

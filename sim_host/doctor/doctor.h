@@ -33,8 +33,8 @@ std::vector<DoctorItem> examine_device(const DoctorSources& sources, const std::
 // The device's profile, without which nothing real is driven. No item for a simulated device without one.
 std::vector<DoctorItem> examine_profile(const std::string& device, const std::string& profile);
 // What the device itself sends, listened to for a second without a word to it. The simulated one of a run of its own
-// ("loopback" without a name) has nothing to listen to: no items.
-std::vector<DoctorItem> listen_to_device(const std::string& device);
+// ("loopback" without a name) has nothing to listen to: no items. Drives (of the profile) are asked by device-test.
+std::vector<DoctorItem> listen_to_device(const std::string& device, const std::string& profile = "");
 // A table for the terminal, one item a line, remedies indented below what failed.
 std::string doctor_table(const std::vector<DoctorItem>& items);
 // Names of the items that fail, separated by commas; empty when none does.

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include "hal/bus/device_address.h"
 #include "hal/device/device_profile.h"
+#include "hal/drives/drive_link.h"
 #include "sim_host/doctor/doctor.h"
 #include "sim_host/doctor/doctor_files.h"
 
@@ -125,10 +126,16 @@ std::vector<DoctorItem> examine_profile(const std::string& device, const std::st
   const double admitted = admissible_stiffness(found->damping_Ns_per_m, found->friction_N, found->encoder_step_m,
                                                kUsualPeriod_s, found->delay_s, found->local_Hz)
                               .value;
-  return {judged("device profile", true,
-                 fmt::format("{}: {:.4g} N, {:.4g} N m, admits {:.4g} N/m at 1 kHz", found->name, found->force_max_N,
-                             found->torque_max_Nm, admitted),
-                 "")};
+  std::vector<DoctorItem> items{judged("device profile", true,
+                                       fmt::format("{}: {:.4g} N, {:.4g} N m, admits {:.4g} N/m at 1 kHz", found->name,
+                                                   found->force_max_N, found->torque_max_Nm, admitted),
+                                       "")};
+  if (!found->arm) return items;
+  const BusVerdict verdict = check_drives_budget(*found->arm, kUsualPeriod_s);
+  items.push_back(judged("bus budget of the drives", verdict.fits,
+                         fmt::format("{:.0f} of {:.0f} us at 1 kHz", verdict.used_us, verdict.available_us),
+                         "bake scenes with device.period_ms = 2, or drive all axes by one node on CAN FD"));
+  return items;
 }
 
 std::string failing_items(const std::vector<DoctorItem>& items) {

@@ -2,14 +2,19 @@
 
 #include "hal/bus/device_address.h"
 #include "hal/bus/link_report.h"
+#include "hal/device/device_profile.h"
 #include "hal/loop/clock.h"
 #include "hal/system/device_lock.h"
 #include "sim_host/doctor/doctor.h"
 
 namespace palpate {
 
-std::vector<DoctorItem> listen_to_device(const std::string& device) {
+std::vector<DoctorItem> listen_to_device(const std::string& device, const std::string& profile) {
   std::string line, error;
+  const std::optional<DeviceProfile> known = profile.empty() ? std::nullopt : read_device_profile(profile, error);
+  if (known && known->arm)
+    return {{"drives", Verdict::kUnknown, "not asked: drives may keep silent until they are spoken to",
+             "palpate device-test " + device + " --profile " + profile + "   (finds each; enables none)"}};
   const std::optional<DeviceAddress> address = parse_device_address(device, line, error);
   if (!address || (address->kind == TransportKind::kLoopback && address->name == DeviceAddress{}.name)) return {};
   DeviceLock lock;

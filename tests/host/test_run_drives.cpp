@@ -89,5 +89,22 @@ TEST_F(RunDrives, AnotherDriveThanTheProfilesIsNotDriven) {
               HasSubstr("no motor was enabled: axis 2 (ODrive node 2): serial number 61925406831666 is not that"));
 }
 
+TEST_F(RunDrives, DeviceTestFindsThemAndDoctorSaysHow) {
+  const std::string profile = shipped("example-delta-cia402.toml"), name = "drives" + std::to_string(getpid()),
+                    out = (folder_ / "out.txt").string(), bin = options_.program_folder + "/";
+  const auto run = [&](const std::string& command) {
+    const int status = std::system((command + " > " + out + " 2>&1").c_str());
+    return WEXITSTATUS(status);
+  };
+  EXPECT_EQ(run(bin + "palpate-device --device loopback:" + name + " --profile " + profile + " & " + bin +
+                "palpate device-test loopback:" + name + " --profile " + profile),
+            kExitOk)
+      << read(out);
+  EXPECT_THAT(read(out), HasSubstr("3 drives are those of the profile"));
+  run(bin + "palpate doctor --device can:nocan0 --profile " + profile);
+  EXPECT_THAT(read(out), HasSubstr("896 of 900 us at 1 kHz"));
+  EXPECT_THAT(read(out), HasSubstr("palpate device-test can:nocan0 --profile"));
+}
+
 }  // namespace
 }  // namespace palpate
