@@ -32,8 +32,11 @@ inline bool cholesky_factor(Real* a, std::int32_t n) PALPATE_RT {
   return true;
 }
 
-// Solves (L L^T) x = b in place, with L from cholesky_factor.
-inline void cholesky_solve(const Real* factor, Real* b, std::int32_t n) PALPATE_RT {
+// Solves (L L^T) x = b in place, with L from cholesky_factor. `count` may be known to the
+// compiler.
+template <class Count>
+inline void cholesky_solve(const Real* factor, Real* b, Count count) PALPATE_RT {
+  const std::int32_t n = count;
   for (std::int32_t i = 0; i < n; ++i) {
     Real sum = b[i];
 #pragma GCC unroll 6

@@ -58,10 +58,10 @@ template <class Laws>
 bool newton_step(const Laws& laws, std::int32_t n, RegionSystem& s) PALPATE_RT {
   const Real* g = s.root_tangent;
   Real* y = s.trial_m;
+  Real h[kMaxRegions * kMaxRegions];      // both uses ask for it once
   for (std::int32_t i = 0; i < n; ++i) {  // bound: regions^2
-    for (std::int32_t j = 0; j <= i; ++j) {
-      s.factor[i * n + j] = g[i] * laws.curvature(s.force_N, i, j) * g[j] + (i == j ? 1.0 : 0.0);
-    }
+    for (std::int32_t j = 0; j < n; ++j) h[i * n + j] = laws.curvature(s.force_N, i, j);
+    for (std::int32_t j = 0; j <= i; ++j) s.factor[i * n + j] = g[i] * h[i * n + j] * g[j] + (i == j ? 1.0 : 0.0);
     y[i] = -g[i] * s.residual_m[i];
   }
   if (!cholesky_factor(s.factor, n)) return false;
@@ -69,7 +69,7 @@ bool newton_step(const Laws& laws, std::int32_t n, RegionSystem& s) PALPATE_RT {
   for (std::int32_t i = 0; i < n; ++i) y[i] *= g[i];  // bound: regions
   for (std::int32_t i = 0; i < n; ++i) {              // bound: regions^2
     Real sum = 0;
-    for (std::int32_t j = 0; j < n; ++j) sum += laws.curvature(s.force_N, i, j) * y[j];
+    for (std::int32_t j = 0; j < n; ++j) sum += h[i * n + j] * y[j];
     s.step_m[i] = s.residual_m[i] + sum;
   }
   return true;

@@ -43,7 +43,7 @@ std::vector<TouchingTip> touching_tips(const Model& model, const State& state, A
     round.come_near(point.closest_w);
     TouchingTip tip;
     tip.region = point.region;
-    carried.place(round, point.triangle, kHuge, tip.row);
+    carried.place(round, point.triangle, point.closest_w, kHuge, tip.row);
     if (tip.row.foot.triangle >= 0) tips.push_back(tip);
   }
   return tips;

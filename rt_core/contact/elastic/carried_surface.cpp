@@ -1,4 +1,5 @@
 #include "rt_core/contact/elastic/elastic_row.h"
+#include "rt_core/contact/elastic/mode_count.h"
 #include "rt_core/surface/closest_point.h"
 #include "rt_core/surface/foot_search.h"
 
@@ -18,9 +19,10 @@ struct CarriedVertex {
   }
 };
 
-CarriedVertex carry(const Model& model, const Real* y, std::int32_t vertex) PALPATE_RT {
+template <class Count>
+CarriedVertex carry(const Model& model, Count soft, const Real* y, std::int32_t vertex) PALPATE_RT {
   const float* block = vertex_block(model, vertex);
-  const std::int32_t count = terms(model.params.elastic_soft);
+  const std::int32_t count = terms(soft);
   Double4 a{}, b{}, c{};
   for (std::int32_t t = 0; t < count; ++t) {  // bound: terms
     const Double4 factor = splat4(y[t]);
@@ -33,6 +35,12 @@ CarriedVertex carry(const Model& model, const Real* y, std::int32_t vertex) PALP
   out.row[0] = {1 + a[3], b[0], b[1]};
   out.row[1] = {b[2], 1 + b[3], c[0]};
   out.row[2] = {c[1], c[2], 1 + c[3]};
+  return out;
+}
+
+CarriedVertex carry(const Model& model, const Real* y, std::int32_t vertex) PALPATE_RT {
+  CarriedVertex out;
+  with_mode_count(model.params.elastic_soft, [&](auto n) PALPATE_RT { out = carry(model, n, y, vertex); });
   return out;
 }
 
@@ -138,52 +146,47 @@ TravelSlope facet_slope(const ElasticRow& row) PALPATE_RT {
   return slope;
 }
 
-// How far each shape moves the surface towards the tip.
-void show_modes(const Model& model, const Real* y, const TravelSlope& slope, ElasticRow& row) PALPATE_RT {
-  const std::int32_t soft = model.params.elastic_soft;
+// How far each shape moves the surface towards the tip, how the corners under it move with each amplitude, and the
+// material there: one pass over the shapes.
+template <class Count>
+void show_modes(const Model& model, Count soft, const Real* y, const TravelSlope& slope, ElasticRow& row,
+                Double4 (&corner)[3][kMaxSoftModes]) PALPATE_RT {
   const Triangle& triangle = model.triangle[static_cast<std::size_t>(row.foot.triangle)];
   const float* block[3];
   for (int k = 0; k < 3; ++k) block[k] = vertex_block(model, triangle.vertex[k]);  // bound: 3
-  const auto along = [&](std::int32_t term) PALPATE_RT {
+  const auto along = [&](std::int32_t term, Double4(&moved)[3]) PALPATE_RT {
     Double4 total{};
     for (int k = 0; k < 3; ++k) {  // bound: 3 x 3
       const float* u = block[k] + kTermFloats * term;
-      for (int i = 0; i < kTermFloats; i += 4) total += load4(slope.of[k] + i) * widen4(u + i);
+      moved[k] = widen4(u);
+      total += load4(slope.of[k]) * moved[k];
+      for (int i = 4; i < kTermFloats; i += 4) total += load4(slope.of[k] + i) * widen4(u + i);
     }
     return sum(total);
   };
-  for (std::int32_t a = 0; a < soft; ++a) row.pull[a] = along(a);
+  Double4 moved[3];
+  for (std::int32_t a = 0; a < soft; ++a) {  // bound: 3 soft
+    row.pull[a] = along(a, moved);
+    for (int k = 0; k < 3; ++k) corner[k][a] = moved[k];
+  }
   std::int32_t pair = 0;
-  for (std::int32_t a = 0; a < soft; ++a) {  // bound: pairs
+  for (std::int32_t a = 0; a < soft; ++a) {  // bound: 3 pairs
     for (std::int32_t b = a; b < soft; ++b, ++pair) {
-      const Real h = along(soft + pair);
+      const Real h = along(soft + pair, moved);
       row.pull[a] += h * y[b];
       row.pull[b] += h * y[a];
       row.turn[pair] = a == b ? 2 * h : h;
-    }
-  }
-}
-
-// How the material under the tip moves with each amplitude.
-void show_sweep(const Model& model, const Real* y, ElasticRow& row, Double4 (&corner)[3][kMaxSoftModes]) PALPATE_RT {
-  const std::int32_t soft = model.params.elastic_soft;
-  const Triangle& triangle = model.triangle[static_cast<std::size_t>(row.foot.triangle)];
-  Double4 sweep[kMaxSoftModes] = {};
-  for (int k = 0; k < 3; ++k) {  // bound: 3 pairs
-    const float* block = vertex_block(model, triangle.vertex[k]);
-    Double4* u = corner[k];
-    for (std::int32_t a = 0; a < soft; ++a) u[a] = widen4(block + kTermFloats * a);
-    std::int32_t pair = soft;
-    for (std::int32_t a = 0; a < soft; ++a) {
-      for (std::int32_t b = a; b < soft; ++b, ++pair) {
-        const Double4 second = widen4(block + kTermFloats * pair);
-        u[a] += splat4(y[b]) * second;
-        u[b] += splat4(y[a]) * second;
+      for (int k = 0; k < 3; ++k) {
+        corner[k][a] += splat4(y[b]) * moved[k];
+        corner[k][b] += splat4(y[a]) * moved[k];
       }
     }
-    for (std::int32_t a = 0; a < soft; ++a) sweep[a] += splat4(row.foot.weight[k]) * u[a];
   }
-  for (std::int32_t a = 0; a < soft; ++a) row.sweep_w[a] = {sweep[a][0], sweep[a][1], sweep[a][2]};
+  const Real* w = row.foot.weight;
+  for (std::int32_t a = 0; a < soft; ++a) {  // bound: soft
+    const Double4 sweep = splat4(w[0]) * corner[0][a] + splat4(w[1]) * corner[1][a] + splat4(w[2]) * corner[2][a];
+    row.sweep_w[a] = {sweep[0], sweep[1], sweep[2]};
+  }
 }
 
 // What the foot's slide adds to the travel's second derivative. The travel is the tip's radius less the distance f from
@@ -194,7 +197,8 @@ void show_sweep(const Model& model, const Real* y, ElasticRow& row, Double4 (&co
 // held upright under a ball: one of 60 mm on a block of 20 threw it from side to side every tick (2026-11-23).
 // The centre of a capsule's side slides too, so that along its axis f_ss is the body's curvature alone and t_a does
 // nothing; where that is flat the touch goes to the capsule's end.
-void turn_with_foot(std::int32_t soft, ElasticRow& row, const Double4 (&corner)[3][kMaxSoftModes]) PALPATE_RT {
+template <class Count>
+void turn_with_foot(Count soft, ElasticRow& row, const Double4 (&corner)[3][kMaxSoftModes]) PALPATE_RT {
   const Vec3 n = row.foot.normal_w;
   const Real half = norm(row.tip.half_axis_w), side = row.tip.sideness(), on_side = max_of(row.along_1_per_m, 0.0);
   const Vec3 axis = half > 0 ? (side / half) * tangential_part(row.tip.half_axis_w, n) : Vec3{};
@@ -329,14 +333,14 @@ Vec3 CarriedSurface::displacement(std::int32_t vertex) const PALPATE_RT {
   return carry(model, y, vertex).position_w - rest;
 }
 
-void CarriedSurface::place(const RoundTip& tip, std::int32_t triangle, Real nearer_m,
+void CarriedSurface::place(const RoundTip& tip, std::int32_t triangle, Vec3 near_w, Real nearer_m,
                            ElasticRow& row) const PALPATE_RT {
   CarriedTriangle last{model, y, shown, -1, {}, {}};
   row.tip = tip;
   row.along_1_per_m = 0;
   const Vec3 centre_w = row.placed_w = tip.centre_w();
   last.move_to(triangle);
-  last.walk_below(centre_w);
+  last.walk_below(near_w);
   row.foot = foot::search(
       model,
       [&last](std::int32_t t) PALPATE_RT {
@@ -344,31 +348,22 @@ void CarriedSurface::place(const RoundTip& tip, std::int32_t triangle, Real near
         last.turn_normals();
         return last.corners;
       },
-      centre_w, last.triangle, centre_w, kStillCarried_m);
-  if (row.foot.state == FootState::kFound) {
-    row.travel_m = tip.margin_m - row.foot.height_m;
-    if (!(row.travel_m + nearer_m > 0)) return;
-    show_modes(model, y, travel_slope(model, row, last), row);
-    show_own_terms(model, row);
+      centre_w, last.triangle, near_w, kStillCarried_m);
+  const bool found = row.foot.state == FootState::kFound;
+  if (!found && !place_on_facet(centre_w, triangle, row)) return;
+  row.travel_m = tip.margin_m - row.foot.height_m;
+  if (!(row.travel_m + nearer_m > 0)) return;
+  if (!found) row.rise = row.foot.normal_w;
+  const TravelSlope slope = found ? travel_slope(model, row, last) : facet_slope(row);
+  show_own_terms(model, row);
+  with_mode_count(model.params.elastic_soft, [&](auto n) PALPATE_RT {
     Double4 corner[3][kMaxSoftModes];
-    show_sweep(model, y, row, corner);
-    if (!tip.is_ball()) {
-      slide_along(last.corners, row);
-      *shown += kSlideWork;
-    }
-    turn_with_foot(model.params.elastic_soft, row, corner);
-  } else if (place_on_facet(centre_w, triangle, row)) {
-    row.travel_m = tip.margin_m - row.foot.height_m;
-    if (!(row.travel_m + nearer_m > 0)) return;
-    row.rise = row.foot.normal_w;
-    show_modes(model, y, facet_slope(row), row);
-    show_own_terms(model, row);
-    Double4 corner[3][kMaxSoftModes];
-    show_sweep(model, y, row, corner);
-  } else {
-    return;
-  }
-  *shown += 6 * terms(model.params.elastic_soft);
+    show_modes(model, n, y, slope, row, corner);
+    if (!found) return;
+    if (!tip.is_ball()) slide_along(last.corners, row);
+    turn_with_foot(n, row, corner);
+  });
+  *shown += 6 * terms(model.params.elastic_soft) + (found && !tip.is_ball() ? kSlideWork : 0);
 }
 
 bool CarriedSurface::place_on_facet(Vec3 centre_w, std::int32_t triangle, ElasticRow& row) const PALPATE_RT {

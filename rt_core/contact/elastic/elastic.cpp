@@ -33,7 +33,7 @@ void solve_forces(const ElasticLoad& load, Scratch& scratch, Real* force_N) PALP
     scratch.residual_m = result.residual_m;
     if (result.singular) scratch.status |= Status::kCouplingSingular;
   } else {
-    const TravelResult result = solve_travel(load.region[0]);
+    const TravelResult result = solve_travel(load.region[0], load.shift_under(load.before_N, 0));
     scratch.work.tip_laws += result.evaluations * load.region[0].count;
     scratch.system.shift_m[0] = result.shift_m;
     scratch.residual_m = result.residual_m;
@@ -57,20 +57,19 @@ void let_body_rest(const Model& model, State& state, Scratch& scratch) PALPATE_R
   state.elastic.swept_m = swept_m(model, work_of(scratch));
 }
 
-void solve(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
-  sort_rows(state, scratch);
+template <class Count>
+void solve_pressed(const Model& model, State& state, Scratch& scratch, Count soft) PALPATE_RT {
   const std::int32_t regions = scratch.rows.regions;
-  if (regions == 0) return let_body_rest(model, state, scratch);
-  state.elastic.moved = 1;
   ElasticLoad load;
-  Linearised body(model, state, scratch, load);
+  Linearised<Count> body(model, state, scratch, load, soft);
   Real before_N[kMaxRegions];
   for (std::int32_t r = 0; r < regions; ++r) before_N[r] = state.region[scratch.rows.slot[r]].normal_force_N;
   Real force_N[kMaxRegions];
   body.prepare(before_N);
+  body.gather();
   for (std::int32_t i = 0; i < kSolvesOfFriction; ++i) {  // bound: kSolvesOfFriction
     if (i > 0 && !body.slips(force_N)) break;
-    body.gather(i == 0 ? before_N : force_N);
+    body.let_give(i == 0 ? before_N : force_N);
     solve_forces(load, scratch, force_N);
     scratch.work.linearised += regions;
     scratch.work.linked += regions * (regions + 1) / 2 * (model.params.elastic_linear + model.params.elastic_soft);
@@ -87,6 +86,13 @@ void solve(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   press_regions(load, state, scratch);
   for (std::int32_t r = 0; r < regions; ++r)  // bound: kMaxRegions
     work_of(scratch).place_N_per_m[r] = load.place_N_per_m(r, scratch.system.shift_m[r]);
+}
+
+void solve(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
+  sort_rows(state, scratch);
+  if (scratch.rows.regions == 0) return let_body_rest(model, state, scratch);
+  state.elastic.moved = 1;
+  with_mode_count(model.params.elastic_soft, [&](auto soft) PALPATE_RT { solve_pressed(model, state, scratch, soft); });
 }
 
 // Friction with the stiffness of the place alone, against the surface as the soft modes moved it.

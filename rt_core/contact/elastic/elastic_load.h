@@ -67,18 +67,18 @@ struct ElasticLoad : TipLaws {
   Vec3 law_aside(std::int32_t i, Real e, Real energy_J) const PALPATE_RT {
     const PlacedLaw& here = law[i];
     const Real range_m = tip[i].local.tip->depth_max_m;
-    const Real alone = (energy_J - place_energy_J(here.terms, range_m, e)) / here.scale;
-    const Real by_c = placed[i]->c_m_per_N < 0 ? alone * here.scale_by_c + place_energy_J(here.by_c, range_m, e) : 0.0;
-    const Real by_scale = alone + place_energy_J(here.by_scale, range_m, e);
+    const PlaceEnergies place = place_energies(range_m, e);
+    const Real alone = (energy_J - place.J(here.terms)) / here.scale;
+    const Real by_c = placed[i]->c_m_per_N < 0 ? alone * here.scale_by_c + place.J(here.by_c) : 0.0;
+    const Real by_scale = alone + place.J(here.by_scale);
     const Vec3 aside = by_c * placed[i]->c_gradient +
                        (here.scale_by_curvature * by_scale) * placed[i]->curvature_gradient +
-                       place_energy_J(here.by_beta, range_m, e) * placed[i]->beta_gradient;
+                       place.J(here.by_beta) * placed[i]->beta_gradient;
     if (placed[i]->modulus_gradient == Vec3{}) return aside;
     const Real inverse = 1.0 / placed[i]->modulus;  // the terms' powers of it: rho's by their own, beta's as of m^2
     const PlaceTerms by_modulus = {2 * inverse * here.terms.second_N_per_m2, 3 * inverse * here.terms.between_N_per_m25,
                                    2 * inverse * here.terms.third_N_per_m3, 3 * inverse * here.terms.fourth_N_per_m4};
-    return aside +
-           (alone * here.scale_by_modulus + place_energy_J(by_modulus, range_m, e)) * placed[i]->modulus_gradient;
+    return aside + (alone * here.scale_by_modulus + place.J(by_modulus)) * placed[i]->modulus_gradient;
   }
   // What the last forces ask for; a new region as if it were alone.
   Real start(std::int32_t r) const PALPATE_RT { return before_N[r] > 0 ? shift_under(before_N, r) : TipLaws::start(r); }

@@ -51,12 +51,12 @@ struct CarriedSurface {
 
   // Displacement of a vertex.
   Vec3 displacement(std::int32_t vertex) const PALPATE_RT;
-  // Puts the tip on the surface, starting at `triangle`. A capsule moves along its axis by one step to
-  // where it is deepest, and the travel is that of there, to second order. Beyond a sharp
-  // edge, and below the focal surface, on the facet nearest to the centre as it was before the body moved; with
-  // foot.triangle -1 where the tick's share of surface work is used up.
-  // A tip that is still apart when the surface comes `nearer_m` towards it gets its foot and travel alone.
-  void place(const RoundTip& tip, std::int32_t triangle, Real nearer_m, ElasticRow& row) const PALPATE_RT;
+  // Puts the tip on the surface, starting at `triangle`, where `near_w` is above it. A capsule moves along its axis by
+  // one step to where it is deepest, and the travel is that of there, to second order. Beyond a sharp edge, and below
+  // the focal surface, on the facet nearest to the centre as it was before the body moved; with foot.triangle -1 where
+  // the tick's share of surface work is used up. A tip that is still apart when the surface comes `nearer_m` towards it
+  // gets its foot and travel alone.
+  void place(const RoundTip& tip, std::int32_t triangle, Vec3 near_w, Real nearer_m, ElasticRow& row) const PALPATE_RT;
 
  private:
   bool place_on_facet(Vec3 centre_w, std::int32_t triangle, ElasticRow& row) const PALPATE_RT;

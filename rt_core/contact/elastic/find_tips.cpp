@@ -63,12 +63,12 @@ class Finder {
     ElasticRow& row = work_.row[piece_of(index)];
     if (touched) {
       tip.come_near(point.closest_w);
-      surface_.place(tip, point.triangle, nearer_m_, row);
+      surface_.place(tip, point.triangle, point.closest_w, nearer_m_, row);
       // Lifted off: looked for from the next tick on.
       if (row.foot.triangle >= 0) return free_depth(row) > 0 ? keep(index, row) : let_lift(point, row, 0);
     }
     if (!search(tip, point)) return;
-    surface_.place(tip, point.triangle, nearer_m_, row);
+    surface_.place(tip, point.triangle, point.closest_w, nearer_m_, row);
     if (row.foot.triangle < 0) {
       hold(point);
       return;

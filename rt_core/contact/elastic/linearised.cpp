@@ -20,7 +20,8 @@ constexpr Real kLongestStep = 0.25;
 constexpr Real kMostStiffening = 0.5, kMostSoftening = 20;
 
 // The lower triangle of h becomes the factor of h + shift; false when a pivot falls below the least stiffness.
-bool factor_shifted(const Real* h, Real shift, std::int32_t n, Real* factor) PALPATE_RT {
+template <class Count>
+bool factor_shifted(const Real* h, Real shift, Count n, Real* factor) PALPATE_RT {
   for (std::int32_t j = 0; j < n; ++j) {  // bound: soft^3 / 6
     Real diagonal = h[j * n + j] + shift;
     for (std::int32_t k = 0; k < j; ++k) diagonal -= factor[j * n + k] * factor[j * n + k];
@@ -37,7 +38,8 @@ bool factor_shifted(const Real* h, Real shift, std::int32_t n, Real* factor) PAL
 }
 
 // As stiff as it has to be for that; the linear body where nothing helps. The linear stiffness is 1.
-void factor_stiffened(const Real* h, std::int32_t n, Real* factor) PALPATE_RT {
+template <class Count>
+void factor_stiffened(const Real* h, Count n, Real* factor) PALPATE_RT {
   for (const Real shift : {0.0, 0.1, 0.5, 2.0, 8.0}) {  // bound: 5
     if (factor_shifted(h, shift, n, factor)) return;
   }
@@ -46,7 +48,8 @@ void factor_stiffened(const Real* h, std::int32_t n, Real* factor) PALPATE_RT {
 }
 
 // Of the whole H: what the forces of a region add by the turn of its pull.
-void add_turn(Real force_N, const Real* turn, std::int32_t n, Real* h) PALPATE_RT {
+template <class Count>
+void add_turn(Real force_N, const Real* turn, Count n, Real* h) PALPATE_RT {
   std::int32_t pair = 0;
   for (std::int32_t a = 0; a < n; ++a) {  // bound: pairs
     for (std::int32_t b = a; b < n; ++b, ++pair) {
@@ -56,14 +59,16 @@ void add_turn(Real force_N, const Real* turn, std::int32_t n, Real* h) PALPATE_R
   }
 }
 // Friction along one axis: its stiffness and its force.
-void add_rub(const RubAxis& axis, std::int32_t n, Real* h, Real* force) PALPATE_RT {
+template <class Count>
+void add_rub(const RubAxis& axis, Count n, Real* h, Real* force) PALPATE_RT {
   for (std::int32_t a = 0; a < n; ++a) {  // bound: soft^2
     force[a] += axis.force_N * axis.sweep[a];
     const Real row = axis.stiffness_N_per_m * axis.sweep[a];
     for (std::int32_t b = 0; b < n; ++b) h[a * n + b] += row * axis.sweep[b];
   }
 }
-void answer(const Real* factor, const Real* load, std::int32_t n, Real* moved) PALPATE_RT {
+template <class Count>
+void answer(const Real* factor, const Real* load, Count n, Real* moved) PALPATE_RT {
   for (std::int32_t a = 0; a < n; ++a) moved[a] = load[a];  // bound: soft
   cholesky_solve(factor, moved, n);
 }
@@ -147,11 +152,12 @@ CarriedSurface look(const Model& model, const State& state, Scratch& scratch, st
 }
 
 void let_go(const Model& model, const SoftEnergy& energy, Real* step) PALPATE_RT {
-  const std::int32_t n = model.params.elastic_soft;
-  Real factor[kMaxSoftModes * kMaxSoftModes];
-  factor_stiffened(energy.curvature, n, factor);
-  for (std::int32_t a = 0; a < n; ++a) step[a] = -energy.slope[a];
-  cholesky_solve(factor, step, n);
+  with_mode_count(model.params.elastic_soft, [&](auto n) PALPATE_RT {
+    Real factor[kMaxSoftModes * kMaxSoftModes];
+    factor_stiffened(energy.curvature, n, factor);
+    for (std::int32_t a = 0; a < n; ++a) step[a] = -energy.slope[a];
+    cholesky_solve(factor, step, n);
+  });
 }
 
 FarField own_field(const ElasticRow& row) PALPATE_RT {
@@ -172,14 +178,15 @@ FarChange far_change(const FarField& far, Real force_N) PALPATE_RT {
   return {square + far.c1_m_per_N2 / far.c0_m_per_N * beyond, end * (f * f - end * f + end * end / 3) - beyond};
 }
 
-Linearised::Linearised(const Model& model, State& state, Scratch& scratch, ElasticLoad& load) PALPATE_RT
-    : model_(model),
-      state_(state),
-      scratch_(scratch),
-      load_(load),
-      work_(work_of(scratch)),
-      friction_(friction_parameters(model.params)),
-      n_(model.params.elastic_soft) {
+template <class Count>
+Linearised<Count>::Linearised(const Model& model, State& state, Scratch& scratch, ElasticLoad& load,
+                              Count soft) PALPATE_RT : model_(model),
+                                                       state_(state),
+                                                       scratch_(scratch),
+                                                       load_(load),
+                                                       work_(work_of(scratch)),
+                                                       friction_(friction_parameters(model.params)),
+                                                       n_(soft) {
   for (std::int32_t r = 0; r < regions(); ++r) {  // bound: kMaxRegions
     const RegionRows rows = rows_of(scratch, r);
     const Region& region = state.region[scratch.rows.slot[r]];
@@ -187,7 +194,8 @@ Linearised::Linearised(const Model& model, State& state, Scratch& scratch, Elast
   }
 }
 
-void Linearised::prepare(const Real* force_N) PALPATE_RT {
+template <class Count>
+void Linearised<Count>::prepare(const Real* force_N) PALPATE_RT {
   for (std::int32_t r = 0; r < regions(); ++r) {  // bound: kMaxContacts rows
     leading_[r] = &work_.row[deepest_of(rows_of(scratch_, r)).piece];
     let_stick(model_, state_, *leading_[r], work_.rub[r]);
@@ -197,7 +205,8 @@ void Linearised::prepare(const Real* force_N) PALPATE_RT {
 }
 
 // Region r with those before it.
-void Linearised::link(std::int32_t r) PALPATE_RT {
+template <class Count>
+void Linearised<Count>::link(std::int32_t r) PALPATE_RT {
   const std::int32_t modes = model_.params.elastic_linear;
   const NearField near = near_field();
   show_linear_modes(model_, *leading_[r], along_linear_[r]);
@@ -213,13 +222,15 @@ void Linearised::link(std::int32_t r) PALPATE_RT {
 
 // c1 is what the modes' travel under one tip does to it; of two tips that hold one another's modes still it is nothing:
 // W = c1 F^2 (F + sum share F_j) / 3. A wall pinched from both sides had a place softer than nothing (2026-11-23).
-Real Linearised::second_order(std::int32_t r, std::int32_t j) const PALPATE_RT {
+template <class Count>
+Real Linearised<Count>::second_order(std::int32_t r, std::int32_t j) const PALPATE_RT {
   const FarField& own = load_.own[r];
   const Real force = load_.before_N[r], held = force > own.force_max_N ? own.force_max_N / force : 1.0;
   return 2.0 / 3 * held * own.c1_m_per_N2 * share_[r][j];
 }
 
-bool Linearised::slips(const Real* force_N) PALPATE_RT {
+template <class Count>
+bool Linearised<Count>::slips(const Real* force_N) PALPATE_RT {
   Real delta[kMaxSoftModes];
   const Real share = find_step(force_N, delta);
   for (std::int32_t a = 0; a < n_; ++a) delta[a] *= share;
@@ -233,7 +244,8 @@ bool Linearised::slips(const Real* force_N) PALPATE_RT {
   return some;
 }
 
-void Linearised::factorise(const Real* force_N) PALPATE_RT {
+template <class Count>
+void Linearised<Count>::factorise(const Real* force_N) PALPATE_RT {
   Real h[kMaxSoftModes * kMaxSoftModes] = {};
   for (std::int32_t i = 0; i < n_ * n_; ++i) h[i] = work_.energy.curvature[i];  // bound: soft^2
   for (std::int32_t a = 0; a < n_; ++a) free_step_[a] = -work_.energy.slope[a];
@@ -248,29 +260,41 @@ void Linearised::factorise(const Real* force_N) PALPATE_RT {
     answer(factor_, leading_[r]->pull, n_, moved_[r]);
 }
 
-void Linearised::gather(const Real* before_N) PALPATE_RT {
+template <class Count>
+void Linearised<Count>::gather() PALPATE_RT {
   std::int32_t next = 0;
   load_.n = regions();
   load_.region = load_.tips_of;
   load_.evaluated = &scratch_.work.tip_laws;
-  load_.before_N = before_N;
   load_.coupling = {scratch_.system.compliance_m_per_N, scratch_.system.second_order_m_per_N2};
   for (std::int32_t r = 0; r < load_.n; ++r) {  // bound: kMaxPieces tips
     const RegionRows rows = rows_of(scratch_, r);
     load_.own[r] = own_field(*leading_[r]);
-    FarField far = load_.own[r];
-    far.c0_m_per_N += dot(leading_[r]->pull, moved_[r], n_);
-    load_.tips_of[r] = {&load_.tip[next], 0, far};
+    load_.tips_of[r] = {&load_.tip[next], 0, load_.own[r]};
     for (std::int32_t k = 0; k < rows.count && next < kMaxPieces; ++k) {
       add_tip(rows[k], next++);
       load_.tips_of[r].count += 1;
+    }
+  }
+}
+
+template <class Count>
+void Linearised<Count>::let_give(const Real* before_N) PALPATE_RT {
+  load_.before_N = before_N;
+  for (std::int32_t r = 0; r < load_.n; ++r) {  // bound: kMaxPieces tips, kMaxRegions^2 / 2
+    const RegionRows rows = rows_of(scratch_, r);
+    load_.tips_of[r].far.c0_m_per_N = load_.own[r].c0_m_per_N + dot(leading_[r]->pull, moved_[r], n_);
+    for (std::int32_t k = 0; k < load_.tips_of[r].count; ++k) {
+      const ElasticRow& row = *load_.placed[load_.at(r, k)];
+      load_.tip[load_.at(r, k)].depth_m = rows[k].depth_m = row.travel_m + dot(row.pull, free_step_, n_);
     }
     for (std::int32_t j = 0; j < r; ++j) couple(r, j);
   }
 }
 
 // Returns the share of it that is taken.
-Real Linearised::find_step(const Real* force_N, Real* delta) const PALPATE_RT {
+template <class Count>
+Real Linearised<Count>::find_step(const Real* force_N, Real* delta) const PALPATE_RT {
   for (std::int32_t a = 0; a < n_; ++a) {  // bound: soft x kMaxRegions
     delta[a] = free_step_[a];
     for (std::int32_t r = 0; r < regions(); ++r) delta[a] -= force_N[r] * moved_[r][a];
@@ -279,7 +303,8 @@ Real Linearised::find_step(const Real* force_N, Real* delta) const PALPATE_RT {
   return length <= longest ? 1.0 : longest / length;
 }
 
-Real Linearised::step(const Real* force_N) PALPATE_RT {
+template <class Count>
+Real Linearised<Count>::step(const Real* force_N) PALPATE_RT {
   Real delta[kMaxSoftModes];
   const Real share = find_step(force_N, delta);
   // What springs back from under a tip that slips does not go on: a column swung between the two every other tick.
@@ -294,7 +319,8 @@ Real Linearised::step(const Real* force_N) PALPATE_RT {
 }
 
 // V' + sum F pull - friction where the step ended, and what H^-1 of it moves.
-Real Linearised::left_m(const Real* force_N, Real share, const Real* delta) PALPATE_RT {
+template <class Count>
+Real Linearised<Count>::left_m(const Real* force_N, Real share, const Real* delta) PALPATE_RT {
   Real left[kMaxSoftModes];
   soft_products(n_, state_.elastic.soft_rootJ.data(), work_.y);
   energy_J_ = soft_slope(model_, state_.elastic.soft_rootJ.data(), work_.y, left);
@@ -321,13 +347,15 @@ Real Linearised::left_m(const Real* force_N, Real share, const Real* delta) PALP
 }
 
 // How far the surface under a region went along.
-void Linearised::sweep(Real share, const Real* delta, std::int32_t r) PALPATE_RT {
+template <class Count>
+void Linearised<Count>::sweep(Real share, const Real* delta, std::int32_t r) PALPATE_RT {
   BodyRub& rub = work_.rub[r];
   if (!rub.is_on) return;
   for (const RubAxis& axis : rub.axis) rub.moved_w += (share * dot(axis.sweep, delta, n_)) * axis.unit_w;  // bound: 2
 }
 
-void Linearised::yield_to_rubs() PALPATE_RT {
+template <class Count>
+void Linearised<Count>::yield_to_rubs() PALPATE_RT {
   for (std::int32_t r = 0; r < regions(); ++r) {  // bound: kMaxRegions soft^2
     if (!work_.rub[r].is_on) continue;
     for (RubAxis& axis : work_.rub[r].axis) {
@@ -340,7 +368,8 @@ void Linearised::yield_to_rubs() PALPATE_RT {
 
 // The near field's alone: the linear modes are straight between the vertices, and their slope would step from facet to
 // facet, by 1.3 % of the force on a pinched wall (2026-11-23).
-void Linearised::pull_aside(const Real* force_N) PALPATE_RT {
+template <class Count>
+void Linearised<Count>::pull_aside(const Real* force_N) PALPATE_RT {
   const NearField near = near_field();
   for (std::int32_t r = 0; r < regions(); ++r) {  // bound: kMaxRegions^2
     Vec3 slope;
@@ -352,7 +381,8 @@ void Linearised::pull_aside(const Real* force_N) PALPATE_RT {
   }
 }
 
-Real Linearised::linear_energy_J(const Real* force_N) const PALPATE_RT {
+template <class Count>
+Real Linearised<Count>::linear_energy_J(const Real* force_N) const PALPATE_RT {
   Real energy = 0;
   for (std::int32_t r = 0; r < regions(); ++r)  // bound: kMaxRegions^2 / 2
     for (std::int32_t j = 0; j < r; ++j) {
@@ -362,7 +392,8 @@ Real Linearised::linear_energy_J(const Real* force_N) const PALPATE_RT {
   return energy;
 }
 
-void Linearised::add_tip(Contact& contact, std::int32_t at) PALPATE_RT {
+template <class Count>
+void Linearised<Count>::add_tip(Contact& contact, std::int32_t at) PALPATE_RT {
   const ElasticRow& row = work_.row[contact.piece];
   Tip& tip = load_.tip[at];
   tip = Tip{};
@@ -371,12 +402,12 @@ void Linearised::add_tip(Contact& contact, std::int32_t at) PALPATE_RT {
   tip.scale = load_.law[at].scale;
   tip.place = &load_.law[at].terms;
   load_.placed[at] = &row;
-  tip.depth_m = contact.depth_m = row.travel_m + dot(row.pull, free_step_, n_);
   contact.position_w = row.foot.foot_w;
   contact.normal_w = row.foot.normal_w;
 }
 
-void Linearised::couple(std::int32_t r, std::int32_t j) PALPATE_RT {
+template <class Count>
+void Linearised<Count>::couple(std::int32_t r, std::int32_t j) PALPATE_RT {
   const std::int32_t n = regions();
   Real* c = scratch_.system.compliance_m_per_N;
   c[r * n + j] = c[j * n + r] = linear_[r][j] + dot(leading_[r]->pull, moved_[j], n_);
@@ -384,5 +415,8 @@ void Linearised::couple(std::int32_t r, std::int32_t j) PALPATE_RT {
   h[r * n + j] = second_order(r, j);
   h[j * n + r] = second_order(j, r);
 }
+
+template class Linearised<FourModes>;
+template class Linearised<std::int32_t>;
 
 }  // namespace palpate

@@ -3,6 +3,7 @@
 
 #include "rt_core/contact/elastic/elastic_load.h"
 #include "rt_core/contact/elastic/elastic_work.h"
+#include "rt_core/contact/elastic/mode_count.h"
 #include "rt_core/contact/elastic/near_field.h"
 #include "rt_core/contact/region_solve.h"
 
@@ -21,21 +22,24 @@ RoundTip round_tip(const Model& model, std::int32_t index, const Pose& carrier) 
 // The rows of this tick (ContactMethod::find_rows).
 void find_elastic_tips(const Model& model, State& state, Scratch& scratch) PALPATE_RT;
 
-inline Real dot(const Real* a, const Real* b, std::int32_t n) PALPATE_RT {
+template <class Count>
+inline Real dot(const Real* a, const Real* b, Count n) PALPATE_RT {
   Real sum = 0;
   for (std::int32_t i = 0; i < n; ++i) sum += a[i] * b[i];  // bound: n
   return sum;
 }
 
-// The tick's linearisation: H's factor, and per region H^-1 pull of its deepest row.
+// The tick's linearisation: H's factor, and per region H^-1 pull of its deepest row. Count: FourModes or std::int32_t.
+template <class Count>
 class Linearised {
  public:
-  Linearised(const Model& model, State& state, Scratch& scratch, ElasticLoad& load) PALPATE_RT;
+  Linearised(const Model& model, State& state, Scratch& scratch, ElasticLoad& load, Count soft) PALPATE_RT;
 
   // Every tip sticks. `force_N`: of every region before.
   void prepare(const Real* force_N) PALPATE_RT;
-  // Laws, depths and far fields of all regions, and what couples them.
-  void gather(const Real* before_N) PALPATE_RT;
+  // Laws of all tips, once; then, for every solve, depths and far fields of all regions and what couples them.
+  void gather() PALPATE_RT;
+  void let_give(const Real* before_N) PALPATE_RT;
   // The step under the forces found. True: a tip slips under it, and the linearisation is made anew for that.
   bool slips(const Real* force_N) PALPATE_RT;
   // Moves the amplitudes under the forces found; returns how far the next linearisation would move the surface under
@@ -68,7 +72,7 @@ class Linearised {
   ElasticLoad& load_;
   ElasticWork& work_;
   const FrictionParameters friction_;
-  const std::int32_t n_;
+  const Count n_;
   const ElasticRow* leading_[kMaxRegions];  // deepest of each region
   Real factor_[kMaxSoftModes * kMaxSoftModes];
   Real free_step_[kMaxSoftModes];

@@ -1,5 +1,7 @@
 #include "rt_core/contact/elastic/soft_energy.h"
 
+#include "rt_core/contact/elastic/mode_count.h"
+
 namespace palpate {
 
 namespace {
@@ -13,16 +15,25 @@ struct Part {
   Real wp[kMaxSoftModes];  // W p
 };
 
-void multiply(const double* columns, const Real* x, std::int32_t count, std::int32_t rows, Real* out) PALPATE_RT {
-  for (std::int32_t i = 0; i < rows; ++i) out[i] = 0;  // bound: pairs
-  for (std::int32_t c = 0; c < count; ++c) {           // bound: pairs^2
-    const double* column = columns + c * rows;
-    const Real factor = x[c];
-    for (std::int32_t i = 0; i < rows; ++i) out[i] += factor * column[i];
+// Columns of pairs(soft) numbers, four rows at a time.
+template <class Count>
+void multiply(const double* columns, const Real* x, std::int32_t count, Count soft, Real* out) PALPATE_RT {
+  const std::int32_t rows = pairs(soft);
+  std::int32_t i = 0;
+  for (; i + 4 <= rows; i += 4) {  // bound: pairs^2
+    Double4 sum{};
+    for (std::int32_t c = 0; c < count; ++c) sum += splat4(x[c]) * load4(columns + c * rows + i);
+    store(out + i, sum);
+  }
+  for (; i < rows; ++i) {  // bound: 3 pairs
+    Real sum = 0;
+    for (std::int32_t c = 0; c < count; ++c) sum += x[c] * columns[c * rows + i];
+    out[i] = sum;
   }
 }
 
-void finish(std::int32_t soft, const Real* p, Part& part) PALPATE_RT {
+template <class Count>
+void finish(Count soft, const Real* p, Part& part) PALPATE_RT {
   for (std::int32_t a = 0; a < soft; ++a) part.wp[a] = 0;
   std::int32_t k = 0;
   for (std::int32_t a = 0; a < soft; ++a) {  // bound: pairs
@@ -40,14 +51,16 @@ struct Continuation {
   Real f = 1, f1 = 0, f2 = 0, rho = 0;
 };
 // Returns f1 P / rho.
-Real add_slope(std::int32_t soft, const Real* p, const Part& part, Real degree, const Continuation& c, Real& energy_J,
+template <class Count>
+Real add_slope(Count soft, const Real* p, const Part& part, Real degree, const Continuation& c, Real& energy_J,
                Real* slope) PALPATE_RT {
   energy_J += c.f * part.energy;
   const Real along = c.rho > 0 ? part.energy * c.f1 / c.rho : 0.0;
   for (std::int32_t a = 0; a < soft; ++a) slope[a] += c.f * degree * part.wp[a] + along * p[a];
   return along;
 }
-void add_part(std::int32_t soft, const Real* p, const Part& part, Real degree, const Continuation& c,
+template <class Count>
+void add_part(Count soft, const Real* p, const Part& part, Real degree, const Continuation& c,
               SoftEnergy& out) PALPATE_RT {
   const Real along = add_slope(soft, p, part, degree, c, out.energy_J, out.slope);
   const Real inverse = c.rho > 0 ? 1.0 / c.rho : 0.0;
@@ -80,14 +93,15 @@ struct Parts {
   Real radius, rho;
   bool is_outside;
 
-  Parts(const Model& model, const Real* p, const Real* y) PALPATE_RT : radius(model.params.elastic_radius_rootJ) {
-    const std::int32_t soft = model.params.elastic_soft, pair = pairs(soft);
+  template <class Count>
+  Parts(const Model& model, Count soft, const Real* p, const Real* y) PALPATE_RT
+      : radius(model.params.elastic_radius_rootJ) {
     Real square = 0;
     for (std::int32_t a = 0; a < soft; ++a) square += p[a] * p[a];
     rho = square_root(square);
     is_outside = !(rho <= radius);
-    multiply(model.elastic_cubic.data(), p, soft, pair, third.w);
-    multiply(model.elastic_quartic.data(), y + soft, pair, pair, fourth.w);
+    multiply(model.elastic_cubic.data(), p, soft, soft, third.w);
+    multiply(model.elastic_quartic.data(), y + soft, pairs(soft), soft, fourth.w);
     finish(soft, p, third);
     finish(soft, p, fourth);
   }
@@ -96,19 +110,9 @@ struct Parts {
   }
 };
 
-}  // namespace
-
-void soft_products(std::int32_t soft, const Real* p, Real* y) PALPATE_RT {
-  for (std::int32_t a = 0; a < soft; ++a) y[a] = p[a];
-  std::int32_t k = soft;
-  for (std::int32_t a = 0; a < soft; ++a) {  // bound: pairs
-    for (std::int32_t b = a; b < soft; ++b) y[k++] = p[a] * p[b];
-  }
-}
-
-void soft_energy(const Model& model, const Real* p, const Real* y, SoftEnergy& out) PALPATE_RT {
-  const std::int32_t soft = model.params.elastic_soft;
-  const Parts parts(model, p, y);
+template <class Count>
+void sum_energy(const Model& model, Count soft, const Real* p, const Real* y, SoftEnergy& out) PALPATE_RT {
+  const Parts parts(model, soft, p, y);
   out.energy_J = 0.5 * parts.rho * parts.rho;
   for (std::int32_t a = 0; a < soft; ++a) {  // bound: soft^2
     out.slope[a] = p[a];
@@ -119,13 +123,38 @@ void soft_energy(const Model& model, const Real* p, const Real* y, SoftEnergy& o
   add_part(soft, p, parts.fourth, 4, parts.continuation(4), out);
 }
 
-Real soft_slope(const Model& model, const Real* p, const Real* y, Real* slope) PALPATE_RT {
-  const std::int32_t soft = model.params.elastic_soft;
-  const Parts parts(model, p, y);
+template <class Count>
+Real sum_slope(const Model& model, Count soft, const Real* p, const Real* y, Real* slope) PALPATE_RT {
+  const Parts parts(model, soft, p, y);
   Real energy_J = 0.5 * parts.rho * parts.rho;
   for (std::int32_t a = 0; a < soft; ++a) slope[a] = p[a];
   add_slope(soft, p, parts.third, 3, parts.continuation(3), energy_J, slope);
   add_slope(soft, p, parts.fourth, 4, parts.continuation(4), energy_J, slope);
+  return energy_J;
+}
+
+template <class Count>
+void multiply_out(Count soft, const Real* p, Real* y) PALPATE_RT {
+  for (std::int32_t a = 0; a < soft; ++a) y[a] = p[a];
+  std::int32_t k = soft;
+  for (std::int32_t a = 0; a < soft; ++a) {  // bound: pairs
+    for (std::int32_t b = a; b < soft; ++b) y[k++] = p[a] * p[b];
+  }
+}
+
+}  // namespace
+
+void soft_products(std::int32_t soft, const Real* p, Real* y) PALPATE_RT {
+  with_mode_count(soft, [&](auto n) PALPATE_RT { multiply_out(n, p, y); });
+}
+
+void soft_energy(const Model& model, const Real* p, const Real* y, SoftEnergy& out) PALPATE_RT {
+  with_mode_count(model.params.elastic_soft, [&](auto n) PALPATE_RT { sum_energy(model, n, p, y, out); });
+}
+
+Real soft_slope(const Model& model, const Real* p, const Real* y, Real* slope) PALPATE_RT {
+  Real energy_J = 0;
+  with_mode_count(model.params.elastic_soft, [&](auto n) PALPATE_RT { energy_J = sum_slope(model, n, p, y, slope); });
   return energy_J;
 }
 

@@ -126,15 +126,19 @@ LawPoint place_at(const PlaceTerms& place, Real range_m, Real e_m) PALPATE_RT {
   return {force + tangent * beyond, tangent};
 }
 
-Real place_energy_J(const PlaceTerms& place, Real range_m, Real e_m) PALPATE_RT {
-  if (!(e_m > 0)) return 0.0;
+PlaceEnergies place_energies(Real range_m, Real e_m) PALPATE_RT {
+  if (!(e_m > 0)) return {};
   const Real e = min_of(e_m, range_m), beyond = min_of(e_m, kHuge) - e, root = square_root(e);
-  const Real inside = e * e * e *
-                      (place.second_N_per_m2 / 3 + place.between_N_per_m25 * root / 3.5 +
-                       e * (place.third_N_per_m3 / 4 + e * place.fourth_N_per_m4 / 5));
-  if (!(beyond > 0)) return inside;
-  const LawPoint edge = place_at(place, range_m, e);
-  return inside + (edge.force_N + 0.5 * edge.tangent_N_per_m * beyond) * beyond;
+  const Real square = e * e, cube = square * e, fourth = square * square;
+  PlaceEnergies energy{{cube / 3, cube * root / 3.5, fourth / 4, fourth * e / 5}};
+  if (!(beyond > 0)) return energy;
+  // (F + F' d / 2) d
+  const Real half = 0.5 * beyond, slope = e * root;
+  energy.of[0] += (square + 2 * e * half) * beyond;
+  energy.of[1] += (square * root + 2.5 * slope * half) * beyond;
+  energy.of[2] += (cube + 3 * square * half) * beyond;
+  energy.of[3] += (fourth + 4 * cube * half) * beyond;
+  return energy;
 }
 
 Real interval_energy_J(const LocalLaw& law, std::int32_t interval) PALPATE_RT {

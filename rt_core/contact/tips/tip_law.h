@@ -31,8 +31,18 @@ struct PlaceTerms {
   Real second_N_per_m2 = 0, between_N_per_m25 = 0, third_N_per_m3 = 0, fourth_N_per_m4 = 0;
 };
 LawPoint place_at(const PlaceTerms& place, Real range_m, Real e_m) PALPATE_RT;
-// Integral of that force from zero.
-Real place_energy_J(const PlaceTerms& place, Real range_m, Real e_m) PALPATE_RT;
+// Integral of that force from zero, by each of its terms: for one dent and several places' terms.
+struct PlaceEnergies {
+  Real of[4] = {};
+  Real J(const PlaceTerms& place) const PALPATE_RT {
+    return place.second_N_per_m2 * of[0] + place.between_N_per_m25 * of[1] + place.third_N_per_m3 * of[2] +
+           place.fourth_N_per_m4 * of[3];
+  }
+};
+PlaceEnergies place_energies(Real range_m, Real e_m) PALPATE_RT;
+inline Real place_energy_J(const PlaceTerms& place, Real range_m, Real e_m) PALPATE_RT {
+  return place_energies(range_m, e_m).J(place);
+}
 
 // Integral of the force over one interval of the factor table: what the baker adds up into FactorKnot::energy_J.
 Real interval_energy_J(const LocalLaw& law, std::int32_t interval) PALPATE_RT;

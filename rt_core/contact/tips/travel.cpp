@@ -61,7 +61,7 @@ LawPoint region_at(const TipRegion& region, Real shift_m) PALPATE_RT {
   return sum;
 }
 
-TravelResult solve_travel(const TipRegion& region) PALPATE_RT {
+TravelResult solve_travel(const TipRegion& region, Real start_m) PALPATE_RT {
   if (region.far.c0_m_per_N == 0 && region.far.c1_m_per_N2 == 0) return {};
   const Real deepest = deepest_m(region);
   // At w = deepest every force is zero and the function is positive. Below zero it can only be where c0 or c1 is
@@ -69,6 +69,7 @@ TravelResult solve_travel(const TipRegion& region) PALPATE_RT {
   // twenty depths.
   Real low = -kMostSwelling * deepest, high = deepest;
   TravelResult result;
+  if (start_m > low && start_m < high) result.shift_m = start_m;
   for (std::int32_t i = 0; i < kSeriesIterations; ++i) {  // bound: kSeriesIterations
     const LawPoint load = region_at(region, result.shift_m);
     const Real rest = result.shift_m - far_shift_m(region.far, load.force_N);

@@ -53,8 +53,8 @@ struct TravelResult {
 };
 // One region alone: the shift w with w = c0 F + c1 F^2, F = F(depth - w). The function w - far(F(w)) rises wherever the
 // whole stiffness is positive, which the baker sees to; Newton with bisection as guard. F -> 0 needs no care: the
-// unknown is a depth, not a force. Bound: kSeriesIterations law evaluations.
-TravelResult solve_travel(const TipRegion& region) PALPATE_RT;
+// unknown is a depth, not a force. `start_m`: a first shift, any number. Bound: kSeriesIterations law evaluations.
+TravelResult solve_travel(const TipRegion& region, Real start_m = 0) PALPATE_RT;
 
 // How regions i != j lean on one another: W = sum_{i<j} c_ij F_i F_j + sum_{i != j} h_ij F_i^2 F_j / 2 beside the far
 // fields. Row-major n x n; c symmetric; diagonals unused.

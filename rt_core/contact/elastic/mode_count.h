@@ -1,0 +1,21 @@
+// The number of soft modes, known to the compiler where it is the usual one. Their loops are a few entries long:
+// counting and branching were half of what they took. The order of the sums, and so the bits, are those of any count.
+#pragma once
+
+#include <cstdint>
+#include <type_traits>
+
+#include "rt_core/base.h"
+
+namespace palpate {
+
+using FourModes = std::integral_constant<std::int32_t, 4>;  // every shipped scene's
+
+// use(FourModes) or use(soft).
+template <class Use>
+void with_mode_count(std::int32_t soft, const Use& use) PALPATE_RT {
+  if (soft == FourModes::value) return use(FourModes{});
+  use(soft);
+}
+
+}  // namespace palpate
