@@ -49,6 +49,7 @@ struct Input {
   Drive drive = Drive::kDevice;
   JointCommand joints;
   LiveSettings live;  // what is wanted; the tick follows in bounded steps
+  Pose second_w;      // handle of the second device, which holds the body (HeldPart::kBoth); `pose_w` holds the tool
 };
 
 // X(type, name, stage, meaning). Every field of Output, so that replay and the state hash of the determinism test
@@ -75,7 +76,9 @@ struct Input {
   X(Vec3, felt_across_N_per_m, "safety", "its yz, xz, xy")                                                           \
   X(Wrench, palm_w, "account",                                                                                       \
     "hand only: what the palm must exert on the body to balance fingers and weight, about "                          \
-    "the tool's origin")
+    "the tool's origin")                                                                                             \
+  X(Wrench, second_w, "safety", "what the second device must render, about its handle's origin; zero without one")   \
+  X(Vec3, second_handle_w_m, "safety", "where that handle was taken to be")
 
 struct Output {
 #define PALPATE_FIELD(type, name, stage, meaning) type name{};

@@ -82,6 +82,11 @@ PALPATE_CHOICE(NeighbourhoodLaw, PALPATE_NEIGHBOURHOOD_LAWS);
 #define PALPATE_COUPLING_LAWS(X) X(kNone, none) X(kCoupled, coupled) X(kTemporalPaper, temporal_paper)
 PALPATE_CHOICE(CouplingLaw, PALPATE_COUPLING_LAWS);
 
+// What hands move by devices: the tool; the body, against a tool that is fixed in the world; or one hand the tool by
+// one device and the other the body by a second.
+#define PALPATE_HELD_PARTS(X) X(kTool, tool) X(kBody, body) X(kBoth, both)
+PALPATE_CHOICE(HeldPart, PALPATE_HELD_PARTS);
+
 #define PALPATE_ARTICULATIONS(X) X(kRigid, rigid) X(kGripper, gripper) X(kHand, hand)
 PALPATE_CHOICE(Articulation, PALPATE_ARTICULATIONS);
 

@@ -99,6 +99,10 @@ namespace palpate {
   X(double, palm_face_m, "m", 0, 1, "from the tool's origin to that face")
 // Coupling to the device, and safety.
 #define PALPATE_DEVICE_PARAMS(X)                                                                              \
+  PALPATE_CHOICE_PARAM(X, HeldPart, held_part, "what the device moves")                                       \
+  X(double, grip_x_m, "m", -10, 10, "held body: where the hand holds it, in the body's frame")                \
+  X(double, grip_y_m, "m", -10, 10, "the same, y")                                                            \
+  X(double, grip_z_m, "m", -10, 10, "the same, z")                                                            \
   X(double, coupling_N_per_m, "N/m", 1, 1e6, "translational stiffness of the virtual coupling")               \
   X(double, coupling_Nm_per_rad, "N*m/rad", 1e-6, 1e4, "rotational stiffness of the virtual coupling")        \
   X(double, coupling_Ns_per_m, "N*s/m", 0, 1e4, "damping of the virtual coupling")                            \

@@ -234,6 +234,7 @@ struct SettingsState {
   X(std::int32_t, started, 0, "0: the next sample is the first")                                                \
   X(std::int32_t, rejected_ticks, 0, "consecutive samples found implausible")                                   \
   X(Pose, told_w, {}, "of the last accepted sample, as it came")                                                \
+  X(Pose, second_w, {}, "of the second device's handle at that sample")                                         \
   X(Vec3, observed_m_per_s, {}, "velocity with which device_w goes on between the encoder's steps")             \
   X(Vec3, observed_rad_per_s, {}, "and turns")                                                                  \
   X(Vec3, relaxed_rootJ, {}, "how far each relaxation term has yielded: root of twice an energy")               \

@@ -3,6 +3,7 @@
 #include "rt_core/float_mode.h"
 #include "rt_core/live_model.h"
 #include "rt_core/stage_cost.h"
+#include "rt_core/tool/held_body.h"
 
 namespace palpate {
 
@@ -50,11 +51,9 @@ void tick_as_set(const Model& model, State& state, Scratch& scratch, const Input
   make_safe(set, state, scratch, input, output);
 }
 
-}  // namespace
-
-void tick(const Model& model, State& state, Scratch& scratch, const Input& input, Output& output,
-          const StageProbe& probe) PALPATE_RT {
-  const TickFloatMode mode;
+// The tick in the body's frame.
+void render(const Model& model, State& state, Scratch& scratch, const Input& input, Output& output,
+            const StageProbe& probe) PALPATE_RT {
   follow_settings(input.live, state.live);
   if (state.live.changed == 0) {
     find_forces(model, state, scratch, input, probe);
@@ -66,6 +65,15 @@ void tick(const Model& model, State& state, Scratch& scratch, const Input& input
   probe.passed(Stage::kSafety);
   publish(state, scratch, output);
   probe.passed(Stage::kPublish);
+}
+
+}  // namespace
+
+void tick(const Model& model, State& state, Scratch& scratch, const Input& input, Output& output,
+          const StageProbe& probe) PALPATE_RT {
+  const TickFloatMode mode;
+  if (!holds_body(model) || input.drive != Drive::kDevice) return render(model, state, scratch, input, output, probe);
+  render(model, state, scratch, seen_from_body(model, input), output, probe);
 }
 
 }  // namespace palpate

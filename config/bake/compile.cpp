@@ -353,15 +353,20 @@ class Compiler {
   void add_device() {
     ModelParams& p = image_.params;
     const DeviceDesc& d = scene_.device;
-    report_.bound =
-        admissible_stiffness(d.damping_Ns_per_m, d.friction_N, d.encoder_step_m, d.period_s, d.delay_s, d.local_Hz);
-    report_.rotational_bound =
-        admissible_stiffness(d.damping_Nms_per_rad, d.friction_Nm, d.encoder_step_rad, d.period_s, d.delay_s);
+    // Two handles that swing against one another: half of one's damping acts on their distance, which two encoders
+    // tell.
+    const double hands = d.holds == HeldPart::kBoth ? 2 : 1;
+    report_.bound = admissible_stiffness(d.damping_Ns_per_m / hands, d.friction_N, hands * d.encoder_step_m, d.period_s,
+                                         d.delay_s, d.local_Hz);
+    report_.rotational_bound = admissible_stiffness(d.damping_Nms_per_rad / hands, d.friction_Nm,
+                                                    hands * d.encoder_step_rad, d.period_s, d.delay_s);
     p.coupling_N_per_m = coupling(d.coupling_N_per_m, report_.bound, 1, "device.coupling_N_per_m", "N/m");
     p.coupling_Nm_per_rad = std::min(
         coupling(d.coupling_Nm_per_rad, report_.rotational_bound, 1e-6, "device.coupling_Nm_per_rad", "N m/rad"), 1e4);
     report_.coupling_N_per_m = p.coupling_N_per_m;
     report_.coupling_Nm_per_rad = p.coupling_Nm_per_rad;
+    p.held_part = d.holds;
+    p.grip_x_m = d.grip_m.x, p.grip_y_m = d.grip_m.y, p.grip_z_m = d.grip_m.z;
     p.period_s = d.period_s;
     p.delay_s = d.delay_s;
     set_times(scene_, p);

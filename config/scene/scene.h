@@ -226,6 +226,8 @@ struct GripperDesc {
 // A simulated device: the numbers its coupling stiffness and limits follow from.
 struct DeviceDesc {
   std::string name = "sim-6dof";
+  HeldPart holds = HeldPart::kTool;
+  Vec3 grip_m;
   double period_s = 1e-3;
 #define PALPATE_KEY(member, key, value, lowest, highest, scale, meaning) double member = value;
   PALPATE_PROFILE_KEYS(PALPATE_KEY)

@@ -436,6 +436,14 @@ void check_device_and_path(const SceneDesc& scene) {
     fail(scene, "device.silence_fault_ticks",
          "must be above silence_passive_ticks, and that not below "
          "silence_hold_ticks");
+  if (d.holds != HeldPart::kTool) {
+    if (scene.articulation != Articulation::kRigid)
+      fail(scene, "device.holds",
+           "a held body goes with a rigid tool only; leave it out or take a tool without joints");
+    if (d.smooth_encoder)
+      fail(scene, "device.smooth_encoder",
+           "works on the handle's own steps, which are not those of the tool as seen from a held body; remove it");
+  }
   for (std::size_t i = 0; i < scene.path.point.size(); ++i) {
     const std::string key = "path.point[" + std::to_string(i) + "].time_s";
     const double time = scene.path.point[i].time_s;

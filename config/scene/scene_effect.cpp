@@ -38,9 +38,11 @@ bool is_pressed(const SceneDesc& s) {
 bool knows_material(const SceneDesc& s) {
   return !is_response(s) || s.contact.law == ContactLaw::kHertz || s.contact.law == ContactLaw::kTool || is_pressed(s);
 }
-// A skeleton that the scene asks for is drawn by its beams, whose stiffness is E's. The default one is no reason to
-// state E.
-bool draws_by_material(const SceneDesc& s) { return has_skeleton(s) && s.source.has("skeleton"); }
+// A skeleton that the scene asks for is drawn by its beams, whose stiffness is E's, and temporal coupling carries
+// forces over by them. The default one alone is no reason to state E.
+bool draws_by_material(const SceneDesc& s) {
+  return has_skeleton(s) && (s.source.has("skeleton") || s.coupling.law == CouplingLaw::kTemporalPaper);
+}
 
 bool modulus_works(const SceneDesc& s) { return knows_material(s) || is_coupled(s) || draws_by_material(s); }
 // Mindlin's ratio of the tangential to the normal stiffness is nu's.
@@ -144,6 +146,8 @@ const EffectRule kRules[] = {
     {"contact.tip.body_radius_2_mm", has_round_tip, "without a round tip", kRemove},
     {"contact.layer.base", [](const SceneDesc& s) { return s.layer.thickness_m > 0 || is_pressed(s); },
      "without contact.layer.thickness_mm", "remove it or state the thickness"},
+    {"device.grip_mm", [](const SceneDesc& s) { return s.device.holds != HeldPart::kTool; },
+     "where no hand holds the body", "remove it or state device.holds"},
     {"contact.nodal.friction_sweeps", [](const SceneDesc& s) { return !is_nodal(s) || slides(s); }, kNoFriction,
      kRemove},
 };

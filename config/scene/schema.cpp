@@ -270,6 +270,8 @@ const KeySpec kGripper[] = {
 };
 const KeySpec kDevice[] = {
     text<&DeviceDesc::name>("name", 63, "name of the device"),
+    choice<&DeviceDesc::holds>("holds", "what hands move: tool; body, past a fixed tool; both, by two devices"),
+    list<&DeviceDesc::grip_m>(kVec3, "grip_mm", -1e4, 1e4, kMilli, "where the hand holds the body, in its own frame"),
     number<&DeviceDesc::period_s>("period_ms", 0.01, 100, kMilli, "tick period T"),
 #define PALPATE_KEY(member, key, value, lowest, highest, scale, meaning) \
   number<&DeviceDesc::member>(key, lowest, highest, scale, meaning),

@@ -1,6 +1,10 @@
 // The control loop, one template for the real device and the simulated one, the real clock and the scripted one:
 // wait -> receive -> tick -> transmit -> publish, at most once per slot. Allocation-free; every step is bounded.
 //
+// Two hands (HeldPart::kBoth) are two devices in one loop and one tick: each has its own sample, frame and link watch.
+// A tick without a fresh sample of both is a tick without a sample; what either finds wrong is a fault of the run, and
+// lets both go.
+//
 // Before the first sample the controller is not ticked (there is no pose to render): zero-force commands go out so that
 // the device sees a living controller. After that each slot is one tick, with a sample or without. Stopping asks the
 // controller to ramp down (Command::kStop) for a bounded time; whatever happens, the last commands sent are zero force
@@ -120,18 +124,19 @@ class ModelController {
 template <Device D, Clock C, Controller K, RecordSink S, CommandSource H>
 class Loop {
  public:
-  // All references must outlive the loop. `stop` is set by a signal handler or another thread.
+  // All references must outlive the loop. `stop` is set by a signal handler or another thread. `second`: of the hand
+  // that holds the body, where the scene has one; its frame is `second_kinematics`.
   Loop(D& device, C& clock, K& controller, S& sink, H& host, const CartesianKinematics& kinematics,
-       const LoopOptions& options, const std::atomic<bool>& stop) noexcept
-      : device_(device),
+       const LoopOptions& options, const std::atomic<bool>& stop, D* second = nullptr,
+       const CartesianKinematics& second_kinematics = {}) noexcept
+      : hand_{{&device, kinematics, LinkWatch(options.link)}, {second, second_kinematics, LinkWatch(options.link)}},
+        hands_(second != nullptr ? 2 : 1),
         clock_(clock),
         controller_(controller),
         sink_(sink),
         host_(host),
-        kinematics_(kinematics),
         options_(options),
         stop_(stop),
-        link_(options.link),
         slots_(options.deadline, first_slot_ns(clock.now_ns(), options.deadline.period_ns, options.phase_ns)) {}
 
   LoopSummary run() noexcept {
@@ -145,7 +150,32 @@ class Loop {
   }
 
  private:
+  // One hand's device.
+  struct Hand {
+    D* device;
+    CartesianKinematics kinematics;
+    LinkWatch link;
+    DeviceSample sample = {};
+    bool met = false;  // a sample has arrived
+    bool clutched = false;
+  };
+  template <class Each>
+  void each_hand(const Each& each) noexcept {
+    for (int i = 0; i < hands_; ++i) each(hand_[i]);
+  }
+  template <class Is>
+  bool any_hand(const Is& is) const noexcept {
+    return is(hand_[0]) || (hands_ == 2 && is(hand_[1]));
+  }
+
   bool stop_requested() const noexcept { return stop_.load(std::memory_order_relaxed); }
+
+  void receive() noexcept {
+    each_hand([](Hand& hand) {
+      hand.device->receive(hand.sample);
+      hand.met = hand.met || hand.sample.fresh;
+    });
+  }
 
   // Sleeps until the tick's slot. A late wake-up skips once; if even the wake-up after that is late, the tick runs all
   // the same, so a system that is always late still ticks and reaches the overrun fault.
@@ -165,15 +195,15 @@ class Loop {
     for (;;) {
       if (stop_requested()) return LoopEnd::kStopped;
       wait();
-      device_.receive(sample_);
-      if (sample_.fresh) return LoopEnd::kTicksDone;
+      receive();
+      if (!any_hand([](const Hand& hand) { return !hand.met; })) return LoopEnd::kTicksDone;
       if (++summary_.start_ticks >= options_.start_timeout_ticks) return LoopEnd::kSilentAtStart;
-      send({});
+      send_zero();
       slots_.advance();
     }
   }
 
-  // The first sample is already in sample_ and its slot has begun.
+  // The first samples are already there and their slot has begun.
   LoopEnd render() noexcept {
     std::uint32_t stopping = 0;  // ticks since the stop began
     LoopEnd end = LoopEnd::kStopped;
@@ -194,15 +224,16 @@ class Loop {
 
   bool at_rest() const noexcept {
     const bool safe_mode = output_.mode == Mode::kIdle || output_.mode == Mode::kFault;
-    return safe_mode && output_.device_w == Wrench{};
+    return safe_mode && is_zero();
   }
+  bool is_zero() const noexcept { return output_.device_w == Wrench{} && output_.second_w == Wrench{}; }
 
   void one_tick(bool receive, bool stopping) noexcept {
     TickTiming& timing = record_.timing;
     timing.deadline_ns = slots_.deadline_ns();
     timing.wake_latency_ns = brief(woke_ns_ - timing.deadline_ns);
-    if (receive) device_.receive(sample_);
-    link_.look(sample_);
+    if (receive) this->receive();
+    each_hand([](Hand& hand) { hand.link.look(hand.sample); });
     const std::int64_t received_ns = clock_.now_ns();
     make_input(stopping);
     stamps_ = {&clock_, &timing, received_ns};
@@ -210,8 +241,8 @@ class Loop {
     controller_.step(input_, output_, StageProbe{&Loop::mark, &stamps_});
     const std::int64_t computed_ns = clock_.now_ns();
     const bool armed = output_.mode != Mode::kIdle && output_.mode != Mode::kFault;
-    const bool enabled = link_.enable(armed, output_.device_w == Wrench{});
-    send(to_command(kinematics_, output_, enabled ? CommandFlag::kEnable : 0u, options_.local_valid_s));
+    push(hand_[0], output_, armed);
+    if (hands_ == 2) push(hand_[1], of_second(output_), armed);
     const std::int64_t sent_ns = clock_.now_ns();
     timing.receive_ns = brief(received_ns - woke_ns_);
     timing.compute_ns = brief(computed_ns - received_ns);
@@ -224,28 +255,50 @@ class Loop {
     publish_ns_ = brief(clock_.now_ns() - sent_ns);
   }
 
+  // What the second device renders, in the place of what the first does.
+  static Output of_second(Output output) noexcept {
+    output.device_w = output.second_w;
+    output.handle_w_m = output.second_handle_w_m;
+    return output;
+  }
+  void push(Hand& hand, const Output& output, bool armed) noexcept {
+    const bool enabled = hand.link.enable(armed, is_zero());
+    const std::uint32_t flags = enabled ? CommandFlag::kEnable : 0u;
+    send(hand, to_command(hand.kinematics, output, flags, options_.local_valid_s));
+  }
+
+  // A position outside the workspace is passed on as not a number: the core rejects and reports it.
+  void take_pose(Hand& hand, Pose& pose_w) noexcept {
+    if (!hand.sample.fresh) return;
+    const bool believed = in_workspace(hand.kinematics, hand.sample);
+    hand.clutched = (hand.sample.buttons & options_.clutch_buttons) != 0;
+    if (hand.clutched && summary_.ticks > 0 && believed && is_finite(pose_w)) clutch(hand, pose_w);
+    pose_w = pose_in_world(hand.kinematics, hand.sample);
+    if (!believed) pose_w.position_m.x = std::numeric_limits<double>::quiet_NaN();
+  }
+
   void make_input(bool stopping) noexcept {
-    stale_ = sample_.fresh ? 0 : stale_ + 1 + slots_.missed();
-    if (sample_.fresh) {
-      const bool believed = in_workspace(kinematics_, sample_);
-      // A position outside the workspace is passed on as not a number: the core rejects and reports it.
-      const Pose seen_w = pose_in_world(kinematics_, sample_);
-      clutched_ = (sample_.buttons & options_.clutch_buttons) != 0;
-      if (clutched_ && summary_.ticks > 0 && believed && is_finite(input_.pose_w)) clutch(seen_w.position_m);
-      input_.pose_w = pose_in_world(kinematics_, sample_);
-      if (!believed) input_.pose_w.position_m.x = std::numeric_limits<double>::quiet_NaN();
-      input_.buttons = sample_.buttons;
-    }
+    const bool silent = any_hand([](const Hand& hand) { return !hand.sample.fresh; });
+    stale_ = silent ? stale_ + 1 + slots_.missed() : 0;
+    take_pose(hand_[0], input_.pose_w);
+    take_pose(hand_[1], input_.second_w);
+    if (hand_[0].sample.fresh) input_.buttons = hand_[0].sample.buttons;
     input_.stale_ticks = stale_;
     input_.overrun_ticks = slots_.missed();
     input_.commands = host_.poll() | (stopping ? Command::kStop : 0u);
-    const bool lacks_model = options_.local_valid_s > 0 && (sample_.flags & DeviceFlag::kLocalModel) == 0;
-    if (!link_.proven() || lacks_model) input_.commands &= ~Command::kArm;  // nobody there to render it
-    if (link_.unheard() || clutched_) input_.commands |= Command::kUnheard;
+    const bool nobody = any_hand([&](const Hand& hand) {  // there to render it
+      const bool lacks_model = options_.local_valid_s > 0 && (hand.sample.flags & DeviceFlag::kLocalModel) == 0;
+      return !hand.link.proven() || lacks_model;
+    });
+    if (nobody) input_.commands &= ~Command::kArm;
+    const bool clutched = any_hand([](const Hand& hand) { return hand.clutched; });
+    if (unheard() || clutched) input_.commands |= Command::kUnheard;
     if constexpr (requires { host_.joints(); }) input_.joints = host_.joints();
     if constexpr (requires { host_.live(); }) input_.live = host_.live();
-    input_.device_fault = sample_.faults;
-    if (link_.fault()) input_.device_fault |= Fault::kDeviceDeaf;
+    input_.device_fault = 0;
+    each_hand([&](const Hand& hand) {
+      input_.device_fault |= hand.sample.faults | (hand.link.fault() ? Fault::kDeviceDeaf : 0u);
+    });
     std::uint32_t late = stale_ >= options_.silence_fault_ticks ? Fault::kDeviceSilent : 0u;
     if (slots_.late_too_often()) late |= Fault::kOverrun;
     if (slots_.stalled()) late |= Fault::kStalled;
@@ -258,7 +311,10 @@ class Loop {
   }
 
   // The device's origin moves so that the tool stays where it was. Orientation goes on: a hand cannot let go of it.
-  void clutch(Vec3 seen_w_m) noexcept { kinematics_.position_w += input_.pose_w.position_m - seen_w_m; }
+  static void clutch(Hand& hand, const Pose& pose_w) noexcept {
+    const Pose seen_w = pose_in_world(hand.kinematics, hand.sample);
+    hand.kinematics.position_w += pose_w.position_m - seen_w.position_m;
+  }
 
   // A stall on a simulated device: force is let go until the machine has kept up for a while. What the core is told of
   // lateness stays below the limit at which it would latch by itself.
@@ -280,20 +336,32 @@ class Loop {
     summary_.ticks += 1;
     summary_.stale_ticks += stale_ > 0;
     summary_.worst_stale = stale_ > summary_.worst_stale ? stale_ : summary_.worst_stale;
-    summary_.gaps += sample_.gaps;
     summary_.faults |= output_.fault;
-    summary_.worst_lag = link_.lag_ticks() > summary_.worst_lag ? link_.lag_ticks() : summary_.worst_lag;
-    summary_.unheard_ticks += link_.unheard();
-    summary_.link_drops = link_.drops();
+    summary_.link_drops = 0;
+    each_hand([&](const Hand& hand) {
+      summary_.gaps += hand.sample.gaps;
+      summary_.worst_lag = hand.link.lag_ticks() > summary_.worst_lag ? hand.link.lag_ticks() : summary_.worst_lag;
+      summary_.link_drops += hand.link.drops();
+    });
+    summary_.unheard_ticks += unheard();
     if (timing.wake_latency_ns > summary_.worst_wake_ns) summary_.worst_wake_ns = timing.wake_latency_ns;
   }
 
-  void send(const DeviceCommand& command) noexcept { summary_.send_failures += !device_.transmit(command); }
+  bool unheard() const noexcept {
+    return any_hand([](const Hand& hand) { return hand.link.unheard(); });
+  }
+
+  void send(Hand& hand, const DeviceCommand& command) noexcept {
+    summary_.send_failures += !hand.device->transmit(command);
+  }
+  void send_zero() noexcept {
+    each_hand([&](Hand& hand) { send(hand, {}); });
+  }
 
   // However the run ended: zero force, drives off, in several slots so that one lost frame does not matter.
   void finish() noexcept {
     for (std::uint32_t i = 0; i < options_.zero_ticks; ++i) {
-      send({});
+      send_zero();
       slots_.advance();
       wait();
     }
@@ -316,24 +384,21 @@ class Loop {
     stamps->last_ns = now_ns;
   }
 
-  D& device_;
+  Hand hand_[2];  // the second only with two hands
+  int hands_;
   C& clock_;
   K& controller_;
   S& sink_;
   H& host_;
-  CartesianKinematics kinematics_;
   LoopOptions options_;
   const std::atomic<bool>& stop_;
-  LinkWatch link_;
   DeadlineTracker slots_;
-  DeviceSample sample_;
   Input input_;
   Output output_;
   TickRecord record_{};
   Stamps stamps_{};
   LoopSummary summary_;
   std::uint32_t stale_ = 0;
-  bool clutched_ = false;
   bool riding_ = false;  // through a stall
   std::uint32_t calm_ticks_ = 0;
   std::int64_t woke_ns_ = 0;

@@ -3,6 +3,7 @@
 #include "rt_core/safety/hand_energy.h"
 #include "rt_core/safety/mode_machine.h"
 #include "rt_core/tick.h"
+#include "rt_core/tool/held_body.h"
 #include "rt_core/tool/virtual_coupling.h"
 
 namespace palpate {
@@ -135,6 +136,9 @@ void make_safe(const Model& model, State& state, Scratch& scratch, const Input& 
   output.fault = safety.fault;
   output.mode = safety.mode;
   output.reserved = 0;
+  output.second_w = {};
+  output.second_handle_w_m = {};
+  if (holds_body(model) && input.drive == Drive::kDevice) render_on_body(model, state, scratch, output);
 }
 
 }  // namespace palpate

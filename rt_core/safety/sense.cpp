@@ -108,6 +108,8 @@ void take_sample(const Model& model, State& state, Scratch& scratch, const Input
   state.told_w = input.drive == Drive::kDevice ? state.told_w : pose;
   if (input.drive == Drive::kDevice) follow_hand(model, state, scratch, input, pose);
   state.device_w = pose;
+  if (model.params.held_part == HeldPart::kBoth)
+    state.second_w = {input.second_w.position_m, normalised(input.second_w.orientation)};
   state.rejected_ticks = 0;
 }
 

@@ -21,11 +21,16 @@ namespace palpate {
   X(neighbourhood_radius_m, "sim_host/view/surface_shape.cpp") \
   X(surface_size_m, "sim_host/view/rbf_surface.cpp")           \
   X(stage_cost, "rt_core/stage_cost.cpp")                      \
+  X(palm_radius_m, "sim_host/press/grasp_stability.cpp")       \
+  X(palm_face_m, "sim_host/press/grasp_stability.cpp")         \
   X(late_ticks_max, "hal/loop/loop.h")                         \
   X(stall_max_s, "hal/loop/loop.h")
 
 // X(array or parameter, reader, when): in the tick, but not in any scene the gate plays.
 #define PALPATE_RARE_READERS(X)                                                                 \
+  X(grip_x_m, "rt_core/tool/held_body.h", "a hand holds the body (device.holds)")               \
+  X(grip_y_m, "rt_core/tool/held_body.h", "a hand holds the body (device.holds)")               \
+  X(grip_z_m, "rt_core/tool/held_body.h", "a hand holds the body (device.holds)")               \
   X(response_root, "rt_core/contact/tips/tip_law.cpp", "tables of responses, which users bake") \
   X(wall_N_per_m, "rt_core/contact/nodes/gather.cpp", "a node that the body holds is pushed")
 

@@ -48,6 +48,9 @@ void feel_scene(const FeelCommand& command, const std::string& path, std::vector
     throw std::runtime_error(path + ": an image names no device and no path; name the scene's .toml");
   SceneDesc scene = *compiled.scene();
   add_default_path(scene, compiled.model());
+  if (scene.device.holds != HeldPart::kTool)
+    throw std::runtime_error(path +
+                             ": feel moves the tool by hand, and here a hand holds the body; leave out device.holds");
   const TouchPlace place = touch_place_of(compiled.model(), scene);
   if (!command.grid.empty()) {
     grid += grid_markdown(scene.name, device_grid(compiled.model(), scene, place));

@@ -12,6 +12,7 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "rt_core/tool/held_body.h"
 #include "sim_host/run/plant_options.h"
 
 namespace palpate {
@@ -46,11 +47,17 @@ int text_file(const std::string& text) {
 
 }  // namespace
 
-std::string path_csv(const PathDesc& path) {
+std::string path_csv(const SceneDesc& scene) {
   std::string text = "time_s,x_mm,y_mm,z_mm,rx_deg,ry_deg,rz_deg,closing\n";
   double closing = 0;
-  for (const PathPoint& point : path.point) {
-    const Vec3 p = 1e3 * point.position_m, r = kDegreesPerRadian * point.rotation_rad;
+  for (const PathPoint& point : scene.path.point) {
+    Pose hand{point.position_m, rotation_by(point.rotation_rad)};
+    Vec3 turn_rad = point.rotation_rad;
+    if (scene.device.holds == HeldPart::kBody) {
+      hand = handle_seeing(scene.device.grip_m, hand);
+      turn_rad = -turn_rad;
+    }
+    const Vec3 p = 1e3 * hand.position_m, r = kDegreesPerRadian * turn_rad;
     if (!point.closing.empty()) closing = *std::ranges::max_element(point.closing);
     text += fmt::format("{},{},{},{},{},{},{},{}\n", point.time_s, p.x, p.y, p.z, r.x, r.y, r.z, closing);
   }
@@ -100,7 +107,7 @@ DeviceProcess::DeviceProcess(const std::string& program, const SceneImage& scene
   if (path.empty() && (!scene.scene || scene.scene->path.point.empty())) {
     throw std::runtime_error("the simulated hand needs a motion: give --path CSV, or a .toml scene with a [path]");
   }
-  const Descriptor file(path.empty() ? text_file(path_csv(scene.scene->path)) : -1);
+  const Descriptor file(path.empty() ? text_file(path_csv(*scene.scene)) : -1);
   std::vector<std::string> arguments{
       "--device", device, "--device-fd", std::to_string(kDeviceEnd), "--priority", std::to_string(priority)};
   std::vector<std::pair<int, int>> descriptors{{sockets_.end(1), kDeviceEnd}};

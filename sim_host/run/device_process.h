@@ -33,8 +33,9 @@ class DeviceProcess {
   Process process_;
 };
 
-// The hand's motion of a scene as the CSV palpate-device reads (see hand_path_file.h).
-std::string path_csv(const PathDesc& path);
+// The hand's motion of a scene as the CSV palpate-device reads (see hand_path_file.h): its path, or the one on which a
+// hand that holds the body lets it see the tool on that path.
+std::string path_csv(const SceneDesc& scene);
 // The scene's device and hand.
 PlantOptions plant_of(const SceneDesc& scene);
 // Their properties as palpate-device takes them: --set NAME=VALUE...

@@ -11,6 +11,7 @@
 #include <filesystem>
 
 #include "rt_core/tool/articulate.h"
+#include "rt_core/tool/held_body.h"
 #include "sim_host/latency/histogram.h"
 #include "sim_host/status_text.h"
 #include "sim_host/view/picture.h"
@@ -255,7 +256,7 @@ class Viewer {
     plane_w_ += 0.02 * renderer_.size_m() * static_cast<double>(io.MouseWheel) * view.forward();
     const Vec3 at = drag_point(view, plane_w_, static_cast<double>(io.MousePos.x), static_cast<double>(io.MousePos.y));
     hand_.position_m = at - rotate(hand_.orientation, *grabbed_);
-    run_.steering->pull(hand_);
+    run_.steering->pull(handle_for(*run_.model, hand_));
   }
 
   void keys() {

@@ -54,6 +54,8 @@ const char* const kNoSkeleton = "[contact]\nlaw = \"tool\"\n[skeleton]\nlaw = \"
 const Idle kIdle[] = {
     {"modulus_of_numbers", "[skeleton]\nlaw = \"none\"\n[coupling]\nlaw = \"none\"\n",
      "body.material.youngs_modulus_Pa=2e5", "given by numbers of its own", ""},
+    {"modulus_of_nothing_carried", "[skeleton]\nlaw = \"none\"\n[coupling]\nlaw = \"none\"\n",
+     "body.material.youngs_modulus_Pa=3e5", "given by numbers of its own", "[coupling]\nlaw = \"temporal_paper\"\n"},
     {"modulus_under_a_table", "[contact]\nlaw = \"table\"\n[contact.table]\nfile = \"press.csv\"\n",
      "body.material.youngs_modulus_Pa=2e5", "contact.backend = \"elastic\"",
      "[contact]\nlaw = \"table\"\n[contact.table]\nsource = \"fem\"\n"},
@@ -95,6 +97,7 @@ const Idle kIdle[] = {
      "\"plus_z\"\n"},
     {"layer_base", "[contact]\nlaw = \"tool\"\n", "contact.layer.base=slip", "without contact.layer.thickness_mm",
      "[contact]\nlaw = \"tool\"\n[contact.layer]\nthickness_mm = 60\n"},
+    {"grip", "", "device.grip_mm=[1, 2, 3]", "where no hand holds the body", "[device]\nholds = \"body\"\n"},
     {"friction_sweeps",
      "[contact]\nbackend = \"nodal\"\n[body.material]\npoisson_ratio = 0.45\n[friction]\nlaw = \"none\"\n",
      "contact.nodal.friction_sweeps=2", "friction.law = \"none\"",

@@ -131,6 +131,10 @@ const Mistake kMistakes[] = {
     {"late_path", with("[[path.point]]\ntime_s = 1\n"), 9, "path.point[0].time_s", "must be at time 0"},
     {"path_order", with("[path]\npoint = [{time_s = 0}, {time_s = 2},\n {time_s = 2}]\n"), 10, "path.point[2].time_s",
      "times must increase"},
+    {"held_encoder", with("[device]\nholds = \"body\"\nsmooth_encoder = true\n"), 10, "device.smooth_encoder",
+     "held body"},
+    {"held_gripper", with("slide_mm = [5, 0, 0]\n[gripper]\n[device]\nholds = \"body\"\n"), 11, "device.holds",
+     "a rigid tool only"},
     {"silence", with("[device]\nsilence_fault_ticks = 5\n"), 9, "device.silence_fault_ticks", "must be above"},
 };
 

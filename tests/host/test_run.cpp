@@ -235,8 +235,8 @@ TEST(RunPath, CsvIsReadAndItsErrorsNameTheLine) {
 }
 
 TEST(RunPath, SceneMotionSurvivesTheTripThroughCsv) {
-  PathDesc scene;
-  scene.point = {{0, {0.001, 0.002, 0.003}, {}}, {1.25, {0.1, -0.2, 0.3}, {0, 0.5, 0}}};
+  SceneDesc scene;
+  scene.path.point = {{0, {0.001, 0.002, 0.003}, {}}, {1.25, {0.1, -0.2, 0.3}, {0, 0.5, 0}}};
   const std::string path = (std::filesystem::temp_directory_path() / (std::to_string(getpid()) + "_trip.csv")).string();
   std::ofstream(path) << path_csv(scene);
   std::vector<HandPose> poses;
@@ -244,8 +244,8 @@ TEST(RunPath, SceneMotionSurvivesTheTripThroughCsv) {
   ASSERT_TRUE(read_hand_path(path, poses, error)) << error;
   std::filesystem::remove(path);
   ASSERT_EQ(poses.size(), 2u);
-  EXPECT_NEAR(norm(poses[1].pose.position_m - scene.point[1].position_m), 0, 1e-15);
-  EXPECT_NEAR(norm(rotation_vector(poses[1].pose.orientation) - scene.point[1].rotation_rad), 0, 1e-12);
+  EXPECT_NEAR(norm(poses[1].pose.position_m - scene.path.point[1].position_m), 0, 1e-15);
+  EXPECT_NEAR(norm(rotation_vector(poses[1].pose.orientation) - scene.path.point[1].rotation_rad), 0, 1e-12);
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ int main(int argc, char** argv) {
   try {
     const palpate::SceneDesc scene = palpate::load_scene(argv[1]);
     const std::filesystem::path to = std::filesystem::path(argv[2]) / std::filesystem::path(argv[1]).stem();
-    std::ofstream(to.string() + ".csv") << palpate::path_csv(scene.path);
+    std::ofstream(to.string() + ".csv") << palpate::path_csv(scene);
     std::ofstream(to.string() + ".args") << fmt::format("{}\n", fmt::join(palpate::plant_arguments(scene), " "));
     std::ofstream(to.string() + ".device") << scene.device.name << "\n";
     return 0;

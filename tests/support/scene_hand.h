@@ -23,7 +23,7 @@ namespace palpate::test {
 inline HandPath path_of(const SceneDesc& scene) {
   const std::filesystem::path file =
       std::filesystem::temp_directory_path() / ("palpate_path_" + std::to_string(getpid()) + ".csv");
-  std::ofstream(file) << path_csv(scene.path);
+  std::ofstream(file) << path_csv(scene);
   std::vector<HandPose> poses;
   std::string error;
   const bool read = read_hand_path(file.string(), poses, error);
