@@ -16,6 +16,7 @@ void fill_record(const State& state, const Input& input, const Output& output, T
                                             region.point_count,
                                             region.centre_w,
                                             state.live.stiffness * region.wrench_w.force_N,
+                                            region.normal_w,
                                             region.depth_equivalent_m,
                                             static_cast<std::int32_t>(region.friction),
                                             0};

@@ -16,6 +16,7 @@ namespace palpate {
   X(std::int32_t, point_count, "rows", "tool points or nodes in contact")             \
   X(Vec3, centre_w, "account", "equivalent contact point on the rest surface")        \
   X(Vec3, force_w, "account", "on the tool, friction included")                       \
+  X(Vec3, normal_w, "rows", "unit, of its normal force on the tool")                  \
   X(double, depth_equivalent_m, "account", "depth at which the law gives this force") \
   X(std::int32_t, friction, "account", "FrictionMode")                                \
   X(std::int32_t, reserved, "account", "0")

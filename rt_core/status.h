@@ -35,8 +35,8 @@ namespace palpate {
     "send closings of 0 to 1 and positions within the limits in the image")                                            \
   X(kJointStopped, 14, "a joint stopped because it would press a loaded part harder than the stop force",              \
     "none: this is how a grasp ends; raise the stop force to squeeze harder")                                          \
-  X(kGraspUnstable, 15, "the palm would have to pull, or to hold by more than its friction, to hold the body",         \
-    "close the fingers so that their forces push the body into the palm")                                              \
+  X(kTouchesBetween, 15, "a piece still touches the body, between its tool points: no force there",                    \
+    "more tool points on that piece (tool.piece.points, hand.points_per_part)")                                        \
   X(kFootHeld, 16, "a tip is deeper than the surface's curvature allows; its last place of contact is kept",           \
     "press less deeply, or use a larger body")                                                                         \
   X(kStrainBeyondLinear, 17, "a finite-element body is strained beyond its linear range; forces are extrapolated",     \

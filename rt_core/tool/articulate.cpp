@@ -1,6 +1,5 @@
 #include "rt_core/tool/articulate.h"
 
-#include "rt_core/contact/friction.h"
 #include "rt_core/math.h"
 #include "rt_core/tick.h"
 
@@ -102,22 +101,6 @@ void keep_previous(ArticulationState& a) PALPATE_RT {
   for (std::int32_t p = 0; p < a.motion_tool.size(); ++p) a.motion_previous_tool[p] = a.motion_tool[p];
 }
 
-// Whether a palm that pushes with its face, a disc of palm_radius_m before the tool's origin, and holds by friction can
-// exert this wrench: its force pushes, acts within the disc, and what lies along the face and turns about its normal is
-// within the friction of a soft contact, (F_t / F_max)^2 + (M_n / (2/3 R F_max))^2 <= 1 (Howe & Cutkosky 1996; 2/3 R:
-// evenly pressed disc).
-bool palm_can(const Model& model, const Wrench& palm_w, Vec3 out) PALPATE_RT {
-  const Real push_N = dot(palm_w.force_N, out);
-  if (!(push_N > 0)) return false;
-  const Real radius_m = model.params.palm_radius_m;
-  const Vec3 about_face = palm_w.torque_Nm - cross(model.params.palm_face_m * out, palm_w.force_N);
-  if (!(norm(cross(out, about_face)) <= radius_m * push_N)) return false;
-  const Real most_N = static_limit_N(friction_parameters(model.params), push_N);
-  const Real along = norm(tangential_part(palm_w.force_N, out)), turn = dot(palm_w.torque_Nm, out);
-  const Real reach_m = 2.0 / 3.0 * radius_m;
-  return along * along * reach_m * reach_m + turn * turn <= most_N * most_N * reach_m * reach_m;
-}
-
 // F_palm = -sum F_i - M g on the body, and its moment about the tool's origin (Cui & Xiao 2008: the palm supports the
 // body without deforming it). The fingers' forces on the body are the opposite of those on the tool.
 void balance_palm(const Model& model, const State& state, Scratch& scratch) PALPATE_RT {
@@ -126,9 +109,6 @@ void balance_palm(const Model& model, const State& state, Scratch& scratch) PALP
   const Vec3 centre{model.params.body_centre_x_m, model.params.body_centre_y_m, model.params.body_centre_z_m};
   scratch.palm_w.force_N = scratch.contact_wrench_w.force_N + up;
   scratch.palm_w.torque_Nm = scratch.contact_wrench_w.torque_Nm + cross(centre - state.tool_w.position_m, up);
-  const Vec3 out_of_palm = rotate(state.tool_w.orientation, {0, 0, -1});
-  const bool held = squared_norm(scratch.contact_wrench_w.force_N) > 0;
-  if (held && !palm_can(model, scratch.palm_w, out_of_palm)) scratch.status |= Status::kGraspUnstable;
 }
 
 }  // namespace

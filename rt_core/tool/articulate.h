@@ -7,9 +7,10 @@
 namespace palpate {
 
 // Load of each piece from the contacts of this tick, for the next tick's stops; and the palm's share of a hand's
-// balance: what it must exert on the body against the fingers' forces and the body's weight (scratch.palm_w;
-// Status::kGraspUnstable when no palm can: it pushes, within its face, and holds by friction). Part of the stage
-// contact; a rigid tool has no joints to stop: returns at once. Bound: kMaxContacts.
+// balance: what it must exert on the body against the fingers' forces and the body's weight (scratch.palm_w). Whether
+// fingers and palm can hold it is judged outside the tick, which nothing of it would change
+// (sim_host/press/grasp_stability.h). Part of the stage contact; a rigid tool has no joints to stop: returns at once.
+// Bound: kMaxContacts.
 void load_pieces(const Model& model, State& state, Scratch& scratch) PALPATE_RT;
 
 // Frame of every link in the tool frame for the joint positions `joint`; writes sizes.n_joint poses, and the joints'

@@ -64,10 +64,9 @@ Drawing history_plot(const GraspRun& run) {
 void print_run(const Model& model, const GraspRun& run) {
   fmt::print(
       "{}: {} regions, sum of fingers on the hand ({:.3f}, {:.3f}, {:.3f}) N, palm on the body ({:.3f}, {:.3f}, "
-      "{:.3f}) N{}\n",
+      "{:.3f}) N\n",
       run.name, run.regions, run.contact_w.force_N.x, run.contact_w.force_N.y, run.contact_w.force_N.z,
-      run.palm_w.force_N.x, run.palm_w.force_N.y, run.palm_w.force_N.z,
-      (run.status & Status::kGraspUnstable) != 0 ? ": more than a palm can, by friction and within its face" : "");
+      run.palm_w.force_N.x, run.palm_w.force_N.y, run.palm_w.force_N.z);
   const Grasp grasp = grasp_of(model, *run.held);
   const GraspStability s = judge(grasp);
   fmt::print("  {}: within the friction cones fingers and palm {} the weight of {:.2f} N{}; friction needed: {}\n",

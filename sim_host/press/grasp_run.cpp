@@ -57,7 +57,6 @@ void keep_hold(const Model& model, const PressRow& row, const State& state, Gras
   run.contact_w = row.record.output.contact_w;
   run.palm_w = row.record.output.palm_w;
   run.regions = row.record.output.regions;
-  run.status = row.record.output.status;
   run.held_stress_Pa = anchor_stresses_Pa(model, state);
   run.part_force_N.assign(kHandParts + 1, 0);
   for (std::size_t p = 0; p < model.piece.size(); ++p) {

@@ -32,7 +32,6 @@ struct GraspRun {
   Wrench contact_w, palm_w;
   std::vector<double> part_force_N;  // sum of the normal forces on each finger part; [0] unused
   std::int32_t regions = 0;
-  std::uint32_t status = 0;   // of that tick
   double chatter = 0;         // largest relative change of the summed normal force per tick over the last 0.2 s of hold
   bool back_at_rest = false;  // no force, no region (so no displacement), no energy at the end
   double residual_max_m = 0;

@@ -87,7 +87,7 @@ void judge_closure(const Grasp& grasp, GraspStability& result) {
 
 }  // namespace
 
-Grasp grasp_of(const Model& model, const State& state) {
+Grasp grasp_of(const Model& model, const Pose& tool_w, std::span<const PressedPlace> places) {
   const ModelParams& p = model.params;
   const FrictionParameters friction = friction_parameters(p);
   Grasp grasp;
@@ -95,19 +95,34 @@ Grasp grasp_of(const Model& model, const State& state) {
   grasp.weight_N = {0, -9.80665 * p.body_mass_kg, 0};
   grasp.length_m = 0.5 * p.surface_size_m;
   Vec3 on_hand = -grasp.weight_N;
-  for (const Region& region : state.region) {
-    if (!is_in_contact(region) || !(region.normal_force_N > 0)) continue;
-    grasp.finger.push_back(
-        {region.centre_w, -region.normal_w, region.normal_force_N, static_limit_N(friction, region.normal_force_N)});
-    on_hand += region.normal_force_N * region.normal_w;
+  for (const PressedPlace& place : places) {
+    if (!(place.normal_N > 0)) continue;
+    grasp.finger.push_back({place.centre_w, -place.normal_w, place.normal_N, static_limit_N(friction, place.normal_N)});
+    on_hand += place.normal_N * place.normal_w;
   }
   if (!(p.palm_radius_m > 0)) return grasp;
-  const Vec3 out = rotate(state.tool_w.orientation, {0, 0, -1});
-  const Vec3 face = state.tool_w.position_m + p.palm_face_m * out;
+  const Vec3 out = rotate(tool_w.orientation, {0, 0, -1});
+  const Vec3 face = tool_w.position_m + p.palm_face_m * out;
   const double push_N = std::max(dot(on_hand, out), 0.0);
   const double mu = push_N > 0 ? static_limit_N(friction, push_N) / push_N : 0;
   for (int k = 0; k < kEdges; ++k) grasp.palm.push_back({face + p.palm_radius_m * across(out, k), out, 1, mu});
   return grasp;
+}
+
+Grasp grasp_of(const Model& model, const State& state) {
+  std::vector<PressedPlace> places;
+  for (const Region& region : state.region)
+    if (is_in_contact(region)) places.push_back({region.centre_w, region.normal_w, region.normal_force_N});
+  return grasp_of(model, state.tool_w, places);
+}
+
+Grasp grasp_of(const Model& model, const TickRecord& record) {
+  std::vector<PressedPlace> places;
+  for (std::int32_t i = 0; i < std::min(record.region_count, kMaxRegions); ++i) {
+    const RegionRecord& region = record.region[i];
+    places.push_back({region.centre_w, region.normal_w, dot(region.force_w, region.normal_w)});
+  }
+  return grasp_of(model, record.output.tool_w, places);
 }
 
 double imbalance_N(const Grasp& grasp, double scale) {
@@ -136,11 +151,15 @@ double imbalance_N(const Grasp& grasp, double scale) {
   return cone_combination(column, target).residual.norm();
 }
 
+bool holds(const Grasp& grasp) {
+  return !grasp.finger.empty() && imbalance_N(grasp, 1) <= kBalanced * largest_force_N(grasp);
+}
+
 GraspStability judge(const Grasp& grasp) {
   GraspStability result;
   const double enough_N = kBalanced * largest_force_N(grasp);
   result.imbalance_N = imbalance_N(grasp, 1);
-  result.holds = !grasp.finger.empty() && result.imbalance_N <= enough_N;
+  result.holds = holds(grasp);
   double low = 0, high = 128;
   if (imbalance_N(grasp, high) > enough_N) high = kHuge;
   for (int i = 0; i < 17 && high < kHuge; ++i) {  // to 1e-3

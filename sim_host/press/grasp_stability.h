@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "rt_core/model.h"
+#include "rt_core/record.h"
 #include "rt_core/state.h"
 
 namespace palpate {
@@ -26,9 +28,17 @@ struct Grasp {
   double length_m = 1;             // by which moments are divided to compare with forces
 };
 
-// The grasp of a state: one finger contact per region, its normal force and friction limit those of the state; the palm
-// as a face of eight corners with the same friction law at the push that it gives.
+// Where a hand presses: a region's centre, the surface's outward normal there, the normal force.
+struct PressedPlace {
+  Vec3 centre_w, normal_w;
+  double normal_N = 0;
+};
+// The grasp of a hand at `tool_w`: one finger contact per place with the friction that the scene's law allows; the palm
+// as a face of eight corners with the same law at the push that it gives. Of a state, and of a tick as it was told or
+// recorded.
+Grasp grasp_of(const Model& model, const Pose& tool_w, std::span<const PressedPlace> places);
 Grasp grasp_of(const Model& model, const State& state);
+Grasp grasp_of(const Model& model, const TickRecord& record);
 
 struct GraspStability {
   bool holds = false;          // forces within all cones balance the weight at the fingers' normal forces
@@ -40,6 +50,8 @@ struct GraspStability {
   double quality_least = 0, quality_most = 0;
 };
 GraspStability judge(const Grasp& grasp);
+// The first of these alone, at a hundredth of the work: can they balance the weight?
+bool holds(const Grasp& grasp);
 
 // Can forces within the cones, friction limits times `scale`, balance the weight? Returns what is left over (N).
 double imbalance_N(const Grasp& grasp, double scale);

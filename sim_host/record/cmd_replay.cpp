@@ -7,6 +7,7 @@
 
 #include "sim_host/build_id.h"
 #include "sim_host/cli.h"
+#include "sim_host/press/grasp_watch.h"
 #include "sim_host/record/mapped_file.h"
 #include "sim_host/record/record_csv.h"
 #include "sim_host/record/recorded_image.h"
@@ -70,9 +71,13 @@ int run_replay(const ReplayOptions& options) {
     fmt::print("recorded by another build, verifying all the same\n  recorded {}\n  this one {}\n", header.build_id,
                kBuildId);
   }
-  return report(replay(recording, scene.model(), [&](const TickRecord& recorded, const TickRecord&) {
+  GraspWatch grasp(scene.model());
+  const int exit_code = report(replay(recording, scene.model(), [&](const TickRecord& recorded, const TickRecord&) {
     if (csv) csv->add(recorded);
+    grasp.take(recorded);
   }));
+  fmt::print("{}", grasp.text());
+  return exit_code;
 }
 
 }  // namespace

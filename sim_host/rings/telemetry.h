@@ -66,6 +66,7 @@ constexpr std::uint64_t record_layout_hash() noexcept {
                                  sizeof(RegionRecord),
                                  offsetof(RegionRecord, centre_w),
                                  offsetof(RegionRecord, force_w),
+                                 offsetof(RegionRecord, normal_w),
                                  offsetof(RegionRecord, depth_equivalent_m),
                                  offsetof(RegionRecord, friction),
                                  sizeof(TickTiming),
@@ -81,6 +82,7 @@ constexpr std::uint64_t record_layout_hash() noexcept {
                                  sizeof(JointCommand),
                                  offsetof(Input, live),
                                  sizeof(LiveSettings),
+                                 offsetof(Input, second_w),
                                  sizeof(Output),
                                  offsetof(Output, contact_w),
                                  offsetof(Output, tool_w),
@@ -91,6 +93,7 @@ constexpr std::uint64_t record_layout_hash() noexcept {
                                  offsetof(Output, fault),
                                  offsetof(Output, mode),
                                  offsetof(Output, palm_w),
+                                 offsetof(Output, second_w),
                                  state_layout_hash(),
                                  kMaxRegions,
                                  kStageCount};

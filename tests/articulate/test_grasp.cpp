@@ -4,42 +4,19 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <random>
 #include <set>
 
 #include "config/hand/hand_model.h"
 #include "config/scene/config_error.h"
 #include "rt_core/tool/articulate.h"
-#include "sim_host/bake/scene_model.h"
-#include "sim_host/press/grasp_run.h"
-#include "sim_host/press/grasp_stability.h"
+#include "tests/articulate/grasp_scenes.h"
 #include "tests/support/baked_scene.h"
 #include "tests/support/roomy.h"
 #include "tests/support/state_difference.h"
 
 namespace palpate::test {
 namespace {
-
-// Baked once per program: planning a preshape takes a moment.
-const SceneModel& scene_named(const std::string& name) {
-  static std::map<std::string, std::unique_ptr<SceneModel>> cache;
-  std::unique_ptr<SceneModel>& entry = cache[name];
-  if (!entry)
-    entry = std::make_unique<SceneModel>(std::string(PALPATE_SOURCE_DIR) + "/config/scenes/" + name + ".toml");
-  return *entry;
-}
-
-const GraspRun& played(const std::string& name) {
-  static std::map<std::string, GraspRun> cache;
-  const auto found = cache.find(name);
-  if (found != cache.end()) return found->second;
-  const SceneModel& scene = scene_named(name);
-  return cache.emplace(name, run_grasp(scene.model(), *scene.scene(), {})).first->second;
-}
-
-const char* const kScenes[] = {"grasp_cylinder_2", "grasp_cylinder_3", "grasp_cylinder_5",
-                               "grasp_sphere_2",   "grasp_sphere_3",   "grasp_sphere_5"};
 
 TEST(Grasp, FiveFingersHoldTheCylinderByFifteenRegions) {
   const GraspRun& run = played("grasp_cylinder_5");
@@ -90,53 +67,6 @@ TEST(Grasp, ThePalmWouldPushAndBalancesFingersAndWeight) {
     const Vec3 out_of_palm = rotate(run.held->tool_w.orientation, {0, 0, -1});
     EXPECT_GT(dot(run.palm_w.force_N, out_of_palm), 0) << name;
   }
-}
-
-// The tick asks whether the palm alone can exert what fingers and weight leave to it: with more friction it can. What
-// it does not report holds by the balance over all cones, too; what it reports may still hold by the fingers' friction.
-TEST(Grasp, WhatTheTickDoesNotReportHolds) {
-  int silent = 0;
-  for (const double friction : {1.0, 4.0, 40.0})
-    for (const char* name : kScenes) {
-      Model model = scene_named(name).model();
-      const GraspRun& run = played(name);
-      Bench bench(model);
-      copy_state(*run.held, *bench.state);
-      model.params.friction_k_N *= friction;
-      bench.tick_at(bench.state->tool_w, closing_all(1));
-      if ((bench.output.status & Status::kGraspUnstable) != 0) continue;
-      silent += 1;
-      EXPECT_TRUE(judge(grasp_of(model, *bench.state)).holds) << name << " " << friction;
-    }
-  EXPECT_GE(silent, 4);
-}
-
-// Cui & Xiao's grasps with a rubber's friction of 0.5 at 5 N: the six hold their own weight with friction to spare, and
-// stop holding with half of it. The balance is checked against the certificate of either side: forces in their cones,
-// or a wrench that no contact opposes.
-TEST(Grasp, TheSixGraspsHoldTheirWeightWithinTheCones) {
-  for (const char* name : kScenes) {
-    const GraspStability s = judge(grasp_of(scene_named(name).model(), *played(name).held));
-    EXPECT_TRUE(s.holds) << name;
-    EXPECT_TRUE(s.closed) << name;
-    EXPECT_GT(s.quality_least, 0.05) << name;
-    EXPECT_GT(s.friction_needed, 0.5) << name;
-    EXPECT_LT(s.friction_needed, 1.0) << name;
-    RecordProperty(std::string(name) + "_friction_needed", std::to_string(s.friction_needed));
-  }
-}
-
-// One finger bent round its root alone touches on the palm's side and pushes the body away from it.
-TEST(Grasp, AFingerThatPushesTheBodyAwayIsReportedAsUnstable) {
-  const Model& model = scene_named("grasp_cylinder_5").model();
-  Bench bench(model);
-  JointCommand joints;
-  const auto root = static_cast<std::size_t>(finger_joints(1).flexion[0]);
-  joints.direct = 1u << root;
-  joints.target[root] = static_cast<float>(model.joint[root].closed);
-  for (int i = 0; i < 400; ++i) bench.tick_at(model.grasp_w[0], joints);
-  ASSERT_GT(bench.output.regions, 0);
-  EXPECT_TRUE((bench.output.status & Status::kGraspUnstable) != 0);
 }
 
 TEST(Grasp, StressesGrowWithTheNumberOfFingers) {
