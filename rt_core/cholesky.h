@@ -1,7 +1,7 @@
-// In-place Cholesky factorisation of small symmetric positive definite systems. Own code rather than Eigen's because
-// Eigen 3.4's blocked solvers reach its allocating stack-buffer path, which the non-blocking analysis refuses. Inner
-// loops are unrolled: a tick solves two systems of six, and half of them was counting (700 to 1,100 instructions a
-// tick, 2026-11-22). The order of the sums, and so the bits, stay.
+// In-place Cholesky factorisation of small symmetric positive definite systems; why not Eigen's:
+// docs/decisions/0006-libraries-of-the-tick.md. Inner loops are unrolled: a tick solves two systems of six, and half of
+// them was counting (700 to 1,100 instructions a tick, 2026-11-22). The order of the sums, and so the bits, stay as
+// written.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Small vectors, rotations and poses. Vec3 and Quat are plain structs rather than Eigen types because State, records
-// and images must be trivially copyable (Eigen's are not); matrices that live only inside a stage use Eigen.
+// Small vectors, rotations and poses. Vec3 and Quat are plain structs: State, records and images must be
+// trivially copyable. There is no Eigen in rt_core (docs/decisions/0006-libraries-of-the-tick.md).
 // Sums run in the written order, so every compiler gives the same bits.
 #pragma once
 

@@ -86,7 +86,8 @@ void collide(const Model& model, State& state, Scratch& scratch) PALPATE_RT;
 
 // Whether the piece last at this region may still touch the surface there: tool points only sample the piece, so a flat
 // face can touch between them. An overlap test of the piece against the surface triangle it last touched; inconclusive
-// counts as touching, since "could not decide" must never be read as "no contact". Status: kOverlapInconclusive.
+// counts as touching, since "could not decide" must never be read as "no contact". Status: kTouchesBetween,
+// kOverlapInconclusive.
 bool still_touching(const Model& model, State& state, Scratch& scratch, const Region& region) PALPATE_RT;
 
 }  // namespace palpate

@@ -300,6 +300,7 @@ bool still_touching(const Model& model, State& state, Scratch& scratch, const Re
     state.high_water.gjk_support_calls = result.support_calls;
   }
   if (result.overlap == Overlap::kInconclusive) scratch.status |= Status::kOverlapInconclusive;
+  if (result.overlap == Overlap::kHit) scratch.status |= Status::kTouchesBetween;
   return result.overlap != Overlap::kMiss;
 }
 

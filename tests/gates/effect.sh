@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Effect gate, a mutation test of the tick: what changes nothing must not be in the tick. Every statement of tick(),
-# find_forces() and contact(), the phases of every contact method one method at a time, and the skeletons of
+# render(), find_forces() and contact(), the phases of every contact method one method at a time, and the skeletons of
 # `temporal_paper` coupling are left out in turn: a copy of the source without that line is compiled and linked before
 # the library, whose own version is then not taken. Some scene's outputs must change over the scripted hand's eight
 # seconds, or the run must not end at all. Proves itself by a planted stage that computes what nobody reads.
@@ -19,7 +19,9 @@ methods=$(sed -n 's/^#define PALPATE_METHODS(X)//p' "$root/rt_core/laws.h" | gre
 # One scene of each method and kind, cheapest first: a run stops at the first one that changes.
 "$palpate" bake "$root/config/scenes/heart_compass_paper.toml" -o "$work/temporal.pal" \
   >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
-scenes="$images/tools_on_layer.pal $images/ellipsoid_mallet_springs.pal $work/temporal.pal $images/grasp_cylinder_2.pal"
+"$palpate" bake "$root/config/scenes/tools_on_layer.toml" --set device.holds=body -o "$work/held.pal" \
+  >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
+scenes="$images/tools_on_layer.pal $images/ellipsoid_mallet_springs.pal $work/temporal.pal $images/grasp_cylinder_2.pal $work/held.pal"
 scenes+=" $images/pinch_block.pal $images/ring.pal"
 
 # shellcheck disable=SC2086
@@ -77,6 +79,7 @@ without() {
 }
 
 without rt_core/tick.cpp tick
+without rt_core/tick.cpp render
 without rt_core/tick.cpp find_forces
 [ "$count" -ge 8 ] || { echo "only $count statements found in tick.cpp: the gate no longer reads the source"; exit 1; }
 without rt_core/contact/contact.cpp contact
@@ -84,14 +87,19 @@ without rt_core/contact/contact.cpp contact
 caller=$(grep -l 'add_transferred_forces(model' -r "$root/rt_core/contact")
 sed 's/add_transferred_forces(model[^)]*)/true/' "$caller" >"$work/mutant.cpp"
 judge "skeletons of temporal coupling" "$work/mutant.cpp"
+# libccd decides something: whether a piece still touches where none of its points does.
+for answer in 0 1; do
+  echo "extern \"C\" int ccdGJKIntersect(const void*, const void*, const void*) { return $answer; }" >"$work/mutant.cpp"
+  judge "ccdGJKIntersect that always says $answer" "$work/mutant.cpp"
+done
 judged=$status
 
 # The gate must fire: a stage whose result nobody reads.
-sed 's/^void tick(/void waste(const State\& state) { volatile double sum = 0; for (double k : state.contact_stiffness) sum = sum + k; }\n&/
+sed 's/^void render(/void waste(const State\& state) { volatile double sum = 0; for (double k : state.contact_stiffness) sum = sum + k; }\n&/
      s/^    make_safe(model/    waste(state);\n&/' "$root/rt_core/tick.cpp" >"$work/planted.cpp"
 grep -q '^    waste(state);$' "$work/planted.cpp" || { echo "the planted stage was not planted"; exit 1; }
 line=$(grep -nx '    waste(state);' "$work/planted.cpp" | cut -d: -f1)
-statements "$work/planted.cpp" tick | grep -qx "$line" || { echo "the planted stage was not found"; exit 1; }
+statements "$work/planted.cpp" render | grep -qx "$line" || { echo "the planted stage was not found"; exit 1; }
 sed "${line}d" "$work/planted.cpp" >"$work/mutant.cpp"
 status=0
 judge "tick: planted, must be named" "$work/mutant.cpp" >"$work/planted.log"

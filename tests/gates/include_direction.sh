@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Gate: dependencies point one way. rt_core includes rt_core, Eigen and libccd (sources only) and a few standard
+# Gate: dependencies point one way. rt_core includes rt_core, libccd (sources only) and a few standard
 # headers that bring no heap, text, lock or clock; hal never sees config, nor config hal. Usage: include_direction.sh ROOT
 set -euo pipefail
 root=${1:?usage: include_direction.sh ROOT}
@@ -27,7 +27,7 @@ check_include() { # FILE LINE KIND TARGET
     [[ $target =~ ^($allowed)/ ]] || report "$file:$line: $folder may include \"$allowed/...\" but not \"$target\""
   elif [ "$folder" = rt_core ]; then
     case $target in
-      Eigen/* | ccd/*) [[ $file == *.cpp ]] || report "$file:$line: <$target> belongs in a .cpp file, not in a header" ;;
+      ccd/*) [[ $file == *.cpp ]] || report "$file:$line: <$target> belongs in a .cpp file, not in a header" ;;
       *) [[ $allowed_std == *" $target "* ]] || report "$file:$line: <$target> is not on rt_core's list of headers" ;;
     esac
   else

@@ -32,9 +32,10 @@ source_gate() { # pass|fail GATE FILE TEXT
   expect "$1" "$2 on $3 ($4)" "$gates/$2.sh" "$work/sample"
 }
 
-source_gate pass include_direction rt_core/a.cpp '#include <cstdint>\n#include <Eigen/Core>\n#include "rt_core/base.h"\n'
+source_gate pass include_direction rt_core/a.cpp '#include <cstdint>\n#include <ccd/ccd.h>\n#include "rt_core/base.h"\n'
 source_gate fail include_direction rt_core/a.cpp '#include <vector>\n'
-source_gate fail include_direction rt_core/a.h '#include <Eigen/Core>\n'
+source_gate fail include_direction rt_core/a.h '#include <ccd/ccd.h>\n'
+source_gate fail include_direction rt_core/a.cpp '#include <Eigen/Core>\n'
 source_gate fail include_direction rt_core/a.cpp '#include "hal/loop/loop.h"\n'
 source_gate fail include_direction hal/a.cpp '#include "config/scene/scene.h"\n'
 source_gate fail include_direction hal/a.cpp '#include <config/scene/scene.h>\n'
