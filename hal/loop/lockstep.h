@@ -25,7 +25,7 @@ inline constexpr int kLeaderTimeout_ms = 3 * kTurnTimeout_ms;
 // The leader's clock; a Clock of the loop. Its system calls are send and recv.
 class LockstepClock {
  public:
-  static constexpr int kMostFollowers = 2;
+  static constexpr int kMostFollowers = 3;  // two devices and the host
 
   explicit LockstepClock(int timeout_ms = kTurnTimeout_ms) noexcept : timeout_ms_(timeout_ms) {}
   // `fd` stays the caller's; `name` is static text. In each step followers have their turns in the order they were

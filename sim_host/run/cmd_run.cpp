@@ -72,7 +72,8 @@ int run(RunCommand& command) {
     options.before_start = [&] { print_hint(options); };
   }
   const RunResult result = run_session(options);
-  if (result.summary.ticks > 0) fmt::print("{}", summary_text(result.summary, result.lost, command.worst));
+  if (result.summary.ticks > 0)
+    fmt::print("{}{}", summary_text(result.summary, result.lost, command.worst), result.grasp);
   if (result.summary.ticks == 0) {
     fmt::print("nothing ran, nothing was recorded\n");
   } else if (!options.record.empty() && result.recorder_error.empty()) {
@@ -129,6 +130,10 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command->add_option("--path", options->path,
                       "motion of the simulated hand, CSV: time_s,x_mm,y_mm,z_mm[,rx_deg,ry_deg,rz_deg]; default: the "
                       "scene's own");
+  command->add_option("--second-device", options->second_device,
+                      "device.holds = \"both\": device of the hand that holds the body; default: a simulated one");
+  command->add_option("--second-path", options->second_path,
+                      "motion of the simulated hand at the body, CSV as --path; default: it holds the body still");
   add_joint_options(*command, options->joints);
   command->add_option("--image", options->image,
                       "where to write the image of a .toml scene; default: beside the recording");

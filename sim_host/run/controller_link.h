@@ -42,6 +42,8 @@ class ControllerLink {
   static constexpr int kDeviceDescriptor = 4;
   static constexpr int kDeviceTurnDescriptor = 5;
   static constexpr int kHostTurnDescriptor = 6;
+  static constexpr int kSecondDescriptor = 7;
+  static constexpr int kSecondTurnDescriptor = 8;
 
  private:
   SocketPair control_;

@@ -29,6 +29,7 @@
 #include "rt_core/stage_cost.h"
 #include "sim_host/build_id.h"
 #include "sim_host/exit_codes.h"
+#include "sim_host/run/controller_report.h"
 #include "sim_host/run/crash_file.h"
 #include "sim_host/run/heap_count.h"
 #include "sim_host/run/host_port.h"
@@ -51,6 +52,7 @@ constexpr char kHelp[] =
     "  --image FILE        baked scene (palpate bake)\n"
     "  --device ADDRESS    auto, can:IFACE, usb:/dev/hidrawN or loopback[:NAME], each with optional ,classic and "
     ",node=N\n"
+    "  --second-device ADDRESS, --second-fd N   of the hand at the body, where two hold the scene; same profile\n"
     "  --profile FILE      what the device can do (config/devices/*.toml); needed on can: and usb:\n"
     "  --device-fd N       use the inherited socket N instead of opening the loopback\n"
     "  --control-fd N      inherited Unix socket to the host: telemetry and commands; default: none; then\n"
@@ -61,7 +63,8 @@ constexpr char kHelp[] =
     "  --priority P        SCHED_FIFO priority 1..98, 0: ordinary scheduling; default 80\n"
     "  --require-rt        refuse to run without scheduler, memory lock and CPU as asked; default on can: and usb:\n"
     "  --allow-no-rt       drive a real device without them all the same\n"
-    "  --device-turn-fd N, --host-turn-fd N   inherited sockets: virtual time in lock step with them; default: real "
+    "  --device-turn-fd N, --second-turn-fd N, --host-turn-fd N   inherited sockets: virtual time in lock step with "
+    "them; default: real "
     "time\n"
     "Exit codes: 0 done, 2 bad arguments or image, 3 device, host or memory unavailable, 4 the device sent nothing at\n"
     "            start, 5 a fault was latched. In every case the last commands sent are zero force, drives off.\n"
@@ -72,7 +75,8 @@ constexpr double kHostSilence_s = 2.0;  // forty heartbeats; see host_port.h
 constexpr double kStartTimeout_s = 3.0;
 
 struct Arguments {
-  std::string image, device = "auto", profile, crash_file;
+  std::string image, device = "auto", second_device, profile, crash_file;
+  int second_fd = -1, second_turn_fd = -1;
   int device_fd = -1, control_fd = -1, cpu = -1, priority = 80;
   int device_turn_fd = -1, host_turn_fd = -1;
   bool require_rt = false, allow_no_rt = false;
@@ -102,13 +106,18 @@ Arguments parse(int argc, char** argv) {
                             {"version", 0, nullptr, 'v'},      {"device-turn-fd", 1, nullptr, 'D'},
                             {"host-turn-fd", 1, nullptr, 'H'}, {"crash-file", 1, nullptr, 'x'},
                             {"require-rt", 0, nullptr, 'q'},   {"allow-no-rt", 0, nullptr, 'a'},
-                            {"profile", 1, nullptr, 'P'},      {nullptr, 0, nullptr, 0}};
+                            {"profile", 1, nullptr, 'P'},      {"second-device", 1, nullptr, '2'},
+                            {"second-fd", 1, nullptr, 'F'},    {"second-turn-fd", 1, nullptr, 'T'},
+                            {nullptr, 0, nullptr, 0}};
   const auto integer = [](const char* name, double low, double high) {
     return static_cast<int>(number(name, optarg, low, high));
   };
   for (int c; (c = getopt_long(argc, argv, "", options, nullptr)) != -1;) {
     if (c == 'i') arguments.image = optarg;
     if (c == 'd') arguments.device = optarg;
+    if (c == '2') arguments.second_device = optarg;
+    if (c == 'F') arguments.second_fd = integer("--second-fd", 0, 1 << 20);
+    if (c == 'T') arguments.second_turn_fd = integer("--second-turn-fd", 0, 1 << 20);
     if (c == 'P') arguments.profile = optarg;
     if (c == 'x') arguments.crash_file = optarg;
     if (c == 'f') arguments.device_fd = integer("--device-fd", 0, 1 << 20);
@@ -180,10 +189,11 @@ void check_bus(const DeviceAddress& address, const DeviceProfile& profile, doubl
 }
 
 // Nothing is driven that the scene could overstrain, and nothing real of which that is not known.
-DeviceProfile check_profile(const Arguments& arguments, const DeviceAddress& address, const ModelParams& scene) {
+DeviceProfile check_profile(const Arguments& arguments, const std::string& device, const DeviceAddress& address,
+                            const ModelParams& scene) {
   DeviceProfile profile;
   const bool real = address.kind != TransportKind::kLoopback;
-  const std::string refusal = refuse_profile(real, arguments.device, arguments.profile, scene, &profile);
+  const std::string refusal = refuse_profile(real, device, arguments.profile, scene, &profile);
   if (!refusal.empty()) throw Failure{kUsage, refusal};
   if (!arguments.profile.empty()) std::fprintf(stderr, "profile %s\n", profile_text(profile, scene).c_str());
   return profile;
@@ -195,16 +205,18 @@ struct Connection {
   DeviceProfile profile;
   DeviceLock lock;
   std::unique_ptr<Transport> transport;
+  DeviceBus* second = nullptr;  // of the other hand's device, which outlives this
 };
 
-Connection connect_device(const Arguments& arguments, const ModelParams& scene) {
+// `fd`: inherited socket of a loopback, or -1.
+Connection connect_device(const Arguments& arguments, const std::string& device, int fd, const ModelParams& scene) {
   Connection c;
   std::string line, error;
-  const std::optional<DeviceAddress> parsed = parse_device_address(arguments.device, line, error);
+  const std::optional<DeviceAddress> parsed = parse_device_address(device, line, error);
   if (!parsed) throw Failure{kUsage, error};
   c.address = *parsed;
   std::fprintf(stderr, "%s\n", line.c_str());
-  c.profile = check_profile(arguments, c.address, scene);
+  c.profile = check_profile(arguments, device, c.address, scene);
   check_bus(c.address, c.profile, scene.period_s);
   // A real device has one controller at a time.
   if (const std::string name = lock_name(c.address); !name.empty()) {
@@ -212,8 +224,8 @@ Connection connect_device(const Arguments& arguments, const ModelParams& scene) 
     if (!c.lock) throw Failure{kUnavailable, error};
   }
   constexpr int kWait_ms = 5 * kSocketTimeout_ms;
-  if (arguments.device_fd >= 0) {
-    c.transport = adopt_loopback(arguments.device_fd, error);
+  if (fd >= 0) {
+    c.transport = adopt_loopback(fd, error);
   } else if (c.profile.arm) {
     c.transport = open_drives(c.address, *c.profile.arm, DeviceSide::kController, kWait_ms, error);
   } else {
@@ -221,6 +233,22 @@ Connection connect_device(const Arguments& arguments, const ModelParams& scene) 
   }
   if (!c.transport) throw Failure{kUnavailable, error};
   return c;
+}
+
+// The device of the hand at the body, where two hands hold the scene.
+std::optional<Connection> connect_second(const Arguments& arguments, const ModelParams& scene,
+                                         const Connection& first) {
+  const bool both = scene.held_part == HeldPart::kBoth;
+  if (both == arguments.second_device.empty())
+    throw Failure{kUsage, both ? "two hands hold this scene's tool and body: name the second --second-device, too"
+                               : "--second-device: one hand moves this scene; it needs device.holds = \"both\""};
+  if (!both) return std::nullopt;
+  Connection second = connect_device(arguments, arguments.second_device, arguments.second_fd, scene);
+  const bool can = second.address.kind == TransportKind::kCan && second.address.name == first.address.name;
+  if (can || first.profile.arm)
+    throw Failure{kUnavailable, can ? "two devices need two buses; " + first.address.name + " carries one"
+                                    : "devices made of drives are for one hand"};
+  return second;
 }
 
 // Ticks in time after a stall before the force comes back, on the loopback: as many as before arming at the start.
@@ -314,7 +342,9 @@ LoopSummary run_loop(const Arguments& arguments, const Model& model, Core& core,
   if (mailbox == nullptr) port.arm_on(install_arm_signal());
   CrashFile crash(arguments.control_fd, arguments.crash_file);
   TelemetrySink sink(mailbox != nullptr ? &host.writer : nullptr);
-  SupervisedDevice device(bus, port);
+  D* second = nullptr;
+  if constexpr (std::same_as<D, DeviceBus>) second = connection.second;
+  SupervisedDevice device(bus, port), other(second != nullptr ? *second : bus, port);
   ModelController controller(model, *core.state, *core.scratch);
   if constexpr (std::same_as<D, AxisDevice>) start_drives(bus, clock);
   LoopSummary summary;
@@ -330,10 +360,12 @@ LoopSummary run_loop(const Arguments& arguments, const Model& model, Core& core,
                  filtered ? "ok       system-call filter: only what the loop needs"
                           : ("REFUSED  system-call filter: " + reason).c_str());
     drain(bus);
+    if (second != nullptr) drain(*second);
     const ThreadUsage before = thread_usage();
     const long heap_calls_before = heap_calls();
     Loop loop(device, clock, controller, sink, port, connection.profile.frame,
-              loop_options(model, arguments, connection), stop);
+              loop_options(model, arguments, connection), stop, second != nullptr ? &other : nullptr,
+              connection.profile.frame);
     summary = loop.run();
     const long heap_calls_after = heap_calls();
     usage.heap_calls = heap_calls_after < 0 ? -1 : heap_calls_after - heap_calls_before;
@@ -366,6 +398,7 @@ LoopSummary run_in_virtual_time(const Arguments& arguments, const Model& model, 
   LockstepClock clock;
   // The device first: a host that looks in the same step sees the sample's tick not yet, but everything before it.
   if (arguments.device_turn_fd >= 0) clock.add(arguments.device_turn_fd, "device");
+  if (arguments.second_turn_fd >= 0) clock.add(arguments.second_turn_fd, "second device");
   if (arguments.host_turn_fd >= 0) clock.add(arguments.host_turn_fd, "host");
   const LoopSummary summary = run_loop(arguments, model, core, host, bus, connection, clock, interrupted, usage);
   if (clock.lost() != nullptr) {
@@ -374,18 +407,6 @@ LoopSummary run_in_virtual_time(const Arguments& arguments, const Model& model, 
                  1e-9 * static_cast<double>(clock.lost_ns()));
   }
   return summary;
-}
-
-// Always how far commands lagged; what arrived and what to do where something was wrong with it.
-void print_link(const LoopSummary& summary, const DeviceBus& bus, TransportState state) {
-  std::fprintf(stderr, "link: commands at most %u behind, let go %u times (%llu ticks)\n", summary.worst_lag,
-               summary.link_drops, static_cast<unsigned long long>(summary.unheard_ticks));
-  const LinkReport report = report_link(bus, state);
-  constexpr std::uint32_t kOfTheLink = Fault::kDeviceSilent | Fault::kDeviceReported | Fault::kDeviceDeaf |
-                                       Fault::kNotCalibrated | Fault::kSamplesRejected | Fault::kBusOff;
-  if ((summary.faults & kOfTheLink) == 0 && report.good) return;
-  std::fprintf(stderr, "device: %s%s%s\n", report.found.c_str(), report.remedy.empty() ? "" : "\n        -> ",
-               report.remedy.c_str());
 }
 
 void print_usage(const LoopUsage& usage) {
@@ -406,14 +427,6 @@ void check_tick_fits(const Model& model, bool real) {
   }
 }
 
-void print_run(const LoopSummary& summary) {
-  std::fprintf(
-      stderr,
-      "controller: %llu ticks, %llu missed, %u stalls ridden through, %llu without a fresh sample, faults 0x%x\n",
-      static_cast<unsigned long long>(summary.ticks), static_cast<unsigned long long>(summary.missed_slots),
-      summary.stalls, static_cast<unsigned long long>(summary.stale_ticks), summary.faults);
-}
-
 template <Device D>
 LoopSummary run_on(const Arguments& arguments, const Model& model, Core& core, HostConnection& host, D& device,
                    const Connection& connection, const std::atomic<bool>& interrupted, LoopUsage& usage) {
@@ -431,8 +444,12 @@ int run(int argc, char** argv) {
   Core core(model);
   HostConnection host;
   if (arguments.control_fd >= 0) connect_host(arguments, model, host);
-  const Connection connection = connect_device(arguments, model.params);
-  const bool real = connection.address.kind != TransportKind::kLoopback;
+  Connection connection = connect_device(arguments, arguments.device, arguments.device_fd, model.params);
+  const std::optional<Connection> second = connect_second(arguments, model.params, connection);
+  std::optional<DeviceBus> other;
+  if (second) connection.second = &other.emplace(*second->transport, second->address.profile, second->address.node);
+  const bool real = connection.address.kind != TransportKind::kLoopback ||
+                    (second && second->address.kind != TransportKind::kLoopback);
   arguments.require_rt = (arguments.require_rt || real) && !arguments.allow_no_rt && !arguments.virtual_time();
   if (!arguments.virtual_time()) check_tick_fits(model, real);
   LoopUsage usage;
@@ -451,10 +468,13 @@ int run(int argc, char** argv) {
     summary = run_on(arguments, model, core, host, bus, connection, interrupted, usage);
     if (summary.end == LoopEnd::kSilentAtStart) {
       const LinkReport report = report_link(bus, connection.transport->state());
-      throw Failure{kSilentAtStart, "no sample at start: " + report.found + "; " + report.remedy};
+      const std::string at_body = other ? report_link(*other, second->transport->state()).found : "";
+      throw Failure{kSilentAtStart, "no sample at start: " + report.found + "; " + report.remedy +
+                                        (at_body.empty() ? "" : "; the second device: " + at_body)};
     }
     print_run(summary);
     print_link(summary, bus, connection.transport->state());
+    if (other) print_link(summary, *other, second->transport->state());
   }
   print_usage(usage);
   return summary.faults != 0 ? kFaulted : kOk;

@@ -10,6 +10,9 @@
 
 namespace palpate {
 
+// A simulated device stands for hardware, which nothing delays; but the controller comes first.
+inline constexpr int kDevicePriorityBelow = 10;
+
 class DeviceProcess {
  public:
   // `path`: CSV of the hand's motion; empty: the scene's own. Throws std::runtime_error when there is neither.

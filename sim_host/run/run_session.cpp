@@ -19,6 +19,7 @@
 #include "sim_host/bake/image_file.h"
 #include "sim_host/bake/scene_image.h"
 #include "sim_host/exit_codes.h"
+#include "sim_host/press/grasp_watch.h"
 #include "sim_host/record/recorded_image.h"
 #include "sim_host/record/recorder.h"
 #include "sim_host/record/recording_writer.h"
@@ -27,6 +28,7 @@
 #include "sim_host/run/device_process.h"
 #include "sim_host/run/hand_path_file.h"
 #include "sim_host/run/host_time.h"
+#include "sim_host/run/second_hand.h"
 #include "sim_host/run/settings_port.h"
 #include "sim_host/run/socket_pair.h"
 #include "sim_host/run/status_line.h"
@@ -41,9 +43,6 @@ using std::chrono::milliseconds;
 
 // Ticks before arming, so that the force does not ramp in on the first, perhaps wild, ones.
 constexpr std::uint64_t kTicksBeforeArming = 50;
-
-// The simulated device stands for hardware, which nothing delays; but the controller comes first.
-constexpr int kDevicePriorityBelow = 10;
 
 volatile std::sig_atomic_t stop_signal = 0;
 extern "C" void on_stop_signal(int number) { stop_signal = number; }
@@ -328,8 +327,10 @@ RunResult follow(ControllerLink& link, HostTime& time, DeviceProcess* device, co
                                      candump_options(address, virtual_time), packed);
   }
   const auto summary = std::make_unique<SharedSummary>();
+  GraspWatch grasp(image.model());
   Recorder recorder(link.telemetry(), file.get(), [&](const TickRecord& record) {
     summary->take(record);
+    grasp.take(record);
     if (box) box->add(record);
     if (options.companion.tick) options.companion.tick(record);
   });
@@ -349,6 +350,7 @@ RunResult follow(ControllerLink& link, HostTime& time, DeviceProcess* device, co
     result.black_box_error = box->error();
   }
   result.summary = summary->all();
+  result.grasp = grasp.text();
   result.lost = recorder.lost();
   result.recorder_error = recorder.error();
   return result;
@@ -381,8 +383,8 @@ RunResult run_session(const RunOptions& options) {
   }
   // The simulated device would refuse it too, but as a process that is gone.
   std::vector<HandPose> poses;
-  if (std::string error; !options.path.empty() && !read_hand_path(options.path, poses, error))
-    throw std::runtime_error(error);
+  for (const std::string& path : {options.path, options.second_path})
+    if (std::string error; !path.empty() && !read_hand_path(path, poses, error)) throw std::runtime_error(error);
   SceneImage scene = prepare_scene(options.scene, options.image, options.record);
   const ImageFile image(scene.image_path);
   const DeviceProfile profile = check_profile(options, address, image.model().params, scene);
@@ -415,9 +417,12 @@ RunResult run_session(const RunOptions& options) {
                    virtual_time ? device_turns->end(1) : -1, options.companion.hand_fd,
                    profile.arm ? options.profile : "");
   }
-  ControllerLink link(program("palpate-rt"),
-                      controller_arguments(options, scene.image_path, options.device, device.has_value(), virtual_time),
-                      device ? device->controller_end() : -1, turns);
+  SecondHand second(options, image.model().params, scene, program("palpate-device"), virtual_time);
+  std::vector<std::string> arguments =
+      controller_arguments(options, scene.image_path, options.device, device.has_value(), virtual_time);
+  second.add_to(arguments, turns);
+  ControllerLink link(program("palpate-rt"), std::move(arguments), device ? device->controller_end() : -1, turns);
+  second.close_controller_ends();
   if (device) device->close_controller_end();
   if (!virtual_time) {
     RealHostTime time(options.companion.look);

@@ -40,6 +40,8 @@ struct RunOptions {
   std::string record = "run.plr";  // empty: do not record
   bool overwrite = false;          // an existing recording of that name is replaced once the new one is complete
   std::string path;                // CSV of the simulated hand's motion; empty: the scene's own
+  std::string second_device;       // of the hand that holds the body, where the scene has one; empty: simulated, too
+  std::string second_path;         // CSV of its motion when it is simulated; empty: it holds the body still
   JointOptions joints;             // told to an articulated tool through the mailbox
   std::string image;               // where to write the image of a .toml scene; empty: beside the recording
   int cpu = -1;                    // of the real-time thread; -1: any
@@ -57,6 +59,7 @@ struct RunOptions {
 
 struct RunResult {
   RunSummary summary;
+  std::string grasp;  // of a hand: whether it held the body, a line; "" for other tools
   bool virtual_time = false;
   std::uint64_t lost = 0;
   int controller_exit = 0;

@@ -1,0 +1,86 @@
+// Whole runs of two hands with two simulated devices, by the real processes: a ball in one hand, pressed with a ball in
+// the other.
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "sim_host/record/mapped_file.h"
+#include "sim_host/record/recorded_image.h"
+#include "sim_host/record/recording_reader.h"
+#include "sim_host/record/replay.h"
+#include "tests/support/ball_run.h"
+
+namespace palpate {
+namespace {
+
+class RunTwoHands : public BallRun {
+ protected:
+  RunTwoHands() {
+    std::ofstream(options_.scene, std::ios::app) << "[device]\nholds = \"both\"\ngrip_mm = [0, -10, 0]\n";
+    options_.time = RunTime::kVirtual;
+    options_.record = (folder_ / "run.plr").string();
+    options_.duration_s = 1.5;
+  }
+  std::string recording() const {
+    std::ifstream file(options_.record, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+  // Largest force on the hand at the ball, and how far it is from being the opposite of the other's.
+  std::pair<double, double> forces() const {
+    const MappedFile file(options_.record);
+    RecordingReader recording(file.bytes());
+    TickRecord record;
+    std::pair<double, double> found{0, 0};
+    while (recording.next(record)) {
+      found.first = std::max(found.first, norm(record.output.second_w.force_N));
+      found.second = std::max(found.second, norm(record.output.second_w.force_N + record.output.device_w.force_N));
+    }
+    return found;
+  }
+};
+
+TEST_F(RunTwoHands, PressOneAnotherAndReplay) {
+  const RunResult result = run_session(options_);
+  EXPECT_EQ(result.controller_exit, 0);
+  EXPECT_EQ(result.summary.fault, 0u);
+  EXPECT_EQ(result.summary.missed_ticks + result.summary.stale_ticks + result.lost, 0u);
+  const auto [most_N, apart_N] = forces();
+  EXPECT_GT(most_N, 0.3);
+  EXPECT_LT(apart_N, 1e-14);
+  const MappedFile file(options_.record);
+  RecordingReader again(file.bytes());
+  const RecordedScene scene(again, "");
+  EXPECT_TRUE(replay(again, scene.model(), [](const TickRecord&, const TickRecord&) {}).identical());
+  const std::string bytes = recording();
+  run_session(options_);
+  EXPECT_TRUE(recording() == bytes) << "virtual time: the same bytes again";
+}
+
+// The other hand lifts the ball by 3 mm towards the tool meanwhile: more force.
+TEST_F(RunTwoHands, TheSecondHandHasAPathOfItsOwn) {
+  run_session(options_);
+  const double still_N = forces().first;
+  options_.second_path = (folder_ / "second.csv").string();
+  std::ofstream(options_.second_path) << "0,0,-10,0\n0.2,0,-10,0\n0.6,0,-7,0\n";
+  const RunResult result = run_session(options_);
+  EXPECT_EQ(result.summary.fault, 0u);
+  EXPECT_GT(forces().first, 1.3 * still_N);
+}
+
+TEST_F(RunTwoHands, WhatDoesNotGoWithTheSceneIsRefused) {
+  const auto error = [&] {
+    try {
+      run_session(options_);
+    } catch (const std::exception& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  options_.second_device = "can:can0";
+  EXPECT_THAT(error(), testing::HasSubstr("has its own time"));
+  std::ofstream(options_.scene) << kBallScene;
+  EXPECT_THAT(error(), testing::HasSubstr("one hand moves this scene"));
+}
+
+}  // namespace
+}  // namespace palpate
