@@ -12,10 +12,15 @@
 
 namespace palpate {
 
-SceneImage prepare_scene(const std::string& scene, const std::string& image, const std::string& record) {
+SceneImage prepare_scene(const std::string& scene, const std::string& image, const std::string& record,
+                         const SceneOverlays& overlays) {
   const std::filesystem::path source(scene);
-  if (source.extension() != ".toml") return {scene, std::nullopt};
-  SceneImage result{image, load_scene(scene)};
+  if (source.extension() != ".toml") {
+    if (!overlays.file.empty() || !overlays.setting.empty())
+      throw std::runtime_error(scene + ": is an image, and --with and --set change a scene; name the .toml");
+    return {scene, std::nullopt};
+  }
+  SceneImage result{image, load_scene(scene, overlays)};
   if (image.empty()) {
     result.image_path = (std::filesystem::path(record).parent_path() / source.stem()).string() + ".pal";
   }

@@ -15,6 +15,8 @@ struct SceneImage {
 
 // `scene`: path of a .pal image (used as it is) or of a .toml scene, which is baked to `image`; when that is empty, to
 // NAME.pal in the folder of `record` (the current folder when that is empty too). Throws std::runtime_error.
-SceneImage prepare_scene(const std::string& scene, const std::string& image, const std::string& record);
+// `overlays` are laid over the scene; an image takes none.
+SceneImage prepare_scene(const std::string& scene, const std::string& image, const std::string& record,
+                         const SceneOverlays& overlays = {});
 
 }  // namespace palpate

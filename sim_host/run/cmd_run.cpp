@@ -8,6 +8,7 @@
 #include "sim_host/cli.h"
 #include "sim_host/cli_checks.h"
 #include "sim_host/doctor/doctor.h"
+#include "sim_host/overlay_options.h"
 #include "sim_host/run/run_session.h"
 #include "sim_host/run/verdict.h"
 
@@ -102,6 +103,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
   RunOptions* options = &settings->run;
   CLI::App* command = app.add_subcommand("run", "Render a scene at its full rate on a device or on the simulated hand");
   command->add_option("SCENE", options->scene, "scene (.toml, baked first) or image (.pal)")->required();
+  add_overlay_options(*command, options->overlays);
   command
       ->add_option("--device", options->device,
                    "auto, loopback (simulated device and hand), can:IFACE or usb:/dev/hidrawN")

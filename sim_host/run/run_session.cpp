@@ -385,7 +385,7 @@ RunResult run_session(const RunOptions& options) {
   std::vector<HandPose> poses;
   for (const std::string& path : {options.path, options.second_path})
     if (std::string error; !path.empty() && !read_hand_path(path, poses, error)) throw std::runtime_error(error);
-  SceneImage scene = prepare_scene(options.scene, options.image, options.record);
+  SceneImage scene = prepare_scene(options.scene, options.image, options.record, options.overlays);
   const ImageFile image(scene.image_path);
   const DeviceProfile profile = check_profile(options, address, image.model().params, scene);
   check_bus(address, profile, image.model().params.period_s);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "config/scene/scene.h"
 #include "sim_host/latency/live_table.h"
 #include "sim_host/record/black_box.h"
 #include "sim_host/record/recording.h"
@@ -32,6 +33,7 @@ struct RunCompanion {
 
 struct RunOptions {
   std::string scene;            // .toml or .pal
+  SceneOverlays overlays;       // laid over a .toml
   std::string device = "auto";  // auto, loopback, can:IFACE
   std::string profile;          // of the device (hal/device/device_profile.h); needed on can: and usb:
   RunTime time = RunTime::kAutomatic;

@@ -16,7 +16,7 @@ namespace {
 class RunTwoHands : public BallRun {
  protected:
   RunTwoHands() {
-    std::ofstream(options_.scene, std::ios::app) << "[device]\nholds = \"both\"\ngrip_mm = [0, -10, 0]\n";
+    options_.overlays.setting = {"device.holds=both", "device.grip_mm=[0, -10, 0]"};
     options_.time = RunTime::kVirtual;
     options_.record = (folder_ / "run.plr").string();
     options_.duration_s = 1.5;
@@ -78,8 +78,12 @@ TEST_F(RunTwoHands, WhatDoesNotGoWithTheSceneIsRefused) {
   };
   options_.second_device = "can:can0";
   EXPECT_THAT(error(), testing::HasSubstr("has its own time"));
-  std::ofstream(options_.scene) << kBallScene;
+  options_.overlays = {};
   EXPECT_THAT(error(), testing::HasSubstr("one hand moves this scene"));
+  options_.second_device = "";
+  options_.scene = (folder_ / "ball.pal").string();
+  options_.overlays.setting = {"device.holds=both"};
+  EXPECT_THAT(error(), testing::HasSubstr("name the .toml"));
 }
 
 }  // namespace
