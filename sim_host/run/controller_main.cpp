@@ -147,11 +147,6 @@ Model load_image(const std::string& path, PrivateFile& file) {
   if (result.error != ImageError::kNone) {
     throw Failure{kUsage, path + ": " + result.field + ": " + describe(result.error) + "; bake the scene again"};
   }
-  if (model.params.held_part == HeldPart::kBoth)
-    throw Failure{kUsage,
-                  path +
-                      ": two hands hold this scene's tool and body (device.holds = \"both\"), and this controller "
-                      "drives one device; bake it with device.holds = \"tool\" or \"body\""};
   return model;
 }
 
