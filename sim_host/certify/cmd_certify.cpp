@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 
 #include "config/bake/image_writer.h"
@@ -20,7 +21,7 @@ namespace palpate {
 namespace {
 
 struct CertifyTicksOptions {
-  std::string scene, output;
+  std::string scene, along, output;
   SceneOverlays overlays;
   TickSearchOptions search;
 };
@@ -31,9 +32,11 @@ int run_certify_ticks(CertifyTicksOptions& options) {
   if (bar) options.search.progress = [&](double share) { bar("ticks", std::min(share, 1.0)); };
   std::vector<TimedPose> path;
   double hand_N_per_m = 0;
-  if (scene.scene() && !scene.scene()->path.point.empty()) {
-    path = scripted_poses(scene.scene()->path, scene.model().params.period_s);
-    hand_N_per_m = scene.scene()->path.hand_stiffness_N_per_m;
+  const std::optional<SceneDesc> described =
+      options.along.empty() ? scene.scene() : std::optional(load_scene(options.along, {}));
+  if (described && !described->path.point.empty()) {
+    path = scripted_poses(described->path, scene.model().params.period_s);
+    hand_N_per_m = described->path.hand_stiffness_N_per_m;
   }
   const Certified certified = certify_ticks(scene.bytes(), path, hand_N_per_m, options.search);
   fmt::print("{}", certified_text(scene.model(), certified));
@@ -56,6 +59,7 @@ void add_certify_command(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("certify", "Look for the dearest tick of a scene; write what was found into its image");
   command->add_option("SCENE", options->scene, "scene (.toml) or image (.pal)")->required();
+  command->add_option("--along", options->along, "scene (.toml) whose path is followed too, where SCENE is an image");
   add_overlay_options(*command, options->overlays);
   command->add_option("-o,--output", options->output, "image to write; default: the scene's name with .pal, here");
   command->add_option("--ticks", options->search.ticks, "ticks to look at; half of them climb from the dearest found")
@@ -68,6 +72,7 @@ void add_certify_command(CLI::App& app, int& exit_code) {
       "The image itself stays as it is: recordings that name it still do.\n"
       "Examples:\n"
       "  palpate certify config/scenes/ring.toml -o ring.pal\n"
+      "  palpate certify ring.pal --along config/scenes/ring.toml\n"
       "  palpate certify mallet.pal --ticks 10000000 --seed 7 -o mallet.pal");
   command->callback([options, &exit_code] { exit_code = run_certify_ticks(*options); });
 }

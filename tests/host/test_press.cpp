@@ -270,7 +270,13 @@ TEST(ForceCsv, EveryRowHasTheHeadersColumns) {
   for (int regions = 0; regions <= 7; ++regions) {
     row.record.region_count = regions;
     for (int k = 0; k < regions; ++k) {
-      row.record.region[k] = {static_cast<std::uint32_t>(k + 1), 3, {1e-3, 2e-3, 3e-3}, {4, 5, 6}, 7e-3, 2, 0};
+      RegionRecord& region = row.record.region[k];
+      region.id = static_cast<std::uint32_t>(k + 1);
+      region.point_count = 3;
+      region.centre_w = {1e-3, 2e-3, 3e-3};
+      region.force_w = {4, 5, 6};
+      region.depth_equivalent_m = 7e-3;
+      region.friction = 2;
     }
     EXPECT_EQ(cells(force_csv_row(row)), cells(force_csv_header())) << regions;
   }
