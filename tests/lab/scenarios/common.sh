@@ -76,7 +76,8 @@ render() {
 
 render_recorded() {
   status=0
-  palpate run "$image" --device "$controller_at" --profile "$profile" --duration "$seconds" --record /tmp/run.plr \
+  # shellcheck disable=SC2086  # an address, or the options of two
+  palpate run "$image" --device $controller_at --profile "$profile" --duration "$seconds" --record /tmp/run.plr \
     --priority 80 --quiet || status=$?
   kill $device 2> /dev/null || true
   palpate latency --recording /tmp/run.plr --histfile /results/latency.txt --json /results/latency.json \
