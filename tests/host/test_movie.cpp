@@ -168,20 +168,13 @@ class MovieOfARun : public testing::Test {
     std::strcpy(header.image_path, "tiny.pal");
     RecordingWriter writer(run_, header, *initial);
     const StatePtr state = copy_of(*initial);
-    const ScratchPtr scratch = make_scratch(model_);
-    for (std::uint64_t i = 0; i < kTicks; ++i) {
-      const Input input = test::tiny_run_input(i, kTicks);
-      Output output;
-      tick(model_, *state, *scratch, input, output);
-      if (output.regions > 0) {
-        last_touch_s_ = 1e-3 * static_cast<double>(i);
+    test::play_tiny_run(model_, *state, kTicks, [&](const TickRecord& record) {
+      if (record.output.regions > 0) {
+        last_touch_s_ = 1e-3 * static_cast<double>(record.tick);
         if (first_touch_s_ < 0) first_touch_s_ = last_touch_s_;
       }
-      TickRecord record{};
-      fill_record(*state, input, output, record);
-      record.sequence = i + 1;
       writer.add(record);
-    }
+    });
     writer.finish();
   }
   ~MovieOfARun() override {

@@ -40,17 +40,10 @@ struct RecordedRun {
     StatePtr state = copy_of(*initial);
     if (check_state(model, *state).field != nullptr)
       state = make_state(model);  // a hostile file, made by nobody's tick
-    const ScratchPtr scratch = make_scratch(model);
-    for (std::uint64_t i = 0; i < kTicks; ++i) {
-      const Input input = test::tiny_run_input(i, kTicks);
-      Output output;
-      tick(model, *state, *scratch, input, output);
-      TickRecord record{};
-      fill_record(*state, input, output, record);
-      record.sequence = i + 1;
+    test::play_tiny_run(model, *state, kTicks, [&](TickRecord& record) {
       if (spoil) spoil(record);
       if (record.sequence != 0) writer.add(record);
-    }
+    });
     writer.finish();
   }
   ReplayResult replay_it() {

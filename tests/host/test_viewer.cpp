@@ -175,19 +175,12 @@ struct TinyRun {
     EXPECT_EQ(open_image(image.bytes(), model).error, ImageError::kNone);
     initial = make_state(model);
     const StatePtr state = copy_of(*initial);
-    const ScratchPtr scratch = make_scratch(model);
-    for (std::uint64_t i = 0; i < kTicks; ++i) {
-      const Input input = test::tiny_run_input(i, kTicks);
-      Output output;
-      tick(model, *state, *scratch, input, output);
-      TickRecord record{};
-      fill_record(*state, input, output, record);
-      record.sequence = i + 1;
-      record.timing.compute_ns = 1000 + static_cast<std::int32_t>(i);
+    test::play_tiny_run(model, *state, kTicks, [this](TickRecord& record) {
+      record.timing.compute_ns = 1000 + static_cast<std::int32_t>(records.size());
       hash.push_back(record.state_hash);
       records.push_back(record);
       track.append(record);
-    }
+    });
   }
 
   decltype(test::tiny_image()) image;

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstdint>
 
-#include "rt_core/io.h"
+#include "rt_core/record.h"
+#include "rt_core/tick.h"
+#include "sim_host/tick_memory.h"
 
 namespace palpate::test {
 
@@ -16,6 +18,21 @@ inline Input tiny_run_input(std::uint64_t i, std::uint64_t ticks) {
   input.pose_w.position_m = {0.02 * phase, 0.01 * phase, 0.06 - 0.05 * std::sin(3.14159 * phase)};
   input.commands = i > 5 ? Command::kArm : 0;
   return input;
+}
+
+// Plays it from `state` on and hands out the record of every tick.
+template <class Each>
+void play_tiny_run(const Model& model, State& state, std::uint64_t ticks, const Each& each) {
+  const ScratchPtr scratch = make_scratch(model);
+  for (std::uint64_t i = 0; i < ticks; ++i) {
+    const Input input = tiny_run_input(i, ticks);
+    Output output;
+    tick(model, state, *scratch, input, output);
+    TickRecord record{};
+    fill_record(state, input, output, record);
+    record.sequence = i + 1;
+    each(record);
+  }
 }
 
 }  // namespace palpate::test
