@@ -74,9 +74,7 @@ void Cia402Drives::take(const Frame& frame) noexcept {
 }
 
 void Cia402Drives::drain() noexcept {
-  Frame frames[kMaxFramesPerReceive];
-  const int count = transport_.receive(frames);
-  for (int i = 0; i < count; ++i) take(frames[i]);  // bound: kMaxFramesPerReceive
+  take_frames(transport_, [this](const Frame& frame) noexcept { take(frame); });
 }
 
 bool Cia402Drives::exchange(int axis, const Frame& request, const Pause& pause) {

@@ -223,9 +223,7 @@ void Cia402Sim::watch(int axis) noexcept {
 }
 
 void Cia402Sim::step_bus() noexcept {
-  Frame frames[kMaxFramesPerReceive];
-  const int count = transport_.receive(frames);
-  for (int i = 0; i < count; ++i) take(frames[i]);  // bound: kMaxFramesPerReceive
+  take_frames(transport_, [this](const Frame& frame) noexcept { take(frame); });
   for (int i = 0; i < plant_.count(); ++i) watch(i);
 }
 

@@ -37,4 +37,12 @@ inline int send_frames(Transport& transport, const Frame* frames, int count) noe
   return taken;
 }
 
+// Hands every frame that has arrived to `take`.
+template <class Take>
+void take_frames(Transport& transport, const Take& take) noexcept {
+  Frame frames[kMaxFramesPerReceive];
+  const int count = transport.receive(frames);
+  for (int i = 0; i < count; ++i) take(frames[i]);  // bound: kMaxFramesPerReceive
+}
+
 }  // namespace palpate

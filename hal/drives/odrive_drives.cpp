@@ -99,9 +99,7 @@ void ODriveDrives::take(const Frame& frame) noexcept {
 }
 
 void ODriveDrives::drain() noexcept {
-  Frame frames[kMaxFramesPerReceive];
-  const int count = transport_.receive(frames);
-  for (int i = 0; i < count; ++i) take(frames[i]);  // bound: kMaxFramesPerReceive
+  take_frames(transport_, [this](const Frame& frame) noexcept { take(frame); });
 }
 
 // Sends the question until an answer comes.

@@ -123,9 +123,7 @@ void ODriveSim::send_state() noexcept {
 }
 
 void ODriveSim::step_bus() noexcept {
-  Frame frames[kMaxFramesPerReceive];
-  const int count = transport_.receive(frames);
-  for (int i = 0; i < count; ++i) take(frames[i]);  // bound: kMaxFramesPerReceive
+  take_frames(transport_, [this](const Frame& frame) noexcept { take(frame); });
   watch();
   send_state();
   periods_ += 1;
