@@ -1,12 +1,22 @@
 # Compiler settings shared by every target: warnings are errors, the instruction set is pinned, floating point is IEEE.
-if(NOT CMAKE_SYSTEM_NAME STREQUAL "Linux" OR NOT CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")
-  message(FATAL_ERROR "Palpate runs on Linux on x86-64 processors; this is ${CMAKE_SYSTEM_NAME} on ${CMAKE_SYSTEM_PROCESSOR}.")
+if(NOT CMAKE_SYSTEM_NAME STREQUAL "Linux" OR NOT CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|aarch64)$")
+  message(FATAL_ERROR "Palpate runs on Linux on x86-64 processors, its controller on AArch64 too; this is "
+    "${CMAKE_SYSTEM_NAME} on ${CMAKE_SYSTEM_PROCESSOR}.")
 endif()
-include(CheckCXXCompilerFlag)
-check_cxx_compiler_flag(-march=x86-64-v3 PALPATE_COMPILER_KNOWS_V3)
-if(NOT PALPATE_COMPILER_KNOWS_V3)
-  message(FATAL_ERROR "This compiler (${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}) does not know "
-    "-march=x86-64-v3. Use g++ 11 or newer, or clang 12 or newer: cmake -DCMAKE_CXX_COMPILER=g++ ...")
+if(CMAKE_SYSTEM_PROCESSOR STREQUAL "aarch64")
+  # Advanced SIMD is in every one. char is signed, as on x86-64.
+  set(palpate_instructions -march=armv8-a -fsigned-char)
+  set(palpate_unfused -ffp-contract=off)
+else()
+  include(CheckCXXCompilerFlag)
+  check_cxx_compiler_flag(-march=x86-64-v3 PALPATE_COMPILER_KNOWS_V3)
+  if(NOT PALPATE_COMPILER_KNOWS_V3)
+    message(FATAL_ERROR "This compiler (${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}) does not know "
+      "-march=x86-64-v3. Use g++ 11 or newer, or clang 12 or newer: cmake -DCMAKE_CXX_COMPILER=g++ ...")
+  endif()
+  set(palpate_instructions -march=x86-64-v3)
+  # gcc 12 -O3 makes vfmaddsub of a*b-c, a*b+c pairs in spite of the first (seen 2026-11-21).
+  set(palpate_unfused -ffp-contract=off -mno-fma)
 endif()
 
 add_library(palpate_compiler INTERFACE)
@@ -14,13 +24,12 @@ target_compile_features(palpate_compiler INTERFACE cxx_std_20)
 target_include_directories(palpate_compiler INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
   $<INSTALL_INTERFACE:include/palpate>)
 target_compile_options(palpate_compiler INTERFACE
-  -march=x86-64-v3          # one instruction set for everyone: part of the bit-determinism promise
-  -ffp-contract=off         # a*b+c rounds twice everywhere
-  -mno-fma                  # gcc 12 -O3 makes vfmaddsub of a*b-c, a*b+c pairs all the same (seen 2026-11-21)
+  ${palpate_instructions}   # one instruction set for everyone: part of the bit-determinism promise
+  ${palpate_unfused}        # a*b+c rounds twice everywhere
   -fno-math-errno)          # sqrt is one instruction; changes no result
 # Ours alone: a project that takes this one in is not asked to meet them.
 if(PROJECT_IS_TOP_LEVEL)
-  target_compile_options(palpate_compiler INTERFACE $<BUILD_INTERFACE:-Wall;-Wextra;-Wpedantic;-Wconversion;-Wdouble-promotion;-Wshadow;-Wvla;-Wold-style-cast>)
+  target_compile_options(palpate_compiler INTERFACE $<BUILD_INTERFACE:-Wall;-Wextra;-Wpedantic;-Wconversion;-Wsign-conversion;-Wdouble-promotion;-Wshadow;-Wvla;-Wold-style-cast>)
 endif()
 if(PALPATE_WERROR)
   target_compile_options(palpate_compiler INTERFACE $<BUILD_INTERFACE:-Werror>)

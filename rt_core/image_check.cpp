@@ -1,6 +1,7 @@
 #include "rt_core/image_check.h"
 
 #include "rt_core/contact/contact.h"
+#include "rt_core/skeleton/beam_table.h"
 #include "rt_core/stage_cost.h"
 #include "rt_core/surface/closest_point.h"
 
@@ -109,6 +110,9 @@ ImageResult check_skeleton(const Model& model) noexcept {
     if (a.fixed != 0 && a.fixed != 1) return broken("anchor.fixed", i);
   }
   const int64_t n_anchor = model.sizes.n_anchor;
+  if (model.params.coupling_law == CouplingLaw::kMutualPaper &&
+      (n_anchor > kMaxMutualAnchors || uses_beam_table(model)))
+    return broken("anchor.mutual", kMaxMutualAnchors);
   const int64_t tail = model.params.rbf_tail == RbfTail::kLinear ? 4 : 1;
   if (model.sizes.n_rbf != (n_anchor == 0 ? 0 : n_anchor + tail)) return broken("n_rbf", 0);
   if (model.sizes.n_rbf2 != model.sizes.n_rbf * model.sizes.n_rbf) return broken("n_rbf2", 0);
@@ -154,6 +158,13 @@ ImageResult check_beams(const Model& model) noexcept {
   return {};
 }
 
+bool is_face(const HullFace& f) noexcept {
+  if (!is_unit(f.normal) || !is_finite(f.offset_m)) return false;
+  for (int k = 0; k < 3; ++k)
+    if (!is_finite(f.corner_m[k]) || !(squared_norm(f.corner_m[(k + 1) % 3] - f.corner_m[k]) > 0)) return false;
+  return true;
+}
+
 ImageResult check_piece(const Model& model, std::size_t i) noexcept {
   const ToolPiece& p = model.piece[i];
   if (!is_finite(p.pose_tool) || !is_unit(p.pose_tool.orientation)) return not_finite("piece.pose_tool", i);
@@ -169,6 +180,11 @@ ImageResult check_piece(const Model& model, std::size_t i) noexcept {
   const int64_t last_hull = int64_t{p.first_hull} + p.hull_count;
   if (p.first_hull < 0 || p.hull_count < 0 || last_hull > model.sizes.n_hull) return broken("piece.first_hull", i);
   if (p.shape == PieceShape::kHull && p.hull_count < 1) return broken("piece.hull_count", i);
+  const int64_t last_face = int64_t{p.first_face} + p.face_count;
+  if (p.first_face < 0 || p.face_count < 0 || p.face_count > kMaxHullFaces || last_face > model.sizes.n_hull_face)
+    return broken("piece.first_face", i);
+  if (p.plane_count < 0 || p.plane_count > p.face_count || (p.plane_count == 0 && p.face_count > 0))
+    return broken("piece.plane_count", i);
   if (model.params.articulation != Articulation::kRigid && p.joint != -1 && !in_range(p.joint, model.joint.size()))
     return broken("piece.joint", i);
   for (int64_t k = p.first_point; k < last_point; ++k)
@@ -188,6 +204,8 @@ ImageResult check_tool(const Model& model) noexcept {
   }
   for (std::size_t i = 0; i < model.hull_vertex_m.size(); ++i)
     if (!is_finite(model.hull_vertex_m[i])) return not_finite("hull_vertex_m", i);
+  for (std::size_t i = 0; i < model.hull_face.size(); ++i)
+    if (!is_face(model.hull_face[i])) return not_finite("hull_face", i);
   for (std::size_t i = 0; i < model.piece.size(); ++i)
     if (const ImageResult result = check_piece(model, i); result.error != ImageError::kNone) return result;
   return {};

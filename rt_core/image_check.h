@@ -10,7 +10,7 @@ namespace palpate {
 ImageResult check_arrays(const Model& model) noexcept;
 // Whether the scene's method of contact takes its friction law and its tool: rules between parameters and pieces, which
 // the baker applies to what it compiled before it starts long computations. Fields of the answer: friction_law,
-// piece.nodal_shape, piece.tip_points.
+// piece.hull_faces, piece.tip_points.
 ImageResult check_method(const Model& model) noexcept;
 
 inline ImageResult broken(const char* field, std::size_t index) noexcept {

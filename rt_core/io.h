@@ -50,6 +50,9 @@ struct Input {
   JointCommand joints;
   LiveSettings live;  // what is wanted; the tick follows in bounded steps
   Pose second_w;      // handle of the second device, which holds the body (HeldPart::kBoth); `pose_w` holds the tool
+  // Commands sent since the newest one that the device of this sample says it obeys; 0 where it does not say.
+  std::uint32_t command_lag = 0;
+  std::uint32_t reserved = 0;
 };
 
 // X(type, name, stage, meaning). Every field of Output, so that replay and the state hash of the determinism test
@@ -68,7 +71,8 @@ struct Input {
   X(Mode, mode, "safety", "Mode")                                                                                    \
   X(std::int32_t, regions, "rows", "in contact")                                                                     \
   X(std::int32_t, contacts, "rows", "in contact")                                                                    \
-  X(std::int32_t, reserved, "safety", "0")                                                                           \
+  X(std::int32_t, late_ticks, "safety",                                                                              \
+    "delay in ticks for which the coupling is softened: the device's echo showed more than was stated; else 0")      \
   X(Vec3, handle_w_m, "safety", "where the tick took the handle to be: the local model's point")                     \
   X(Vec3, felt_along_N_per_m, "safety",                                                                              \
     "xx, yy, zz of the stiffness the handle feels there: a device that evaluates the local model pushes with "       \

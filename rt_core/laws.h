@@ -1,6 +1,7 @@
 // What a scene may choose among in the core, each with its words in one table (rt_core/choice.h).
 #pragma once
 
+#include "rt_core/base.h"
 #include "rt_core/choice.h"
 
 namespace palpate {
@@ -79,8 +80,14 @@ PALPATE_CHOICE(RbfTail, PALPATE_RBF_TAILS);
 #define PALPATE_NEIGHBOURHOOD_LAWS(X) X(kNone, none) X(kLogPaper, log_paper) X(kLogC1, log_c1) X(kPunch, punch)
 PALPATE_CHOICE(NeighbourhoodLaw, PALPATE_NEIGHBOURHOOD_LAWS);
 
-#define PALPATE_COUPLING_LAWS(X) X(kNone, none) X(kCoupled, coupled) X(kTemporalPaper, temporal_paper)
+#define PALPATE_COUPLING_LAWS(X) \
+  X(kNone, none) X(kCoupled, coupled) X(kTemporalPaper, temporal_paper) X(kMutualPaper, mutual_paper)
 PALPATE_CHOICE(CouplingLaw, PALPATE_COUPLING_LAWS);
+
+// The papers' laws, by which skeletons carry the force of one region over to others in the tick.
+constexpr bool carries_over(CouplingLaw law) PALPATE_RT {
+  return law == CouplingLaw::kTemporalPaper || law == CouplingLaw::kMutualPaper;
+}
 
 // What hands move by devices: the tool; the body, against a tool that is fixed in the world; or one hand the tool by
 // one device and the other the body by a second.

@@ -8,6 +8,9 @@ namespace palpate {
 
 // Convex pieces of one tool. A hand has 15 contact parts and a palm. Refused when the scene is baked.
 inline constexpr std::int32_t kMaxPieces = 20;
+// Triangles of one hull piece: of the 64 corners it may have. Each plane is asked of every four nodes of a body,
+// for 10 instructions. Refused at bake.
+inline constexpr std::int32_t kMaxHullFaces = 124;
 // Moving joints of an articulated tool: the 21 of a hand. Refused at bake.
 inline constexpr std::int32_t kMaxJoints = 21;
 // Groups of joints that one closing fraction drives: the five fingers of a hand.
@@ -32,6 +35,8 @@ inline constexpr std::int32_t kMaxSurfaceWork = 16384;
 inline constexpr std::int32_t kMaxRegions = 16;
 // Skeleton anchors of one body. Refused at bake (the baker keeps the most persistent).
 inline constexpr std::int32_t kMaxAnchors = 32;
+// Anchors where beams also go to every other region (CouplingLaw::kMutualPaper). Refused at bake.
+inline constexpr std::int32_t kMaxMutualAnchors = kMaxAnchors - (kMaxRegions - 1);
 // Depth of the hierarchy's traversal stack: a 4-wide tree over 4 million leaves needs 3 * log4(4e6) = 33 entries.
 // The loader refuses a deeper tree; Status::kTraversalTruncated if it is met all the same.
 inline constexpr std::int32_t kMaxTraversalStack = 64;
@@ -73,7 +78,8 @@ inline constexpr double kRegionMemoryDistance_m = 2e-3;
 // commands or numbers, the hand gets no impulse above it. At the coupling's 1.5 N/mm and 0.2 kg of hand and handle
 // (14 Hz) a swing needs 9.9 N before its slope meets 0.85 N a millisecond; a snap is faster where the coupling
 // is stiffer than the device holds: snap_in, thrown into its seat at 0.5 m/s, meets it for 10 ticks (2026-11-22).
-inline constexpr double kOutputStepShare = 0.10;
+// What is promised is a tenth; the rest is margin for rounding, here, on the wire and in whoever measures it.
+inline constexpr double kOutputStepShare = 0.098;
 // A hand that holds the tool by the coupling moves it in one tick by its own motion and this share of the coupling's
 // largest stretch F_max / K: then no slip, no jump of the handle and no change of contact changes the force by more
 // than this share of F_max, which leaves a fifth of the output's own step to the hand.

@@ -201,6 +201,8 @@ struct ToolPiece {
   PieceShape shape;
   std::int32_t first_point, point_count;  // its tool points
   std::int32_t first_hull, hull_count;    // its hull vertices (kHull only)
+  std::int32_t first_face, face_count;    // and the triangles between them; none where they span no volume
+  std::int32_t plane_count;               // the first of them, one in each plane
   std::int32_t part;                      // label for telemetry: finger part, mallet head...
   std::int32_t joint = -1;                // that carries it; -1: fixed to the tool frame
   std::int32_t group = 0;      // articulated tools: contacts of different groups (fingers, jaws) never share a region
@@ -223,6 +225,12 @@ struct Joint {
   JointKind kind;
   std::int32_t finger;  // whose closing fraction drives it
   std::int32_t reserved;
+};
+// Triangle of a hull piece's core, counter-clockwise seen from outside. All of the core lies in normal . x <= offset_m.
+struct HullFace {
+  Vec3 normal;
+  double offset_m;
+  Vec3 corner_m[3];
 };
 // Point of a piece's core: the centre of a small sphere of radius margin_m that carries a share of the contact.
 struct ToolPoint {
@@ -335,6 +343,7 @@ struct BeamResponse {
   X(ToolPiece, piece, n_piece, "tool", "convex pieces of the tool")                                             \
   X(ToolPoint, tool_point, n_tool_point, "tool", "sample points of the tool")                                   \
   X(Vec3, hull_vertex_m, n_hull, "piece", "vertices of hull pieces")                                            \
+  X(HullFace, hull_face, n_hull_face, "piece", "triangles of hull pieces")                                      \
   X(NodalVertex, nodal_vertex, n_nodal, "-", "surface nodes of a finite-element body: one per vertex")          \
   X(float, compliance_f32, n_compliance_f32, "world",                                                           \
     "surface compliance, m/N: row-major (3 n_vertex)^2, held components zero")                                  \
@@ -371,6 +380,7 @@ struct BeamResponse {
   X(n_piece, 1, kMaxPieces, kOfAll)                 \
   X(n_tool_point, 1, kMaxToolPoints, kOfAll)        \
   X(n_hull, 0, 1 << 16, kOfAll)                     \
+  X(n_hull_face, 0, 1 << 16, kOfAll)                \
   X(n_nodal, 0, 1 << 26, kOfNodes)                  \
   X(n_compliance_f32, 0, 1 << 28, kOfNodes)         \
   X(n_compliance_f64, 0, 1 << 28, kOfNodes)         \

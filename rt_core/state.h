@@ -195,6 +195,8 @@ using ForceHistory = double[6 * kForceHistory];
   X(ForceHistory, sent, {}, "outputs of the last ticks, newest first: what acts on the handle now")      \
   X(Vec3, stretch_slow_m, {}, "the coupling's stretch, smoothed: its damping takes the rate from it")    \
   X(double, stored_J, 0, "held by coupling and object at the last tick")                                 \
+  X(double, object_J, 0, "the object's part of it")                                                      \
+  X(Wrench, object_w, {}, "of the object on the tool then")                                              \
   X(double, surplus_J, 0, "what this contact gave the handle and holds, beyond what the handle gave it") \
   X(Vec3, last_coupling_N, {}, "the coupling's force at the last tick")                                  \
   X(Vec3, last_step_N, {}, "and its change then")                                                        \
@@ -224,6 +226,18 @@ struct SettingsState {
   PALPATE_STATE_FIELDS_OF(PALPATE_LIVE_STATE)
 };
 
+#define PALPATE_LATE_DEVICE(X)                                                          \
+  X(std::int32_t, samples, 0, "in a row that showed a longer delay than stated")        \
+  X(std::int32_t, least, 0, "commands the device was behind in each of them, at least") \
+  X(std::int32_t, ticks, 0, "delay that counts; 0: as stated")                          \
+  X(std::int32_t, moves, 0, "1: the factor changed in this tick")                       \
+  X(double, coupling, 1, "factor of the coupling for it")
+
+// What the device's echo says of its delay (safety/late_device.h).
+struct LateDevice {
+  PALPATE_STATE_FIELDS_OF(PALPATE_LATE_DEVICE)
+};
+
 #define PALPATE_STATE_FIELDS(X)                                                                                 \
   X(std::uint64_t, tick, 0, "ticks since reset")                                                                \
   X(Pose, device_w, {}, "of the handle: the last accepted sample, smoothed within the encoder's step")          \
@@ -244,6 +258,7 @@ struct SettingsState {
   X(std::uint32_t, next_region_id, 1, "of the next region to be born")                                          \
   X(std::int32_t, first_point, 0, "tool point with which the search begins: where the last tick's share ended") \
   X(SettingsState, live, {}, "settings that may change during a run")                                           \
+  X(LateDevice, late, {}, "delay of the device beyond the stated")                                              \
   X(SafetyState, safety, {}, "memory of the last gate")
 #define PALPATE_STATE_POOLS(X)                                                            \
   X(PointState, point, model.sizes.n_tool_point, point.size(), "one for each tool point") \

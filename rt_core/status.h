@@ -57,7 +57,9 @@ namespace palpate {
   X(kEnergyDrained, 24, "sampling and delay returned energy to the hand; damping took it away",                        \
     "none, or bake for the device as it is (--with its profile): device.delay_ms, device.damping_Ns_per_m")            \
   X(kSampleBridged, 25, "no fresh device sample this tick; the handle is taken to move on as it did",                  \
-    "see docs/realtime.md, missed samples")
+    "see docs/realtime.md, missed samples")                                                                            \
+  X(kDeviceLate, 26, "the device obeys commands later than its stated delay; the coupling is softened to what it is",  \
+    "measure it with palpate doctor --identify and state it: device.delay_ms")
 
 // X(name, bit, cause, remedy)
 #define PALPATE_FAULT_BITS(X)                                                                                        \

@@ -2,6 +2,7 @@
 
 #include "rt_core/float_mode.h"
 #include "rt_core/live_model.h"
+#include "rt_core/safety/late_device.h"
 #include "rt_core/stage_cost.h"
 #include "rt_core/tool/held_body.h"
 
@@ -39,15 +40,17 @@ void find_forces(const Model& model, State& state, Scratch& scratch, const Input
   contact(model, state, scratch, probe);
 }
 
-// A tick under settings that are not as they were baked.
+// A tick under settings, or with a device, that are not as they were baked.
 void tick_as_set(const Model& model, State& state, Scratch& scratch, const Input& input, Output& output,
                  const StageProbe& probe) PALPATE_RT {
   Model set = model;
   apply_in_units_of_stiffness(state.live, set.params);
+  soften(state.late, set.params);
   find_forces(set, state, scratch, input, probe);
   to_newtons(state.live, scratch);
   set.params = model.params;
   apply(state.live, set.params);
+  soften(state.late, set.params);
   make_safe(set, state, scratch, input, output);
 }
 
@@ -55,7 +58,8 @@ void tick_as_set(const Model& model, State& state, Scratch& scratch, const Input
 void render(const Model& model, State& state, Scratch& scratch, const Input& input, Output& output,
             const StageProbe& probe) PALPATE_RT {
   follow_settings(input.live, state.live);
-  if (state.live.changed == 0) {
+  watch_delay(model, input, state);
+  if (state.live.changed == 0 && state.late.coupling == 1) {
     find_forces(model, state, scratch, input, probe);
     make_safe(model, state, scratch, input, output);
   } else {

@@ -23,12 +23,14 @@ namespace palpate {
   X(scans, kFindRows, 26, "tool points looked through for a lost region")                \
   X(supports, kFindRows, 520, "supports of the overlap test")                            \
   X(fours, kFindRows, 130, "nodes of a body, four at a time, against a piece")           \
+  X(planes, kFindRows, 10, "planes of hulls against four nodes")                         \
+  X(faces, kFindRows, 20, "faces of hulls against those in reach")                       \
   X(near, kFindRows, 220, "of them those in reach")                                      \
   X(near_regions, kFindRows, 85, "of those, regions that may carry them")                \
   X(rounded, kFindRows, 520, "nodes in reach that stand on a bend")                      \
   X(predicted, kFindRows, 130, "pushes times nodes that they move, eight nodes for one") \
   X(offered, kFindRows, 22, "places changed among the deepest")                          \
-  X(shown, kFindRows, 70, "terms of an elastic body's vertices summed up")               \
+  X(shown, kFindRows, 58, "terms of an elastic body's vertices summed up")               \
   X(soft_pairs, kFindRows, 4, "entries of its energy summed up")                         \
   X(rows, kSolve, 265, "rows in contact")                                                \
   X(regions, kSolve, 1600, "their regions")                                              \
@@ -37,7 +39,7 @@ namespace palpate {
   X(standing, kSolve, 700, "beams of skeletons that later regions' depths stand on")     \
   X(region_pairs, kSolve, 13, "pairs of regions coupled, per evaluation")                \
   X(region_cubes, kSolve, 2, "entries eliminated by the regions' Newton steps")          \
-  X(linearised, kSolve, 6000, "regions of an elastic body linearised")                   \
+  X(linearised, kSolve, 4600, "regions of an elastic body linearised")                   \
   X(linked, kSolve, 28, "its modes between rows of regions")                             \
   X(soft_pairs_again, kSolve, 4, "entries of its energy summed up")                      \
   X(gathered, kSolve, 4, "vectors of eight gathered from a body's compliance")           \

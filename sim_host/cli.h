@@ -28,6 +28,7 @@ void add_mesh_command(CLI::App& app, int& exit_code);
 void add_press_command(CLI::App& app, int& exit_code);
 void add_run_command(CLI::App& app, int& exit_code);
 void add_set_command(CLI::App& app, int& exit_code);
+void add_switch_command(CLI::App& app, int& exit_code);
 void add_replay_command(CLI::App& app, int& exit_code);
 void add_recover_command(CLI::App& app, int& exit_code);
 void add_latency_command(CLI::App& app, int& exit_code);

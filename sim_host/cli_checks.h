@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sim_host/doctor/certify.h"
+#include "hal/system/duration.h"
 
 namespace palpate {
 
@@ -40,16 +40,12 @@ inline CLI::Validator number_in(double lowest, double highest) {
 inline CLI::Validator duration_in(double lowest_s, double highest_s) {
   return CLI::Validator(
       [lowest_s, highest_s](std::string& text) {
-        double seconds = 0;
-        if (const std::optional<double> told = parse_duration_s(text)) {
-          seconds = *told;
-        } else if (!CLI::detail::lexical_cast(text, seconds)) {
-          return text + " is no duration such as 10s, 5m or 1h";
-        }
-        if (!(seconds >= lowest_s && seconds <= highest_s))
+        const std::optional<double> seconds = seconds_of(text);
+        if (!seconds) return text + " is no duration such as 10s, 5m or 1h";
+        if (!(*seconds >= lowest_s && *seconds <= highest_s))
           return text + " is not a duration from " + CLI::detail::to_string(lowest_s) + " s to " +
                  CLI::detail::to_string(highest_s) + " s";
-        text = CLI::detail::to_string(seconds);
+        text = CLI::detail::to_string(*seconds);
         return std::string();
       },
       "");

@@ -1,10 +1,14 @@
 // `palpate`: everything a person types. Registers the commands and turns errors into one line and an exit code.
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <string>
 
+#include "config/scene/child_program.h"
 #include "sim_host/build_id.h"
 #include "sim_host/cli.h"
 
@@ -21,14 +25,27 @@ std::string unknown_command(const CLI::App& app, const std::string& word) {
   return text + "; `palpate --help` says what they do";
 }
 
+// Where the shipped scenes are: in the folder it was fetched into, or where it is installed.
+std::string scene_folder() {
+  std::error_code error;
+  const std::filesystem::path fetched = "config/scenes";
+  const std::filesystem::path program = palpate::sibling_program("palpate");
+  const std::filesystem::path installed = program.parent_path().parent_path() / "share/palpate" / fetched;
+  return (!std::filesystem::exists(fetched, error) && std::filesystem::exists(installed, error) ? installed : fetched)
+      .string();
+}
+
 // What `palpate` alone says.
-constexpr char kWelcome[] =
-    "Palpate: feel soft objects. Three things to begin with, from the folder it was fetched into:\n"
-    "  palpate run config/scenes/ellipsoid_mallet.toml    a simulated hand presses a soft ellipsoid\n"
-    "  palpate view config/scenes/ellipsoid_mallet.toml   your mouse is the device\n"
-    "  palpate press config/scenes/ring.toml --plot f.svg force against time, no device at all\n"
-    "`palpate --help` lists every command, `palpate COMMAND --help` what one can do. Installed scenes: "
-    "/usr/share/palpate/config\n";
+void welcome() {
+  const std::string scenes = scene_folder();
+  fmt::print(
+      "Palpate: feel soft objects. Three things to begin with:\n"
+      "  palpate run {0}/ellipsoid_mallet.toml     a simulated hand presses a soft ellipsoid\n"
+      "  palpate view {0}/ellipsoid_mallet.toml    your mouse is the device\n"
+      "  palpate press {0}/ring.toml --plot f.svg  force against time, no device at all\n"
+      "`palpate --help` lists every command, `palpate COMMAND --help` what one can do.\n",
+      scenes);
+}
 
 }  // namespace
 
@@ -53,6 +70,7 @@ int main(int argc, char** argv) {
   palpate::add_press_command(app, exit_code);
   palpate::add_run_command(app, exit_code);
   palpate::add_set_command(app, exit_code);
+  palpate::add_switch_command(app, exit_code);
   palpate::add_replay_command(app, exit_code);
   palpate::add_recover_command(app, exit_code);
   palpate::add_latency_command(app, exit_code);
@@ -67,7 +85,7 @@ int main(int argc, char** argv) {
   palpate::add_doctor_command(app, exit_code);
   palpate::add_device_test_command(app, exit_code);
   if (argc == 1) {
-    std::fputs(kWelcome, stdout);
+    welcome();
     return palpate::kExitOk;
   }
   if (const std::string unknown = argc > 1 ? unknown_command(app, argv[1]) : ""; !unknown.empty()) {

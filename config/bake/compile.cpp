@@ -193,7 +193,7 @@ class Compiler {
     } catch (const ConfigError& error) {
       throw ConfigError(scene_.source.file + ": " + error.what());
     }
-    if (is_hand()) narrow_finger_areas(tool.piece, tool.point);
+    if (is_hand()) shape_hand_points(scene_.hand, tool);
     double total = 0;
     for (const ToolPoint& point : tool.point) total += point.area_m2;
     report_.reference_area_m2 = is_auto(scene_.contact.reference_area_m2)
@@ -214,9 +214,7 @@ class Compiler {
         warn(label + ": its surface is up to " + number_text(std::round(1e5 * tool.gap_m[i]) / 100) +
              " mm away from its tool points' spheres; add points or a larger margin");
     }
-    image_.piece = std::move(tool.piece);
-    image_.tool_point = std::move(tool.point);
-    image_.hull_vertex_m = std::move(tool.hull_vertex_m);
+    put_tool(std::move(tool), image_);
   }
 
   void add_articulation() {

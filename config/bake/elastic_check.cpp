@@ -184,10 +184,7 @@ ImageContents with_ball(const SceneDesc& scene, const ImageContents& image, doub
   ball.tip = {};
   ball.pair.clear();
   ImageContents out = image;
-  Tool tool = make_tool(ball.piece);
-  out.piece = std::move(tool.piece);
-  out.tool_point = std::move(tool.point);
-  out.hull_vertex_m = std::move(tool.hull_vertex_m);
+  put_tool(make_tool(ball.piece), out);
   out.tip_law.clear();
   out.factor.clear();
   out.joint.clear();

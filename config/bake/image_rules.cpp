@@ -11,6 +11,8 @@ namespace palpate {
 
 namespace {
 
+static_assert(kMaxMutualAnchors == 17, "the words below name it");
+
 // Where the scene says what the loader refuses. `key`: %d is the element; nullptr: no key stands behind it.
 struct SceneKey {
   const char* field;
@@ -23,12 +25,13 @@ constexpr SceneKey kKeys[] = {
      "a tip has one point: allowed 0 or 1 with laws of whole tips, contact.law = \"tool\" and \"table\"; set points = "
      "1 (cylinder, capsule: touches an end; cone: plus_z). A hand's parts touch with several: use \"duffing\", "
      "\"cubic\" or \"hertz\""},
-    {"piece.nodal_shape", "tool.piece[%d].shape", "hand",
-     "its gap has no closed form, which contact.backend = \"nodal\" needs; allowed "},
+    {"piece.hull_faces", "tool.piece[%d].vertices_mm", "hand",
+     "corners of one plane, without a volume, which contact.backend = \"nodal\" needs of a hull; add a corner beside "
+     "that plane, or take a box, whose sides may be thin"},
+    {"anchor.mutual", "skeleton.anchors_max", "skeleton.anchors_max",
+     "more anchors than coupling.law = \"mutual_paper\" has room for beside the beams between contacts: at most 17"},
     {"friction_law", "friction.law", "friction.law", "is not for this method of contact"},
 };
-
-constexpr std::size_t kNodalShape = 1;  // whose text ends with the shapes allowed
 
 std::string element_of(const char* key, std::int64_t index) {
   std::string text = key;
@@ -64,7 +67,7 @@ void refuse(const SceneDesc& scene, const ImageResult& result) {
   for (const SceneKey& known : kKeys)
     if (std::strcmp(known.field, result.field) == 0)
       throw ConfigError(scene.source.where(element_of(hand ? known.hand_key : known.key, result.index)) + ": " +
-                        known.what + (&known == &kKeys[kNodalShape] ? shapes_where(has_gap) : ""));
+                        known.what);
   throw ConfigError(scene.source.file + ": the image made of this scene would be refused: " + result.field +
                     (result.index < 0 ? "" : "[" + std::to_string(result.index) + "]") + ": " + describe(result.error) +
                     "; change what the scene says of it, see docs/image_format.md");

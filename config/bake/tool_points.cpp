@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "config/bake/image_writer.h"
 #include "config/scene/config_error.h"
 #include "config/tool/piece_card.h"
 #include "rt_core/math.h"
@@ -10,6 +11,11 @@
 namespace palpate {
 
 namespace {
+
+// Twice a face's area, of the square of its longest side: less has no direction.
+constexpr double kSliver = 1e-9;
+// Sine of the angle between faces of one plane, and their distance of the piece's size.
+constexpr double kSamePlane = 1e-9;
 
 // Areas of the points: each sample belongs to the nearest one, the first of equals.
 std::vector<double> areas_of(const std::vector<SurfaceSample>& sample, const std::vector<Vec3>& point) {
@@ -21,6 +27,45 @@ std::vector<double> areas_of(const std::vector<SurfaceSample>& sample, const std
     area[nearest] += s.area_m2;
   }
   return area;
+}
+
+bool in_one_plane(const HullFace& a, const HullFace& b, double size_m) {
+  return dot(a.normal, b.normal) > 0 && norm(cross(a.normal, b.normal)) < kSamePlane &&
+         std::abs(a.offset_m - b.offset_m) < kSamePlane * size_m;
+}
+
+// The planes go through the farthest corners, not through a face's own: of corners that the hull's search took for
+// coplanar, a ten millionth of its size, some stand out.
+std::vector<HullFace> faces_of(const std::vector<Vec3>& corner) {
+  std::vector<HullFace> face;
+  for (const Corners& c : convex_hull(corner)) {
+    HullFace f{};
+    for (std::size_t k = 0; k < 3; ++k) f.corner_m[k] = corner[static_cast<std::size_t>(c[k])];
+    const Vec3 ab = f.corner_m[1] - f.corner_m[0], ac = f.corner_m[2] - f.corner_m[0];
+    const double longest2 = std::max({squared_norm(ab), squared_norm(ac), squared_norm(ac - ab)});
+    if (!(norm(cross(ab, ac)) > kSliver * longest2)) continue;  // three corners in a line: its neighbours cover it
+    f.normal = unit_or(cross(ab, ac), {0, 0, 1});
+    f.offset_m = -kHuge;
+    for (const Vec3& v : corner) f.offset_m = std::max(f.offset_m, dot(f.normal, v));
+    face.push_back(f);
+  }
+  return face;
+}
+
+// One face of each plane first: the tick's search asks for planes.
+void add_faces(const PieceCore& core, ToolPiece& piece, std::vector<HullFace>& out) {
+  piece.first_face = static_cast<std::int32_t>(out.size());
+  if (core.shape != PieceShape::kHull) return;
+  const double size_m = card_of(core.shape).reach_m(core);
+  std::vector<HullFace> plane, more;
+  for (const HullFace& f : faces_of(core.vertices_m)) {
+    const bool known = std::ranges::any_of(plane, [&](const HullFace& p) { return in_one_plane(p, f, size_m); });
+    (known ? more : plane).push_back(f);
+  }
+  piece.plane_count = static_cast<std::int32_t>(plane.size());
+  piece.face_count = static_cast<std::int32_t>(plane.size() + more.size());
+  out.insert(out.end(), plane.begin(), plane.end());
+  out.insert(out.end(), more.begin(), more.end());
 }
 
 }  // namespace
@@ -65,6 +110,7 @@ Tool make_tool(const std::vector<PieceDesc>& pieces) {
     piece.first_hull = static_cast<std::int32_t>(tool.hull_vertex_m.size());
     piece.hull_count = static_cast<std::int32_t>(core.vertices_m.size());
     piece.part = desc.part;
+    add_faces(core, piece, tool.hull_face);
     tool.piece.push_back(piece);
     tool.hull_vertex_m.insert(tool.hull_vertex_m.end(), core.vertices_m.begin(), core.vertices_m.end());
     if (position.empty()) {
@@ -79,6 +125,13 @@ Tool make_tool(const std::vector<PieceDesc>& pieces) {
     tool.gap_m.push_back(coverage_gap_m(sample, position, core.margin_m));
   }
   return tool;
+}
+
+void put_tool(Tool tool, ImageContents& image) {
+  image.piece = std::move(tool.piece);
+  image.tool_point = std::move(tool.point);
+  image.hull_vertex_m = std::move(tool.hull_vertex_m);
+  image.hull_face = std::move(tool.hull_face);
 }
 
 }  // namespace palpate

@@ -13,6 +13,7 @@ struct Tool {
   std::vector<ToolPiece> piece;
   std::vector<ToolPoint> point;     // weight is left 0: it depends on the contact law's reference area
   std::vector<Vec3> hull_vertex_m;  // piece frame
+  std::vector<HullFace> hull_face;  // piece frame
   std::vector<double> gap_m;        // per piece: largest distance from its touching surface to the nearest sphere
 };
 
@@ -20,6 +21,9 @@ struct Tool {
 // counts: a sphere has one point; a box a lattice of its surface; cylinders and cones rings; a hull its corners.
 // Throws ConfigError when a piece cannot be spread as asked.
 Tool make_tool(const std::vector<PieceDesc>& pieces);
+
+struct ImageContents;
+void put_tool(Tool tool, ImageContents& image);
 
 // Core points of one piece, piece frame.
 std::vector<Vec3> core_points(const PieceCore& core, std::int32_t count);

@@ -101,7 +101,7 @@ Features find_features(const SurfaceMesh& mesh, const std::vector<Vec3>& normal,
   drop_crumbs(mesh, mean_half_extent_m, along);
   // Corners everywhere on a fine mesh are roughness, not shape: then there are no features.
   std::size_t corners = 0;
-  for (std::size_t i = 0; i < along.size(); ++i) corners += is_corner(mesh, along, i) ? 1 : 0;
+  for (std::size_t i = 0; i < along.size(); ++i) corners += is_corner(mesh, along, i) ? 1U : 0U;
   if (along.size() > 500 && 20 * corners > along.size())
     for (auto& edges : along) edges.clear();
   Features features;

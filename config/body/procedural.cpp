@@ -89,10 +89,46 @@ void stand(SurfaceMesh& mesh) {
   for (Vec3& p : mesh.vertex_m) p.y -= lowest;
 }
 
+// The closed surface swept by `ring`, whose ends lie on the y axis, around it.
+SurfaceMesh swept(const std::vector<ProfilePoint>& ring, std::int32_t around) {
+  SurfaceMesh mesh;
+  const auto rings = static_cast<std::int32_t>(ring.size());
+  for (std::int32_t r = 0; r < rings; ++r) {
+    const bool pole = r == 0 || r == rings - 1;
+    for (std::int32_t k = 0; k < (pole ? 1 : around); ++k) {
+      const double angle = 2 * kPi * k / around;
+      const double radius = pole ? 0.0 : ring[at(r)].radius_m;
+      mesh.vertex_m.push_back({radius * math::cos(angle), ring[at(r)].height_m, -radius * math::sin(angle)});
+    }
+  }
+  const auto index = [&](std::int32_t r, std::int32_t k) {
+    return r == 0 ? 0 : 1 + (r - 1) * around + (r == rings - 1 ? 0 : k % around);
+  };
+  // Two triangles per cell; next to a pole one of them would be degenerate.
+  for (std::int32_t r = 0; r + 1 < rings; ++r)
+    for (std::int32_t k = 0; k < around; ++k) {
+      if (r > 0) mesh.triangle.push_back({index(r, k), index(r, k + 1), index(r + 1, k)});
+      if (r + 2 < rings) mesh.triangle.push_back({index(r, k + 1), index(r + 1, k + 1), index(r + 1, k)});
+    }
+  return mesh;
+}
+
+SurfaceMesh ring_sphere(std::int32_t triangles) {
+  const double nearest = std::round(0.5 * (1 + std::sqrt(1.0 + triangles)));
+  const std::int32_t bands = std::max(2, static_cast<std::int32_t>(nearest));
+  std::vector<ProfilePoint> meridian{{0, -1}};
+  for (std::int32_t k = 1; k < bands; ++k) {
+    const double angle = kPi * k / bands;
+    meridian.push_back({math::sin(angle), -math::cos(angle)});
+  }
+  meridian.push_back({0, 1});
+  return swept(meridian, 2 * bands);
+}
+
 }  // namespace
 
-SurfaceMesh make_ellipsoid(Vec3 half_axes_m, std::int32_t triangles) {
-  SurfaceMesh mesh = geodesic_sphere(triangles);
+SurfaceMesh make_ellipsoid(Vec3 half_axes_m, std::int32_t triangles, SpherePattern pattern) {
+  SurfaceMesh mesh = pattern == SpherePattern::kRings ? ring_sphere(triangles) : geodesic_sphere(triangles);
   for (Vec3& p : mesh.vertex_m) p = {half_axes_m.x * p.x, half_axes_m.y * (p.y + 1.0), half_axes_m.z * p.z};
   return mesh;
 }
@@ -145,26 +181,7 @@ SurfaceMesh make_revolution(const std::vector<ProfilePoint>& profile, std::int32
   const double step = square_root(4 * kPi * widest * length / triangles);
   const std::vector<ProfilePoint> ring = refine_profile(profile, step);
   const std::int32_t around = std::max(8, 4 * static_cast<std::int32_t>(std::round(kPi * widest / (2 * step))));
-  SurfaceMesh mesh;
-  const auto rings = static_cast<std::int32_t>(ring.size());
-  for (std::int32_t r = 0; r < rings; ++r) {
-    const bool pole = r == 0 || r == rings - 1;
-    for (std::int32_t k = 0; k < (pole ? 1 : around); ++k) {
-      const double angle = 2 * kPi * k / around;
-      const double radius = pole ? 0.0 : ring[at(r)].radius_m;
-      mesh.vertex_m.push_back({radius * math::cos(angle), ring[at(r)].height_m, -radius * math::sin(angle)});
-    }
-  }
-  const auto index = [&](std::int32_t r, std::int32_t k) {
-    return r == 0 ? 0 : 1 + (r - 1) * around + (r == rings - 1 ? 0 : k % around);
-  };
-  // Two triangles per cell; next to a pole one of them would be degenerate.
-  for (std::int32_t r = 0; r + 1 < rings; ++r)
-    for (std::int32_t k = 0; k < around; ++k) {
-      if (r > 0) mesh.triangle.push_back({index(r, k), index(r, k + 1), index(r + 1, k)});
-      if (r + 2 < rings) mesh.triangle.push_back({index(r, k + 1), index(r + 1, k + 1), index(r + 1, k)});
-    }
-  return mesh;
+  return swept(ring, around);
 }
 
 SurfaceMesh make_cylinder(double radius_m, double height_m, std::int32_t triangles) {

@@ -17,9 +17,14 @@ PALPATE_CHOICE(BodyAxis, PALPATE_BODY_AXES);
 inline constexpr std::int32_t kFewestTriangles = 80;
 inline constexpr std::int32_t kMostTriangles = 4'000'000;
 
-// Half axes along x, y, z. A geodesic sphere (20 f^2 triangles, the f nearest to `triangles`) scaled: 2880 for 3000,
-// 30 420 for 30 000, 1 003 520 for a million. Vertices lie on the exact surface.
-SurfaceMesh make_ellipsoid(Vec3 half_axes_m, std::int32_t triangles);
+// How a sphere is cut into triangles: geodesic, all of about one size: 20 f^2, the f nearest to the number asked for:
+// 2880 for 3000, 30 420 for 30 000, 1 003 520 for a million. Rings, parallels and meridians every 180/n degrees with
+// poles along y: 4 n (n - 1), the n nearest: 3480 for 3480, that of Cui & Xiao 2008, 1742 vertices, every 6 degrees.
+#define PALPATE_SPHERE_PATTERNS(X) X(kGeodesic, geodesic) X(kRings, rings)
+PALPATE_CHOICE(SpherePattern, PALPATE_SPHERE_PATTERNS);
+
+// Half axes along x, y, z: a sphere scaled. Vertices lie on the exact surface.
+SurfaceMesh make_ellipsoid(Vec3 half_axes_m, std::int32_t triangles, SpherePattern pattern = SpherePattern::kGeodesic);
 SurfaceMesh make_box(Vec3 size_m, std::int32_t triangles);
 
 // A point of a profile: distance from the y axis and height. A profile runs from bottom to top.

@@ -1,6 +1,6 @@
 #include "config/hand/hand_model.h"
 
-#include "config/bake/tool_points.h"
+#include "config/hand/hand_surface.h"
 #include "rt_core/math.h"
 #include "rt_core/tool/articulate.h"
 
@@ -192,6 +192,8 @@ void set_zero_poses(std::vector<Joint>& joints) {
 HandTool make_hand(const HandDesc& hand) {
   HandTool tool;
   const double speed = hand.joint_speed_rad_per_s;
+  const std::int32_t points =
+      hand.contact == HandContact::kMesh ? surface_point_count(hand.points_per_part) : hand.points_per_part;
   for (std::int32_t finger = 0; finger < kMaxFingers; ++finger) {
     const Pose root = root_of(finger);
     const std::array<double, 3> length = lengths_of(finger);
@@ -202,7 +204,7 @@ HandTool make_hand(const HandDesc& hand) {
     double start = 0;
     for (std::int32_t part = 0; part < 3; ++part) {
       const auto at = static_cast<std::size_t>(part);
-      tool.piece.push_back(part_piece(finger, part, root, start, hand.points_per_part));
+      tool.piece.push_back(part_piece(finger, part, root, start, points));
       tool.piece_joint.push_back(joints.flexion[at]);
       tool.piece_finger.push_back(finger);
       start += length[at];
@@ -220,9 +222,10 @@ HandTool make_hand(const HandDesc& hand) {
   return tool;
 }
 
-void narrow_finger_areas(const std::vector<ToolPiece>& pieces, std::vector<ToolPoint>& points) {
-  for (ToolPoint& point : points) {
-    const ToolPiece& piece = pieces[static_cast<std::size_t>(point.piece)];
+void shape_hand_points(const HandDesc& hand, Tool& tool) {
+  if (hand.contact == HandContact::kMesh) touch_with_mesh(tool);
+  for (ToolPoint& point : tool.point) {
+    const ToolPiece& piece = tool.piece[static_cast<std::size_t>(point.piece)];
     point.area_m2 = piece.margin_m * (2 * piece.half_extent_m[2] + piece.margin_m) / piece.point_count;
   }
 }

@@ -6,6 +6,7 @@
 #include <array>
 #include <vector>
 
+#include "config/bake/tool_points.h"
 #include "config/scene/scene.h"
 #include "rt_core/model.h"
 
@@ -47,9 +48,10 @@ bool takes_part(GraspFingers grasp, std::int32_t finger);
 // `points` tool points along the core of each part.
 HandTool make_hand(const HandDesc& hand);
 
-// A finger part touches with a strip of its palm's side, not all around: as long as the capsule's core and a rounding,
-// and about as wide as its radius (at a third of the radius deep the exact width is 1.5 radii, at the first touch 0).
-void narrow_finger_areas(const std::vector<ToolPiece>& piece, std::vector<ToolPoint>& point);
+// Where the parts' points are (hand.contact) and for how much surface each stands. A finger part touches with a strip
+// of its palm's side, not all around: as long as the capsule's core and a rounding, and about as wide as its radius (at
+// a third of the radius deep the exact width is 1.5 radii, at the first touch 0).
+void shape_hand_points(const HandDesc& hand, Tool& tool);
 // Where the palm can push: params.palm_radius_m and palm_face_m.
 void set_palm(const HandTool& hand, ModelParams& params);
 

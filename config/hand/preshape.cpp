@@ -82,23 +82,24 @@ class Planner {
 
   void close(std::int32_t finger, Preshape& plan) {
     const FingerJoints joints = finger_joints(finger);
+    const double squeeze_m = hand_.squeeze_m[static_cast<std::size_t>(finger)];
     for (const std::int32_t j : joints.flexion) q_[static_cast<std::size_t>(j)] = extended(j);
     for (std::size_t part = 0; part < 3; ++part) {
       const auto j = static_cast<std::size_t>(joints.flexion[part]);
       const double end = model_.joint[j].highest;
       double low = q_[j], high = low;
-      while (high < end && depth_from(finger, part, grasp()) < hand_.squeeze_m) {
+      while (high < end && depth_from(finger, part, grasp()) < squeeze_m) {
         low = high;
         high = std::min(high + kSweepStep_rad, end);
         q_[j] = high;
       }
-      if (depth_from(finger, part, grasp()) < hand_.squeeze_m) {
+      if (depth_from(finger, part, grasp()) < squeeze_m) {
         if (part == 2 && depth_from(finger, 2, grasp()) < 0) warn_of_miss(finger, plan.warning);
         continue;
       }
       for (int i = 0; i < kBisections; ++i) {
         q_[j] = 0.5 * (low + high);
-        (depth_from(finger, part, grasp()) < hand_.squeeze_m ? low : high) = q_[j];
+        (depth_from(finger, part, grasp()) < squeeze_m ? low : high) = q_[j];
       }
       q_[j] = low;
     }
@@ -120,7 +121,9 @@ class Planner {
     for (int k = 0; k <= kOpeningSteps && gap < hand_.clearance_m; ++k) {
       for (const std::int32_t joint : joints.flexion) {
         const auto j = static_cast<std::size_t>(joint);
-        plan.open[j] = plan.closed[j] + (extended(joint) - plan.closed[j]) * k / kOpeningSteps;
+        // The last step's sum may miss the limit by a rounding.
+        plan.open[j] = k == kOpeningSteps ? extended(joint)
+                                          : plan.closed[j] + (extended(joint) - plan.closed[j]) * k / kOpeningSteps;
         q_[j] = plan.open[j];
       }
       gap = gap_of(finger);

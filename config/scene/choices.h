@@ -71,4 +71,8 @@ PALPATE_CHOICE(GraspFingers, PALPATE_GRASP_FINGERS);
 #define PALPATE_HAND_SIDES(X) X(kRight, right) X(kLeft, left)
 PALPATE_CHOICE(HandSide, PALPATE_HAND_SIDES);
 
+// What of a finger part touches: the rounded rod of the table's width, or the surface of the hand's mesh.
+#define PALPATE_HAND_CONTACTS(X) X(kCapsules, capsules) X(kMesh, mesh)
+PALPATE_CHOICE(HandContact, PALPATE_HAND_CONTACTS);
+
 }  // namespace palpate

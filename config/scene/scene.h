@@ -2,6 +2,7 @@
 // meanings are the table in config/scene/schema.cpp, from which the reader's checks and docs/scene_format.md are made.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -30,6 +31,7 @@ struct BodyDesc {
   double wall_m = 0.010;
   double e1 = 1, e2 = 1;
   BodyAxis axis = BodyAxis::kY;
+  SpherePattern pattern = SpherePattern::kGeodesic;
   std::vector<ProfilePoint> profile;
   std::string mesh;
   double scale = 1e-3;
@@ -203,13 +205,17 @@ struct PieceDesc {
   Vec3 slide_m;            // gripper: how far it has moved when the gripper is open; described where it is when closed
 };
 
+// Of thumb, index, middle, ring and little finger.
+using FingerNumbers = std::array<double, kMaxFingers>;
+
 // Which fingers a hand's grasp uses: thumb and index; with the middle finger; all.
 struct HandDesc {
   GraspFingers fingers = GraspFingers::kFive;
   HandSide side = HandSide::kRight;
+  HandContact contact = HandContact::kCapsules;
   Vec3 grasp_position_m;  // palm's middle, when the hand holds the body
   Vec3 grasp_rotation_rad;
-  double squeeze_m = 0.003;
+  FingerNumbers squeeze_m{0.003, 0.003, 0.003, 0.003, 0.003};
   double clearance_m = 0.0015;
   double closing_s = 1.0;
   double stop_force_N = 5;
@@ -271,6 +277,9 @@ struct SceneSource {
   std::map<std::string, std::string> overlay;  // file of the keys that an overlay gave
   std::map<std::string, int> line;             // "contact.max_depth_mm" -> line; only keys present in the file
   bool has(const std::string& key) const { return line.count(key) != 0; }
+  // Whether something was laid over the scene (--with, --set friction.law=none), and not this key nor what is in its
+  // table. What is then out of work in the scene's own file is no mistake of the file's.
+  bool is_overruled(const std::string& key) const;
   // "file:line: key" for an error text; without a line when the key is absent.
   std::string where(const std::string& key) const;
 };

@@ -50,7 +50,13 @@ void check_body_keys(const SceneDesc& scene) {
 
 void check_skeleton(const SceneDesc& scene) {
   const SkeletonLaw law = scene.skeleton.law;
-  if (law == SkeletonLaw::kCircular || law == SkeletonLaw::kCircularPaper)
+  const bool circular = law == SkeletonLaw::kCircular || law == SkeletonLaw::kCircularPaper;
+  if (circular && scene.coupling.law == CouplingLaw::kMutualPaper)
+    fail(scene, "coupling.law",
+         "\"mutual_paper\" draws straight beams from contact to contact, and skeleton.law = \"" +
+             std::string(word_of(law)) +
+             "\" has none; allowed none, coupled, temporal_paper, or a straight skeleton.law");
+  if (circular)
     return check_effect(scene, "skeleton", {"section_radius_mm"}, {},
                         "with circular beams, whose section is beam_width_mm x beam_thickness_mm");
   check_effect(scene, "skeleton", {"beam_width_mm", "beam_thickness_mm", "beam_allowance_mm"}, {},
@@ -109,8 +115,9 @@ void check_presses(const SceneDesc& scene) {
 
 void check_contact(const SceneDesc& scene) {
   const auto unused_table = [&](const char* name, ContactLaw law, const char* law_name) {
-    if (scene.contact.law != law && scene.source.has(std::string("contact.") + name))
-      fail(scene, std::string("contact.") + name,
+    const std::string table = std::string("contact.") + name;
+    if (scene.contact.law != law && scene.source.has(table) && !scene.source.is_overruled(table))
+      fail(scene, table,
            std::string("has no effect unless contact.law = \"") + law_name + "\"; set it or remove the table");
   };
   unused_table("duffing", ContactLaw::kDuffing, "duffing");
@@ -143,8 +150,10 @@ void check_tips(const SceneDesc& scene) {
   check_effect(scene, "contact", {"surface"}, {}, "with laws of whole tips, which always have the smooth surface");
   check_effect(scene, "contact", {"equivalent_point"}, {},
                "with laws of whole tips, each of which touches at one point");
-  if (scene.coupling.law == CouplingLaw::kTemporalPaper)
-    fail(scene, "coupling.law", "\"temporal_paper\" needs tool points with cubic springs; allowed none, coupled");
+  if (carries_over(scene.coupling.law))
+    fail(scene, "coupling.law",
+         "\"" + std::string(word_of(scene.coupling.law)) +
+             "\" needs tool points with cubic springs; allowed none, coupled");
   for (std::size_t i = 0; i < scene.piece.size(); ++i) {
     const PieceDesc& piece = scene.piece[i];
     const std::string label = "tool.piece[" + std::to_string(i) + "]";

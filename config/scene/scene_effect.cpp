@@ -41,7 +41,7 @@ bool knows_material(const SceneDesc& s) {
 // A skeleton that the scene asks for is drawn by its beams, whose stiffness is E's, and temporal coupling carries
 // forces over by them. The default one alone is no reason to state E.
 bool draws_by_material(const SceneDesc& s) {
-  return has_skeleton(s) && (s.source.has("skeleton") || s.coupling.law == CouplingLaw::kTemporalPaper);
+  return has_skeleton(s) && (s.source.has("skeleton") || carries_over(s.coupling.law));
 }
 
 bool modulus_works(const SceneDesc& s) { return knows_material(s) || is_coupled(s) || draws_by_material(s); }
@@ -118,9 +118,9 @@ const EffectRule kRules[] = {
      kRemove},
     {"coupling.radius_mm", is_coupled, "where no far field couples regions (coupling.law = \"coupled\", several tips)",
      kRemove},
-    {"coupling.law",
-     [](const SceneDesc& s) { return s.coupling.law != CouplingLaw::kTemporalPaper || has_skeleton(s); },
-     "as \"temporal_paper\" without a skeleton, which carries the forces over", "state a skeleton.law"},
+    {"coupling.law", [](const SceneDesc& s) { return !carries_over(s.coupling.law) || has_skeleton(s); },
+     "as \"temporal_paper\" or \"mutual_paper\" without a skeleton, which carries the forces over",
+     "state a skeleton.law"},
     {"friction.mu_ref", slides, kNoFriction, kRemove},
     {"friction.k", slides, kNoFriction, kRemove},
     {"friction.beta", slides, kNoFriction, kRemove},
@@ -168,17 +168,11 @@ std::vector<std::pair<std::string, std::string>> idle_keys(const SceneDesc& scen
   }
   return idle;
 }
-// A key of the scene's own file that something laid over it (--with, --set friction.law=none) has put out of work is no
-// mistake of the file's: it is only said.
-bool is_overruled(const SceneDesc& scene, const std::string& key) {
-  return !scene.source.overlay.empty() && scene.source.overlay.count(key) == 0;
-}
-
 }  // namespace
 
 void check_effects(const SceneDesc& scene) {
   for (const auto& [key, why] : idle_keys(scene))
-    if (!is_overruled(scene, key)) throw ConfigError(scene.source.where(key) + ": " + why);
+    if (!scene.source.is_overruled(key)) throw ConfigError(scene.source.where(key) + ": " + why);
 }
 
 std::vector<std::string> weak_keys(const SceneDesc& scene) {
@@ -188,7 +182,7 @@ std::vector<std::string> weak_keys(const SceneDesc& scene) {
   if (!scene.source.has(key) || !modulus_works(scene) || knows_material(scene)) return said;
   const std::string law = ChoiceOf<ContactLaw>::kWord[static_cast<std::int32_t>(scene.contact.law)];
   const bool drawn = draws_by_material(scene), coupled = is_coupled(scene);
-  const bool carried = scene.coupling.law == CouplingLaw::kTemporalPaper;
+  const bool carried = carries_over(scene.coupling.law);
   const std::string does = carried ? "the stiffness of the skeleton's beams"
                            : coupled && drawn
                                ? "how regions of contact give under one another, and how the drawn body does"

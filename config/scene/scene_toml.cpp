@@ -220,6 +220,9 @@ class Reader {
       case KeyKind::kFingers:
         read_fingers(value, path, key, *static_cast<std::vector<double>*>(key.field(fields)));
         return;
+      case KeyKind::kNumberOrFingers:
+        *static_cast<FingerNumbers*>(key.field(fields)) = read_each_finger(value, path, key);
+        return;
       case KeyKind::kPoints:
         read_points(value, path, key, *static_cast<std::vector<Vec3>*>(key.field(fields)));
         return;
@@ -277,6 +280,18 @@ class Reader {
     if (list == nullptr || (list->size() != 1 && list->size() != kMaxFingers)) fail_type(value, path, key);
     for (const toml::node& element : *list) fingers.push_back(read_number(element, path, key));
   }
+  // A number that holds for every finger, or a list of one for each.
+  FingerNumbers read_each_finger(const toml::node& value, const std::string& path, const KeySpec& key) const {
+    FingerNumbers fingers;
+    const toml::array* list = value.as_array();
+    if (list != nullptr && list->size() != fingers.size())
+      fail(value, path,
+           "a list of " + std::to_string(list->size()) + "; allowed " + allowed_text(key) +
+               "; write one number, or [thumb, index, middle, ring, little]");
+    for (std::size_t f = 0; f < fingers.size(); ++f)
+      fingers[f] = read_number(list != nullptr ? *list->get(f) : value, path, key);
+    return fingers;
+  }
   void read_points(const toml::node& value, const std::string& path, const KeySpec& key,
                    std::vector<Vec3>& points) const {
     if (!value.is_array()) fail_type(value, path, key);
@@ -295,6 +310,13 @@ class Reader {
 };
 
 }  // namespace
+
+bool SceneSource::is_overruled(const std::string& key) const {
+  const auto is_of_it = [&](const auto& laid) {
+    return laid.first.starts_with(key) && (laid.first.size() == key.size() || laid.first[key.size()] == '.');
+  };
+  return !overlay.empty() && std::ranges::none_of(overlay, is_of_it);
+}
 
 std::string SceneSource::where(const std::string& key) const {
   const auto found = line.find(key);

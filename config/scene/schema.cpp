@@ -182,7 +182,7 @@ const KeySpec kShape[] = {
 const KeySpec kCoupling[] = {
     choice<&CouplingDesc::law>("law",
                                "how contact regions influence one another: not; by a conservative far field; in the "
-                               "order they appeared (Luo & Xiao 2006)"),
+                               "order they appeared (Cui & Xiao 2008); each by beams to all others (Luo & Xiao 2006)"),
     number_or_auto<&CouplingDesc::radius_m>("radius_mm", 0.001, 1000, kMilli,
                                             "core radius of the far field; auto: sqrt(reference area / pi)"),
 };
@@ -244,14 +244,18 @@ const KeySpec kHand[] = {
                                "stretched out"),
     choice<&HandDesc::side>(
         "side", "left: the mirror image of the right hand in y = 0 of its frame, so the thumb's side is -y"),
+    choice<&HandDesc::contact>("contact",
+                               "what of a part touches: capsules, a round rod of the part's width; mesh, the palm's "
+                               "side of the surface that is drawn, 9 points a part and more also beside its middle"),
     list<&HandDesc::grasp_position_m>(kVec3, "grasp_mm", -1e4, 1e4, kMilli,
                                       "the palm's middle when the hand holds the body; the preshape is made for it"),
     list<&HandDesc::grasp_rotation_rad>(
         kVec3, "grasp_deg", -360, 360, kDegree,
         "rotation vector of the hand there; x to the fingertips, y to the thumb's side, "
         "z out of the back of the hand"),
-    number<&HandDesc::squeeze_m>("squeeze_mm", 0.01, 20, kMilli,
-                                 "depth below the rest surface to which each finger part closes"),
+    list<&HandDesc::squeeze_m>(KeyKind::kNumberOrFingers, "squeeze_mm", 0.01, 20, kMilli,
+                               "depth below the rest surface to which each finger part closes; a list: of each "
+                               "finger's parts, thumb to little finger, also of fingers that take no part"),
     number<&HandDesc::clearance_m>("clearance_mm", 0, 100, kMilli,
                                    "gap of the open hand to the body on its way in, along the palm's normal"),
     number<&HandDesc::closing_s>("closing_s", 0.01, 100, 1, "shortest time from open to closed"),

@@ -20,6 +20,7 @@ enum class KeyKind {
   kPairs,
   kPoints,
   kFingers,
+  kNumberOrFingers,
   kIntegers
 };
 

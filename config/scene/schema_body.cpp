@@ -16,6 +16,9 @@ const KeySpec kBody[] = {
     number<&BodyDesc::e1>("e1", 0.2, 1.8, 1, "exponent seen from the side: 0.2 square, 1 round, 1.8 pointed"),
     number<&BodyDesc::e2>("e2", 0.2, 1.8, 1, "exponent seen from above"),
     choice<&BodyDesc::axis>("axis", "direction of the body's axis: y is up"),
+    choice<&BodyDesc::pattern>("pattern",
+                               "how a sphere or ellipsoid is cut: geodesic, triangles of about one size; rings, "
+                               "parallels and meridians with poles along y, 4 n (n - 1) of them"),
     list<&BodyDesc::profile>(KeyKind::kPairs, "profile_mm", -10000, 10000, kMilli,
                              "points [radius, height] from bottom to top; turns above 35 degrees stay "
                              "sharp, the rest is smoothed; open ends are closed by discs"),

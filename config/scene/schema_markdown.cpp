@@ -86,6 +86,8 @@ std::string default_text(const KeySpec& key, void* table) {
       const double value = *static_cast<double*>(key.field(table));
       return is_auto(value) ? "\"auto\"" : rounded_text(value / key.scale);
     }
+    case KeyKind::kNumberOrFingers:
+      return rounded_text(static_cast<FingerNumbers*>(key.field(table))->front() / key.scale);
     case KeyKind::kInteger:
       return std::to_string(*static_cast<std::int32_t*>(key.field(table)));
     case KeyKind::kBool:
@@ -129,6 +131,8 @@ std::string allowed_text(const KeySpec& key) {
       return "list of [radius, height], each " + range_text(key);
     case KeyKind::kFingers:
       return "list of 1 or " + std::to_string(kMaxFingers) + " numbers, each " + range_text(key);
+    case KeyKind::kNumberOrFingers:
+      return range_text(key) + ", or " + std::to_string(kMaxFingers) + " of them as a list";
     case KeyKind::kPoints:
       return "list of [x, y, z], each " + range_text(key);
     case KeyKind::kIntegers:

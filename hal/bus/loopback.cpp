@@ -2,64 +2,33 @@
 
 #include <poll.h>
 #include <sys/socket.h>
-#include <sys/stat.h>
-#include <sys/un.h>
 #include <time.h>
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstddef>
 #include <cstring>
 
 #include "hal/bus/frame_socket.h"
+#include "hal/system/local_socket.h"
 
 namespace palpate {
 namespace {
-
-struct Address {
-  sockaddr_un un{};
-  socklen_t length = 0;
-  bool is_path = false;
-};
-
-bool make_address(const std::string& name, Address& address, std::string& error) {
-  const std::size_t most = sizeof address.un.sun_path - 2;
-  if (name.empty() || name.size() > most) {
-    error = "loopback name must have 1 to " + std::to_string(most) + " characters";
-    return false;
-  }
-  address.is_path = name.find('/') != std::string::npos;
-  address.un.sun_family = AF_UNIX;
-  const std::size_t offset = address.is_path ? 0 : 1;  // abstract names start with a zero byte
-  name.copy(address.un.sun_path + offset, name.size());
-  address.length = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + offset + name.size());
-  return true;
-}
-
-const sockaddr* generic(const Address& address) { return reinterpret_cast<const sockaddr*>(&address.un); }
-
-int open_socket() { return ::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0); }
 
 std::string reason(const std::string& what, const std::string& name) {
   return what + " loopback '" + name + "': " + std::strerror(errno);
 }
 
-// Removes a socket file nobody listens on; leaves everything else alone.
-void remove_stale(const Address& address) {
-  struct stat info {};
-  if (::lstat(address.un.sun_path, &info) != 0 || !S_ISSOCK(info.st_mode)) return;
-  const int probe = open_socket();
-  const bool dead = ::connect(probe, generic(address), address.length) != 0 && errno == ECONNREFUSED;
-  ::close(probe);
-  if (dead) ::unlink(address.un.sun_path);
+bool named(const std::string& name, LocalAddress& address, std::string& error) {
+  if (make_local_address(name, address, error)) return true;
+  error = "loopback name " + error;
+  return false;
 }
 
 // A device decides what the hand feels and where it is said to be: only this user's own programs, or root's, may be
 // one. An abstract name is open to everybody on the machine: user nobody once drove root's controller (2026-11-21).
 bool is_own(int fd, const std::string& name, std::string& error) {
   ucred peer{};
-  socklen_t size = sizeof peer;
-  if (::getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &peer, &size) != 0) {
+  if (!get_peer(fd, peer)) {
     error = reason("cannot tell who is at the other end of", name);
     return false;
   }
@@ -71,8 +40,6 @@ bool is_own(int fd, const std::string& name, std::string& error) {
 }
 
 }  // namespace
-
-bool is_trusted_peer(unsigned peer_user, unsigned own_user) { return peer_user == own_user || peer_user == 0; }
 
 std::unique_ptr<Transport> adopt_loopback(int fd, std::string& error) {
   int type = 0;
@@ -94,13 +61,13 @@ std::pair<std::unique_ptr<Transport>, std::unique_ptr<Transport>> open_loopback_
 }
 
 std::unique_ptr<Transport> accept_loopback(const std::string& name, int timeout_ms, std::string& error) {
-  Address address;
-  if (!make_address(name, address, error)) return nullptr;
-  if (address.is_path) remove_stale(address);
-  const int listener = open_socket();
+  LocalAddress address;
+  if (!named(name, address, error)) return nullptr;
+  if (address.is_path) remove_stale_socket(address);
+  const int listener = open_local_socket();
   std::unique_ptr<Transport> transport;
   pollfd wait{listener, POLLIN, 0};
-  const bool bound = listener >= 0 && ::bind(listener, generic(address), address.length) == 0;
+  const bool bound = listener >= 0 && ::bind(listener, address.generic(), address.length) == 0;
   if (!bound || ::listen(listener, 1) != 0) {
     error = reason("cannot listen on", name);
   } else if (::poll(&wait, 1, timeout_ms) <= 0) {
@@ -119,12 +86,12 @@ std::unique_ptr<Transport> accept_loopback(const std::string& name, int timeout_
 }
 
 std::unique_ptr<Transport> connect_loopback(const std::string& name, int timeout_ms, std::string& error) {
-  Address address;
-  if (!make_address(name, address, error)) return nullptr;
-  const int fd = open_socket();
+  LocalAddress address;
+  if (!named(name, address, error)) return nullptr;
+  const int fd = open_local_socket();
   constexpr int kStep_ms = 5;
   for (int waited_ms = 0;; waited_ms += kStep_ms) {
-    if (::connect(fd, generic(address), address.length) == 0) {
+    if (::connect(fd, address.generic(), address.length) == 0) {
       if (is_own(fd, name, error)) return std::make_unique<FrameSocket>(fd);
       ::close(fd);
       return nullptr;

@@ -20,9 +20,6 @@ std::pair<std::unique_ptr<Transport>, std::unique_ptr<Transport>> open_loopback_
 std::unique_ptr<Transport> accept_loopback(const std::string& name, int timeout_ms, std::string& error);
 std::unique_ptr<Transport> connect_loopback(const std::string& name, int timeout_ms, std::string& error);
 
-// Whether a process of user `peer_user` may be the other end of a program of `own_user`.
-bool is_trusted_peer(unsigned peer_user, unsigned own_user);
-
 // Takes over an already connected SOCK_SEQPACKET descriptor (inherited from a parent).
 std::unique_ptr<Transport> adopt_loopback(int fd, std::string& error);
 

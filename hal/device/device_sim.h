@@ -76,6 +76,7 @@ class DevicePlant {
   Wrench motor() const noexcept { return motor_; }                              // rendered in the last period
   bool trigger() const noexcept { return aim_at(time_s()).trigger; }            // the hand holds the closing button
   bool saturated() const noexcept { return saturated_; }
+  std::uint32_t obeyed() const noexcept { return due_.number; }  // number of the command that acted last
   double time_s() const noexcept { return static_cast<double>(ticks_) * options_.period_s; }
   std::uint64_t ticks() const noexcept { return ticks_; }
   const PlantOptions& options() const noexcept { return options_; }

@@ -11,6 +11,7 @@
 // with the drives disabled.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <concepts>
 #include <cstdint>
@@ -284,6 +285,8 @@ class Loop {
     take_pose(hand_[1], input_.second_w);
     if (hand_[0].sample.fresh) input_.buttons = hand_[0].sample.buttons;
     input_.stale_ticks = stale_;
+    input_.command_lag = 0;
+    each_hand([&](const Hand& hand) { input_.command_lag = std::max(input_.command_lag, hand.link.lag_ticks()); });
     input_.overrun_ticks = slots_.missed();
     input_.commands = host_.poll() | (stopping ? Command::kStop : 0u);
     const bool nobody = any_hand([&](const Hand& hand) {  // there to render it

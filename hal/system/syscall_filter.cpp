@@ -22,17 +22,27 @@ namespace {
 std::atomic<int> first_forbidden{-1};
 static_assert(std::atomic<int>::is_always_lock_free, "read and written in a signal handler");
 
+#if defined(__x86_64__)
+constexpr unsigned kProcessor = AUDIT_ARCH_X86_64;
+constexpr auto kPoll = SYS_poll;
+void set_result(mcontext_t& registers, long value) { registers.gregs[REG_RAX] = value; }
+#elif defined(__aarch64__)
+constexpr unsigned kProcessor = AUDIT_ARCH_AARCH64;
+constexpr auto kPoll = SYS_ppoll;  // there is no other
+void set_result(mcontext_t& registers, long value) { registers.regs[0] = static_cast<unsigned long>(value); }
+#endif
+
 // What the loop needs: sleep, time, frames in and out, counting its page faults at the end, and leaving.
 constexpr std::array kAllowed = {
     SYS_clock_nanosleep, SYS_clock_gettime, SYS_read,     SYS_write,     SYS_recvmsg, SYS_recvmmsg, SYS_recvfrom,
-    SYS_getrusage,       SYS_sendmsg,       SYS_sendmmsg, SYS_sendto,    SYS_ppoll,   SYS_poll,     SYS_restart_syscall,
+    SYS_getrusage,       SYS_sendmsg,       SYS_sendmmsg, SYS_sendto,    SYS_ppoll,   kPoll,        SYS_restart_syscall,
     SYS_futex,           SYS_rt_sigreturn,  SYS_exit,     SYS_exit_group};
 
-// `context` is the interrupted thread's: its rax becomes the call's result.
+// `context` is the interrupted thread's: the call's result becomes "no such call".
 void on_forbidden(int, siginfo_t* info, void* context) {
   int none = -1;
   first_forbidden.compare_exchange_strong(none, info->si_syscall, std::memory_order_relaxed);
-  static_cast<ucontext_t*>(context)->uc_mcontext.gregs[REG_RAX] = -ENOSYS;
+  set_result(static_cast<ucontext_t*>(context)->uc_mcontext, -ENOSYS);
 }
 
 sock_filter statement(unsigned code, unsigned k) { return {static_cast<__u16>(code), 0, 0, k}; }
@@ -51,7 +61,7 @@ bool install_syscall_filter(std::string& reason) {
   std::array<sock_filter, kAllowed.size() + 6> program;
   std::size_t at = 0;
   program[at++] = statement(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, arch));
-  program[at++] = jump(AUDIT_ARCH_X86_64, 1, 0);
+  program[at++] = jump(kProcessor, 1, 0);
   program[at++] = statement(BPF_RET | BPF_K, SECCOMP_RET_TRAP);  // 32-bit entry: refused
   program[at++] = statement(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr));
   for (std::size_t i = 0; i < kAllowed.size(); ++i)  // a hit jumps over the remaining tests and the trap

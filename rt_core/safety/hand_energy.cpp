@@ -54,6 +54,17 @@ double spring_J(double stretch, double stiffness, double most) PALPATE_RT {
   return stretch < end ? 0.5 * stiffness * stretch * stretch : most * (stretch - 0.5 * end);
 }
 
+// Work of the driven joints on the object since the last tick, at least: what the object stores more and what it did
+// on the tool as a whole, E' - E + F dx. Friction takes some of it, which is no credit.
+double joint_work_J(const State& state, const Scratch& scratch) PALPATE_RT {
+  const SafetyState& safety = state.safety;
+  if (state.articulation.moved == 0) return 0;
+  const Twist way = twist_between(state.tool_previous_w, state.tool_w);
+  const Wrench &now = scratch.contact_wrench_w, &before = safety.object_w;
+  return scratch.energy_J - safety.object_J + 0.5 * dot(now.force_N + before.force_N, way.translation_m) +
+         0.5 * dot(now.torque_Nm + before.torque_Nm, way.rotation_rad);
+}
+
 bool nothing_sent(const SafetyState& safety) PALPATE_RT {
   for (const double value : safety.sent) {  // bound: 6 kForceHistory
     if (value != 0) return false;
@@ -84,11 +95,13 @@ void drain_energy(const Model& model, State& state, Scratch& scratch, const Inpu
   const Wrench on_handle = acted(model, safety, force_N);
   const bool counts = safety.mode == Mode::kForce && safety.ramp >= 1 && input.stale_ticks == 0 &&
                       input.overrun_ticks == 0 && (scratch.status & Status::kInputRejected) == 0 &&
-                      state.articulation.moved == 0 && state.live.moves == 0;
+                      state.live.moves == 0 && state.late.moves == 0;
   const double made_J = dot(on_handle.force_N, way.translation_m) + dot(on_handle.torque_Nm, way.rotation_rad) +
-                        stored_J - safety.stored_J;
+                        stored_J - safety.stored_J - joint_work_J(state, scratch);
   const double most_J = 0.5 * p.force_max_N * p.force_max_N / p.coupling_N_per_m;
   safety.stored_J = stored_J;
+  safety.object_J = scratch.energy_J;
+  safety.object_w = scratch.contact_wrench_w;
   safety.surplus_J = counts && is_finite(made_J) ? max_of(-kCreditShare * most_J, safety.surplus_J + made_J) : 0.0;
   if (squared_norm(force_N) == 0 && nothing_sent(safety)) safety.surplus_J = 0;
   const double speed2 = squared_norm(state.hand_velocity_m_per_s);

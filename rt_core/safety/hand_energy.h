@@ -19,8 +19,9 @@ void add_coupling_damping(const Model& model, SafetyState& safety, Vec3& force_N
 // that acted then (the delay is known), and what coupling and object hold. Above zero, sampling and delay have made
 // energy; it is braked away by a force against the handle's motion, at most as much as a damper of twice K (T / 2 +
 // tau) would, and never by turning the force round (time-domain passivity: Hannaford & Ryu 2002; reference storage: Ryu
-// et al. 2005). What friction took is no credit. Status: kEnergyDrained. Joints and settings that move of themselves,
-// samples that jumped and a force that ramps are left out of the account.
+// et al. 2005). What friction took is no credit. Joints that are driven may give their work to the hand, and no more:
+// the account begins at the tool. Status: kEnergyDrained. Settings that move of themselves, samples that jumped and a
+// force that ramps are left out of the account.
 void drain_energy(const Model& model, State& state, Scratch& scratch, const Input& input, Vec3& force_N) PALPATE_RT;
 
 // True when the coupling's force has changed its sense of change in most of the last ticks, or when the surplus is more

@@ -120,6 +120,7 @@ void make_safe(const Model& model, State& state, Scratch& scratch, const Input& 
     advance_mode(model, input, found, safety);
     if (safety.mode == Mode::kIdle && found.pressed && (input.commands & Command::kArm) != 0)
       scratch.status |= Status::kStartsInside;
+    if (state.late.ticks > 0) scratch.status |= Status::kDeviceLate;
     if ((input.commands & Command::kUnheard) != 0) scratch.status |= Status::kCommandsUnheard;
     const Wrench scaled{safety.ramp * safety.last_good_w.force_N, safety.ramp * safety.last_good_w.torque_Nm};
     const Wrench now = within_limits(model, followed(state, felt, safety.last_device_w));
@@ -135,7 +136,7 @@ void make_safe(const Model& model, State& state, Scratch& scratch, const Input& 
   output.ramp = safety.ramp;
   output.fault = safety.fault;
   output.mode = safety.mode;
-  output.reserved = 0;
+  output.late_ticks = state.late.ticks;
   output.second_w = {};
   output.second_handle_w_m = {};
   if (holds_body(model) && input.drive == Drive::kDevice) render_on_body(model, state, scratch, output);

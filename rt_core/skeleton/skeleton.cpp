@@ -105,11 +105,16 @@ bool distribute_by_ratios(Real youngs_modulus_Pa, Vec3 force_on_body_w, Skeleton
 
 bool solve_skeleton(const Model& model, std::span<const Vec3> offset_w, Vec3 contact_w, Vec3 force_on_body_w,
                     Skeleton& skeleton) PALPATE_RT {
+  return solve_skeleton_on(model, model.anchor, offset_w, contact_w, force_on_body_w, skeleton);
+}
+
+bool solve_skeleton_on(const Model& model, std::span<const Anchor> end, std::span<const Vec3> offset_w, Vec3 contact_w,
+                       Vec3 force_on_body_w, Skeleton& skeleton) PALPATE_RT {
   const auto law = model.params.skeleton_law;
   skeleton.count = 0;
   clear_forces(skeleton);
-  if (law == SkeletonLaw::kNone || model.anchor.empty()) return false;
-  build_skeleton(skeleton_setup(model), model.anchor, offset_w, contact_w, skeleton);
+  if (law == SkeletonLaw::kNone || end.empty()) return false;
+  build_skeleton(skeleton_setup(model), end, offset_w, contact_w, skeleton);
   if (shares_by_ratios(law)) {
     return distribute_by_ratios(model.params.youngs_modulus_Pa, force_on_body_w, skeleton);
   }

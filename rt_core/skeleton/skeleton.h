@@ -99,6 +99,10 @@ bool distribute_by_ratios(Real youngs_modulus_Pa, Vec3 force_on_body_w, Skeleton
 bool solve_skeleton(const Model& model, std::span<const Vec3> offset_w, Vec3 contact_w, Vec3 force_on_body_w,
                     Skeleton& skeleton) PALPATE_RT;
 
+// The same on ends of the caller's choice instead of the model's anchors (at most kMaxAnchors are used).
+bool solve_skeleton_on(const Model& model, std::span<const Anchor> end, std::span<const Vec3> offset_w, Vec3 contact_w,
+                       Vec3 force_on_body_w, Skeleton& skeleton) PALPATE_RT;
+
 // Displacement of anchor `index` (< count) under its beam's share of the force; zero for a fixed anchor.
 inline Vec3 anchor_displacement(const Skeleton& skeleton, const Anchor& anchor, std::int32_t index) PALPATE_RT {
   if (anchor.fixed != 0) return {};

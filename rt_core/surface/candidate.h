@@ -92,8 +92,8 @@ struct DescentResult {
 bool land(const Model& model, const Surface& surface, Vec3 p, Candidate& best) PALPATE_RT;
 
 // Improves `best`, whose distance2 bounds the search and whose ceiling is up to date, until no triangle is nearer.
-// Bound: kMaxQueryNodes nodes of four children, kMaxQueryTriangles and one node's triangles, kMaxTraversalStack pending
-// nodes.
-DescentResult descend(const Model& model, const Surface& surface, Vec3 p, Candidate& best) PALPATE_RT;
+// Bound: `most` nodes of four children, as many triangles and one node's, kMaxTraversalStack pending nodes.
+DescentResult descend(const Model& model, const Surface& surface, Vec3 p, std::int32_t most,
+                      Candidate& best) PALPATE_RT;
 
 }  // namespace palpate

@@ -120,10 +120,10 @@ bool search_ring(const Surface& surface, Vec3 p, Candidate& best) PALPATE_RT {
 
 // Improves `best`, which holds a measured triangle (its ceiling need not be up to date; it is afterwards when kNone is
 // returned). The proof rests on Triangle::clear_*: see measure_clearance in the scene compiler. The price does not
-// depend on the size of the mesh. Bound: kMaxWalk fans and two rings, kMaxWalkWork.
-Proof walk(const Surface& surface, Vec3 p, Candidate& best) PALPATE_RT {
+// depend on the size of the mesh. Bound: kMaxWalk fans and two rings, `most_work` and what a ring or fan adds.
+Proof walk(const Surface& surface, Vec3 p, std::int32_t most_work, Candidate& best) PALPATE_RT {
   bool searched = false;  // a ring, without a certificate: dear, so a walk that needs a second gives up
-  const std::int32_t most_looked = best.looked + kMaxWalkWork;
+  const std::int32_t most_looked = best.looked + most_work;
   for (std::int32_t step = 0; step < kMaxWalk && best.looked < most_looked; ++step) {
     const std::int32_t centre = best.triangle;
     const Certificate found = certificate(surface, p, best);
@@ -190,8 +190,8 @@ Vec3 pseudo_normal(const Model& model, std::int32_t triangle, Feature feature) P
   return other < 0 ? unit : unit + unit_or(face_normal(model, other), {});
 }
 
-SurfacePoint closest_surface_point(const Model& model, Vec3 p, double search_radius_m,
-                                   std::int32_t warm_triangle) PALPATE_RT {
+SurfacePoint closest_surface_point(const Model& model, Vec3 p, double search_radius_m, std::int32_t warm_triangle,
+                                   std::int32_t most_searched) PALPATE_RT {
   SurfacePoint result;
   if (!is_finite(p)) return result;
   Candidate best;
@@ -201,11 +201,11 @@ SurfacePoint closest_surface_point(const Model& model, Vec3 p, double search_rad
   const auto triangles = static_cast<std::int32_t>(model.triangle.size());
   Proof proof = Proof::kNone;
   if (warm_triangle >= 0 && warm_triangle < triangles && keep_nearer(surface, p, warm_triangle, best)) {
-    proof = walk(surface, p, best);
+    proof = walk(surface, p, kMaxWarmWork, best);
   }
-  if (proof == Proof::kNone && land(model, surface, p, best)) proof = walk(surface, p, best);
+  if (proof == Proof::kNone && land(model, surface, p, best)) proof = walk(surface, p, kMaxLandedWork, best);
   if (proof == Proof::kNone) {
-    const DescentResult descent = descend(model, surface, p, best);
+    const DescentResult descent = descend(model, surface, p, most_searched, best);
     result.nodes = descent.nodes;
     best.looked += descent.nodes;
     result.stack_high_water = descent.stack_high_water;

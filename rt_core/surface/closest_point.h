@@ -12,14 +12,16 @@ namespace palpate {
 // 3 thousand to 1 million triangles, 2026-11-21); only points near the medial axis, where much of the surface is
 // equally far, need more. Past the cap the nearest point so far is returned, marked truncated:
 // Status::kTraversalTruncated.
-inline constexpr std::int32_t kMaxQueryNodes = 512;
-// Triangles one search of the hierarchy may look at. A fan of slivers puts thousands into boxes that all hold its
-// centre: on the axis of a cylinder of 600 thousand triangles a query took 240,128 instructions (2026-11-22).
-inline constexpr std::int32_t kMaxQueryTriangles = 512;
-// Triangles a walk over neighbours may look at before it gives up: 20 steps of ordinary fans.
-inline constexpr std::int32_t kMaxWalkWork = 256;
+// Triangles besides, likewise: a fan of slivers puts thousands into boxes that all hold its centre; on the axis of a
+// cylinder of 600 thousand triangles a query took 240,128 instructions (2026-11-22).
+inline constexpr std::int32_t kMaxSearched = 512;
+// Triangles a walk over neighbours may look at before it gives up: from the last tick's triangle, which is near or else
+// of no use, and from a leaf straight down the hierarchy. With 256 for both, a tool thrown about took 62,737
+// instructions on the ring instead of 54,500 (2026-11-23).
+inline constexpr std::int32_t kMaxWarmWork = 24;
+inline constexpr std::int32_t kMaxLandedWork = 48;
 // Boxes and triangles one query looks at in all: two walks and the fan or ring in which each gives up (3 kMaxFan), the
-// way down to a leaf, and the search with its last node's 16 triangles: 2 (256 + 72) + 68 + 512 + 512 + 16.
+// way down to a leaf, and the search with its last node's 16 triangles: 64 + 128 + 2 * 72 + 68 + 512 + 512 + 16.
 inline constexpr std::int32_t kMaxQueryWork = 2048;
 // Triangles that may meet in one vertex: no query could look at more. Those about the poles of a body of four million
 // triangles are 2,000. Refused when the body is read and when its image is loaded.
@@ -53,9 +55,10 @@ struct SurfacePoint {
 // Closest rest-surface point within search_radius_m (any value; larger than 1e9 means unlimited) of p (world, m).
 // `warm_triangle` (or -1) only saves work: unless truncated, the answer is a function of p alone, because equally near
 // triangles are decided by index and no box or cone that could hold one is skipped. Sign by angle-weighted
-// pseudo-normals (Baerentzen & Aanaes 2005). A p that is not finite is not found. Bound: kMaxQueryWork.
-SurfacePoint closest_surface_point(const Model& model, Vec3 p, double search_radius_m,
-                                   std::int32_t warm_triangle) PALPATE_RT;
+// pseudo-normals (Baerentzen & Aanaes 2005). A p that is not finite is not found. `most_searched`:
+// nodes the hierarchy's search may open, and triangles it may look at. Bound: kMaxQueryWork.
+SurfacePoint closest_surface_point(const Model& model, Vec3 p, double search_radius_m, std::int32_t warm_triangle,
+                                   std::int32_t most_searched = kMaxSearched) PALPATE_RT;
 
 // Outward pseudo-normal (not unit) of a feature of a triangle: face normal, sum of both unit face normals on an edge,
 // Model::vertex_normal at a vertex.

@@ -105,13 +105,13 @@ class Descent {
                                                                                             best_(best),
                                                                                             bound_(best.bound()) {}
 
-  DescentResult run() PALPATE_RT {
+  DescentResult run(std::int32_t most) PALPATE_RT {
     DescentResult result;
     Pending next{0, 0};
     std::int32_t opened = 0;
-    const std::int32_t most_looked = best_.looked + kMaxQueryTriangles;
-    do {  // bound: kMaxQueryNodes
-      if (opened == kMaxQueryNodes || best_.looked >= most_looked) {
+    const std::int32_t most_looked = best_.looked + most;
+    do {  // bound: most
+      if (opened == most || best_.looked >= most_looked) {
         overflow_distance2_ = min_of(overflow_distance2_, static_cast<double>(next.distance2));
         break;
       }
@@ -214,8 +214,9 @@ bool land(const Model& model, const Surface& surface, Vec3 p, Candidate& best) P
   return nearer;
 }
 
-DescentResult descend(const Model& model, const Surface& surface, Vec3 p, Candidate& best) PALPATE_RT {
-  return Descent(model, surface, p, best).run();
+DescentResult descend(const Model& model, const Surface& surface, Vec3 p, std::int32_t most,
+                      Candidate& best) PALPATE_RT {
+  return Descent(model, surface, p, best).run(most);
 }
 
 }  // namespace palpate

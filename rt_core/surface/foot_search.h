@@ -8,6 +8,9 @@ namespace palpate::foot {
 
 // An area coordinate this far below zero still counts as on the edge.
 inline constexpr Real kOutside = 1e-9;
+// One this far below zero will not come back in two more steps: the triangle is left at once. A tip that crosses five
+// triangles in a tick took a fifth less (ring, thrown about: 50,500 -> 46,800 instructions, 2026-11-23).
+inline constexpr Real kFarOutside = -0.25;
 // Newton has converged when neither the foot nor the height moves by more than this: far below an atom.
 inline constexpr Real kStill_m = 1e-14;
 
@@ -45,11 +48,12 @@ inline Step newton_step(const Corners& k, Vec3 p, const Place& at) PALPATE_RT {
   return step;
 }
 
+inline Real least_coordinate(const Place& at) PALPATE_RT { return min_of(min_of(1.0 - at.b - at.c, at.b), at.c); }
+
 // Edge to cross: that of the most negative coordinate; -1 when the foot is inside. Edge k joins corners k and k + 1, so
 // it is left through the coordinate of corner k + 2.
 inline int edge_to_cross(const Place& at) PALPATE_RT {
-  const Real a = 1.0 - at.b - at.c;
-  const Real least = min_of(min_of(a, at.b), at.c);
+  const Real a = 1.0 - at.b - at.c, least = least_coordinate(at);
   if (least >= -kOutside) return -1;
   return least == at.c ? 0 : least == a ? 1 : 2;
 }
@@ -105,10 +109,12 @@ inline SmoothFoot foot_at(const Corners& k, std::int32_t triangle, const Place& 
 }
 
 // As smooth_foot(), on the surface whose corners `corners_of(triangle)` gives, from the foot of `near_w`. The last step
-// is at most `still_m`; what is left then is its square over the radius of the surface. `steps`: counts them.
+// is at most `still_m`; what is left then is its square over the radius of the surface. At most `most_crossed` edges
+// are crossed. `steps`: counts Newton's.
 template <class CornersOf>
 SmoothFoot search(const Model& model, const CornersOf& corners_of, Vec3 p, std::int32_t triangle, Vec3 near_w,
-                  Real still_m = kStill_m, std::int32_t* steps = nullptr) PALPATE_RT {
+                  Real still_m = kStill_m, std::int32_t most_crossed = kFootWalk,
+                  std::int32_t* steps = nullptr) PALPATE_RT {
   if (triangle < 0 || static_cast<std::size_t>(triangle) >= model.corner_normal.size() || !is_finite(p)) return {};
   Corners corners = corners_of(triangle);
   Place at = place_on(corners, near_w, 0.0);
@@ -124,16 +130,17 @@ SmoothFoot search(const Model& model, const CornersOf& corners_of, Vec3 p, std::
     at.c += step.dc;
     at.t += step.dt;
     on_this += 1;
-    if (!still && on_this < 3) continue;
+    const bool outside = least_coordinate(at) < kFarOutside;
+    if (!still && !outside && on_this < 3) continue;
     const int edge = edge_to_cross(at);
     if (edge < 0) {
       if (still) return foot_at(corners, triangle, at, step);
       continue;
     }
-    const std::int32_t next = walked < kFootWalk ? across(model, triangle, edge) : -1;
+    const std::int32_t next = walked < most_crossed ? across(model, triangle, edge) : -1;
     if (next < 0) {
       SmoothFoot lost;
-      lost.state = walked < kFootWalk ? FootState::kEdge : FootState::kFar;
+      lost.state = walked < most_crossed ? FootState::kEdge : FootState::kFar;
       return lost;
     }
     const Vec3 foot = flat_foot(corners, at);

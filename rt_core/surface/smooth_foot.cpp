@@ -23,7 +23,7 @@ SmoothFoot smooth_foot(const Model& model, Vec3 p, std::int32_t triangle) PALPAT
   std::int32_t steps = 0;
   SmoothFoot foot = foot::search(
       model, [&model](std::int32_t t) PALPATE_RT { return corners_of(model, t); }, p, triangle, p, foot::kStill_m,
-      &steps);
+      kFootWalk, &steps);
   foot.steps = steps;
   return foot;
 }

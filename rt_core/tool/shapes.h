@@ -34,28 +34,40 @@ inline std::span<const Vec3> hull_of(const Model& model, const ToolPiece& piece)
                                      static_cast<std::size_t>(piece.hull_count));
 }
 
+// The faces of one piece; empty unless it is a kHull with a volume.
+inline std::span<const HullFace> faces_of(const Model& model, const ToolPiece& piece) PALPATE_RT {
+  if (piece.shape != PieceShape::kHull || piece.face_count <= 0) return {};
+  return model.hull_face.subspan(static_cast<std::size_t>(piece.first_face),
+                                 static_cast<std::size_t>(piece.face_count));
+}
+
 // Gap of `point` (piece frame) from the outer surface of the piece: core and margin. Exact inside and outside; where
 // two features are equally near (on an axis, on a bisector) one of them, always the same. One point, or four at a time
-// with the same bits. Shapes without a closed form (kHasGap) give kHuge. Bound: constant.
+// with the same bits. `face` holds the piece's faces (kHull only; without them the gap is kHuge). Bound: face.size().
 template <class Vector>
-[[gnu::always_inline]] inline PieceGapOf<Vector> piece_gap(const ToolPiece& piece, const Vector& p) PALPATE_RT {
+[[gnu::always_inline]] inline PieceGapOf<Vector> piece_gap(const ToolPiece& piece, const Vector& p,
+                                                           std::span<const HullFace> face = {}) PALPATE_RT {
   switch (piece.shape) {
 #define PALPATE_SHAPE(name, word, Shape) \
   case PieceShape::name:                 \
-    return Shape::gap(piece, p);
+    return Shape::gap(piece, face, p);
     PALPATE_PIECE_SHAPES(PALPATE_SHAPE)
 #undef PALPATE_SHAPE
   }
-  return HullShape::gap(piece, p);
+  return HullShape::gap(piece, face, p);
 }
 
-inline PieceGap piece_gap(const ToolPiece& piece, Vec3 p) PALPATE_RT { return piece_gap<Vec3>(piece, p); }
+inline PieceGap piece_gap(const ToolPiece& piece, Vec3 p, std::span<const HullFace> face = {}) PALPATE_RT {
+  return piece_gap<Vec3>(piece, p, face);
+}
 
-// Whether piece_gap is a distance for this shape.
-constexpr bool has_gap(PieceShape shape) PALPATE_RT {
-#define PALPATE_SHAPE(name, word, Shape) (shape == PieceShape::name && Shape::kHasGap) ||
-  return PALPATE_PIECE_SHAPES(PALPATE_SHAPE) false;
-#undef PALPATE_SHAPE
+// No more than the gap, for a search that only asks whether it is small: of a hull the distance from its planes, of all
+// others the gap itself.
+template <class Vector>
+[[gnu::always_inline]] inline auto least_gap(const ToolPiece& piece, const Vector& p,
+                                             std::span<const HullFace> face) PALPATE_RT {
+  if (piece.shape == PieceShape::kHull) return HullShape::least_gap(piece, face, p);
+  return piece_gap(piece, p).gap_m;
 }
 
 }  // namespace palpate

@@ -14,6 +14,16 @@ constexpr std::int32_t kDof = 6;
 // seat, alternated by 0.8 N for as long as it was dragged (2026-11-22).
 constexpr Real kSwingCalm = 4;
 
+// How far the tool may go by itself, of the coupling's longest stretch, when the hand goes `hand` of it. Friction that
+// may give energy back needs the wide step: held to the narrow one its surplus grew to kUnstable in a slide of
+// heart_compass_paper (2026-11-23). While no force is rendered there is nothing to step, and what asks whether the tool
+// starts inside the body must not wait until it has come out.
+Real own_share(const ModelParams& p, Mode mode, Real hand) PALPATE_RT {
+  const bool active = p.friction_law == FrictionLaw::kPaper || p.friction_law == FrictionLaw::kPreslidingPaper;
+  return active || mode != Mode::kForce ? kToolStepShare
+                                        : clamp_to(kFollowShare * hand, kCalmStepShare, kToolStepShare);
+}
+
 // Cholesky factor of contact_stiffness + diag(coupling). Returns false when singular.
 bool factor(const Model& model, const double (&contact_stiffness)[36], Real (&matrix)[36]) PALPATE_RT {
   __builtin_memcpy(matrix, contact_stiffness, sizeof matrix);
@@ -124,13 +134,14 @@ Pose within_step(const Model& model, const State& state, const Pose& tool_w, std
   const ModelParams& p = model.params;
   const Pose& from = state.safety.tool_corrected_w;
   const Twist step = twist_between(from, tool_w), hand = twist_between(state.device_previous_w, state.device_w);
-  const Real allowed = kToolStepShare / (1 + kSwingCalm * state.safety.swings);
-  const Real most_m = allowed * p.force_max_N / p.coupling_N_per_m + norm(hand.translation_m);
-  const Real length_m = norm(step.translation_m);
+  const Real reach_m = p.force_max_N / p.coupling_N_per_m, reach_rad = p.torque_max_Nm / p.coupling_Nm_per_rad;
+  const Real way_m = norm(hand.translation_m), way_rad = norm(hand.rotation_rad);
+  const Real fast = max_of(reach_m > 0 ? way_m / reach_m : 0, reach_rad > 0 ? way_rad / reach_rad : 0);
+  const Real allowed = own_share(p, state.safety.mode, fast) / (1 + kSwingCalm * state.safety.swings);
+  const Real most_m = allowed * reach_m + way_m, length_m = norm(step.translation_m);
   Real share = length_m > most_m ? most_m / length_m : 1;
-  if (p.torque_max_Nm > 0) {
-    const Real most_rad = allowed * p.torque_max_Nm / p.coupling_Nm_per_rad + norm(hand.rotation_rad);
-    const Real turn_rad = norm(step.rotation_rad);
+  if (reach_rad > 0) {
+    const Real most_rad = allowed * reach_rad + way_rad, turn_rad = norm(step.rotation_rad);
     if (turn_rad > most_rad) share = min_of(share, most_rad / turn_rad);
   }
   if (!(share < 1)) return tool_w;

@@ -45,4 +45,26 @@ std::string certificate_text(std::span<const std::byte> file) {
   return force_text(certificate.place) + tick_text(certificate.tick);
 }
 
+Json tick_json(const TickCertificate& tick) {
+  return {{"dearest_instructions", tick.tick_instructions},
+          {"ticks", tick.ticks},
+          {"touched_image_bytes", tick.image_bytes},
+          {"touched_state_bytes", tick.state_bytes},
+          {"touched_scratch_bytes", tick.scratch_bytes}};
+}
+
+Json certificate_json(std::span<const std::byte> file) {
+  const Certificate certificate = certificate_of(file);
+  Json json = {{"force", nullptr}, {"tick", nullptr}};
+  for (const CheckedPlace& place : certificate.place)
+    json["force"].push_back({{"place_m", {place.place_m.x, place.place_m.y, place.place_m.z}},
+                             {"radius_m", place.radius_m},
+                             {"depth_m", place.depth_m},
+                             {"reference_N", place.reference_N},
+                             {"force_N", place.force_N},
+                             {"worst_error", place.worst_error}});
+  if (certificate.tick != nullptr) json["tick"] = tick_json(*certificate.tick);
+  return json;
+}
+
 }  // namespace palpate

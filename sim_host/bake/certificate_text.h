@@ -6,10 +6,17 @@
 #include <span>
 #include <string>
 
+#include "sim_host/json_output.h"
+
 namespace palpate {
+
+struct TickCertificate;
 
 // Of a whole file that was opened.
 bool is_certified(std::span<const std::byte> file);
 std::string certificate_text(std::span<const std::byte> file);
+// Keys "force" and "tick", null where nothing is certified.
+Json certificate_json(std::span<const std::byte> file);
+Json tick_json(const TickCertificate& tick);
 
 }  // namespace palpate

@@ -11,6 +11,7 @@
 #include "sim_host/bake/image_dump.h"
 #include "sim_host/bake/image_file.h"
 #include "sim_host/cli.h"
+#include "sim_host/json_output.h"
 
 namespace palpate {
 
@@ -19,23 +20,44 @@ namespace {
 struct BakeOptions {
   std::string scene, output, dump;
   SceneOverlays overlays;
-  bool report = false, schema = false;
+  bool report = false, schema = false, json = false;
   unsigned jobs = 0;
 };
 
-int dump_image(const std::string& path) {
+int dump_image(const std::string& path, Json& json) {
   const ImageFile image(path);
-  fmt::print("{}", image_dump(*reinterpret_cast<const ImageHeader*>(image.bytes().data()), image.model()));
+  const auto& header = *reinterpret_cast<const ImageHeader*>(image.bytes().data());
+  json.update(image_json(header, image.model()));
+  fmt::print("{}", image_dump(header, image.model()));
   return kExitOk;
 }
 
-int bake(const BakeOptions& options) {
+void fill(Json& json, const BakeOptions& options, const std::string& output, const CompileReport& report) {
+  json.update({{"scene", options.scene},
+               {"image", output},
+               {"name", report.name},
+               {"image_bytes", report.image_bytes},
+               {"triangles", report.triangles},
+               {"vertices", report.vertices},
+               {"volume_m3", report.volume_m3},
+               {"surface_m2", report.surface_m2},
+               {"mass_kg", report.mass_kg},
+               {"fem_nodes", report.fem_nodes},
+               {"tool_points", report.tool_points},
+               {"coupling_N_per_m", report.coupling_N_per_m},
+               {"coupling_Nm_per_rad", report.coupling_Nm_per_rad},
+               {"model", report.model},
+               {"warnings", report.warnings}});
+}
+
+int bake(const BakeOptions& options, Json& json) {
   const std::string output =
       options.output.empty() ? std::filesystem::path(options.scene).stem().string() + ".pal" : options.output;
   const BakeRun run{isatty(STDERR_FILENO) != 0 ? progress_bar(stderr) : Progress{}, options.jobs};
   const CompileResult result = compile_scene(load_scene(options.scene, options.overlays), run);
   std::string error;
   if (!save_image(output, result.bytes, error)) throw std::runtime_error(output + ": " + error);
+  fill(json, options, output, result.report);
   if (options.report) fmt::print("{}", report_text(result.report));
   if (!options.report) {
     for (const std::string& line : result.report.model) fmt::print("model   {}\n", line);
@@ -46,14 +68,14 @@ int bake(const BakeOptions& options) {
   return kExitOk;
 }
 
-int run_bake(const BakeOptions& options) {
+int run_bake(const BakeOptions& options, Json& json) {
   if (options.schema) {
     fmt::print("{}", schema_markdown());
     return kExitOk;
   }
-  if (!options.dump.empty()) return dump_image(options.dump);
+  if (!options.dump.empty()) return dump_image(options.dump, json);
   if (options.scene.empty()) throw std::runtime_error("bake: name a scene, --dump IMAGE or --schema (see --help)");
-  return bake(options);
+  return bake(options, json);
 }
 
 }  // namespace
@@ -79,9 +101,11 @@ void add_bake_command(CLI::App& app, int& exit_code) {
       ->capture_default_str()
       ->check(CLI::Range(0U, 256U));
   auto* dump = command->add_option("--dump", options->dump, "print the contents of an image instead")->excludes(scene);
+  add_json_flag(*command, options->json);
   command->add_flag("--schema", options->schema, "print all keys of a scene file, as Markdown, instead")
       ->excludes(scene)
-      ->excludes(dump);
+      ->excludes(dump)
+      ->excludes(command->get_option("--json"));
   command->footer(
       "Examples:\n"
       "  palpate bake config/scenes/ellipsoid_mallet.toml -o mallet.pal --report\n"
@@ -89,7 +113,9 @@ void add_bake_command(CLI::App& app, int& exit_code) {
       "  palpate bake config/scenes/tools_on_cylinder.toml --set body.material.youngs_modulus_Pa=1e6\n"
       "  palpate bake --dump mallet.pal\n"
       "  palpate bake --schema > scene_keys.md");
-  command->callback([options, &exit_code] { exit_code = run_bake(*options); });
+  command->callback([options, &exit_code] {
+    exit_code = run_with_json(options->json, "bake", [&](Json& json) { return run_bake(*options, json); });
+  });
 }
 
 }  // namespace palpate

@@ -20,15 +20,20 @@ struct ExplainOptions {
   std::string scene;
   SceneOverlays overlays;
   std::string profile;
+  bool json = false;
 };
 
-int run_explain(const ExplainOptions& options) {
+int run_explain(const ExplainOptions& options, Json& json) {
   const SceneModel scene(options.scene, options.overlays);
   const std::int32_t budget = scene.scene() ? scene.scene()->budget_instructions : 0;
+  json["scene"] = options.scene;
+  json.update(explain_json(scene.model(), budget));
+  json["certificate"] = certificate_json(scene.bytes());
   fmt::print("{}{}", explain(scene.model(), budget), certificate_text(scene.bytes()));
   if (options.profile.empty()) return kExitOk;
   DeviceProfile profile;
   const std::string refusal = refuse_profile(false, "", options.profile, scene.model().params, &profile);
+  if (!profile.name.empty()) json["device"] = {{"profile", profile.name}, {"refused", refusal}};
   if (!profile.name.empty()) fmt::print("device  {}\n", profile_text(profile, scene.model().params));
   if (refusal.empty()) return kExitOk;
   if (profile.name.empty()) throw std::runtime_error(refusal);
@@ -53,7 +58,10 @@ void add_explain_command(CLI::App& app, int& exit_code) {
       "  palpate explain config/scenes/half_shell.toml\n"
       "  palpate explain config/scenes/heart_compass_paper.toml --set coupling.law=coupled\n"
       "  palpate explain mallet.pal");
-  command->callback([options, &exit_code] { exit_code = run_explain(*options); });
+  add_json_flag(*command, options->json);
+  command->callback([options, &exit_code] {
+    exit_code = run_with_json(options->json, "explain", [&](Json& json) { return run_explain(*options, json); });
+  });
 }
 
 }  // namespace palpate

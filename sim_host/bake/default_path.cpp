@@ -1,6 +1,8 @@
 #include "sim_host/bake/default_path.h"
 
 #include <algorithm>
+#include <stdexcept>
+#include <string>
 
 #include "config/body/mesh.h"
 
@@ -42,6 +44,17 @@ bool add_default_path(SceneDesc& scene, const Model& model) {
   add(9, slid + Vec3{0, kGap_m, 0});
   add(10, above);
   return true;
+}
+
+PathDesc path_of_image(const Model& model) {
+  SceneDesc scene;
+  scene.articulation = model.params.articulation;
+  scene.contact.max_depth_m = model.params.max_depth_m;
+  if (!add_default_path(scene, model))
+    throw std::runtime_error(std::string(model.name) +
+                             ": an image holds no motion, and how fingers close is not to be guessed; name the scene's "
+                             ".toml, or give --path CSV");
+  return scene.path;
 }
 
 }  // namespace palpate

@@ -10,5 +10,7 @@ namespace palpate {
 // Gives `scene`, baked as `model`, that motion if it has none; true when it did. Rigid tools only: how fingers close is
 // the scene's to say.
 bool add_default_path(SceneDesc& scene, const Model& model);
+// That motion for an image, which holds none. Throws std::runtime_error for a tool with joints.
+PathDesc path_of_image(const Model& model);
 
 }  // namespace palpate

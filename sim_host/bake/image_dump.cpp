@@ -43,6 +43,7 @@ void extend(Range& range, const PatchWeight& p) {
   for (const double w : p.weight) range.add(w);
 }
 void extend(Range& range, const ToolPiece& p) { range.add(p.pose_tool.position_m); }
+void extend(Range& range, const HullFace& f) { range.add(f.offset_m); }
 void extend(Range& range, const Joint& j) { range.add(j.lowest), range.add(j.highest); }
 void extend(Range& range, const Pose& p) { range.add(p.position_m); }
 void extend(Range& range, const ToolPoint& p) { range.add(p.position_tool_m); }
@@ -74,6 +75,24 @@ std::string array_row(const char* name, std::span<const T> values, const char* f
   const std::string spread = range.any ? fmt::format("{:.5g} .. {:.5g}", range.low, range.high) : "-";
   return fmt::format("  {:<16}{:>10}{:>12}  {:<24}{:<7}{}\n", name, values.size(), values.size_bytes(), spread, frame,
                      meaning);
+}
+
+template <typename T>
+Json array_json(const char* name, std::span<const T> values, const char* frame, const char* meaning) {
+  Range range;
+  for (const T& value : values) extend(range, value);
+  Json json = {{"name", name}, {"elements", values.size()}, {"bytes", values.size_bytes()}};
+  if (range.any) json.update({{"lowest", range.low}, {"highest", range.high}});
+  json.update({{"frame", frame}, {"meaning", meaning}});
+  return json;
+}
+
+template <class T>
+Json value_json(T value) {
+  if constexpr (Choice<T>)
+    return word_of(value);
+  else
+    return value;
 }
 
 // A choice by its word.
@@ -111,6 +130,28 @@ std::string image_dump(const ImageHeader& header, const Model& model) {
   PALPATE_MODEL_ARRAYS(PALPATE_ROW)
 #undef PALPATE_ROW
   return text;
+}
+
+Json image_json(const ImageHeader& header, const Model& model) {
+  Json json = {{"name", std::string(header.name, strnlen(header.name, sizeof header.name))},
+               {"version", header.version},
+               {"image_bytes", header.total_bytes},
+               {"layout_hash", fmt::format("{:016x}", header.layout_hash)},
+               {"checksum", fmt::format("{:016x}", header.checksum)}};
+#define PALPATE_ROW(type, field, unit, lowest, highest, meaning) \
+  json["parameters"][#field] = value_json(model.params.field);
+#define PALPATE_GROUP(title, PARAMS, methods) PARAMS(PALPATE_ROW)
+  PALPATE_PARAM_GROUPS(PALPATE_GROUP)
+#undef PALPATE_GROUP
+#undef PALPATE_ROW
+#define PALPATE_ROW(field, lowest, highest, methods) json["sizes"][#field] = model.sizes.field;
+  PALPATE_MODEL_SIZES(PALPATE_ROW)
+#undef PALPATE_ROW
+#define PALPATE_ROW(type, field, count, frame, meaning) \
+  json["arrays"].push_back(array_json(#field, model.field, frame, meaning));
+  PALPATE_MODEL_ARRAYS(PALPATE_ROW)
+#undef PALPATE_ROW
+  return json;
 }
 
 }  // namespace palpate

@@ -11,6 +11,9 @@
 
 #include "config/bake/image_writer.h"
 #include "config/scene/progress.h"
+#include "rt_core/stage_cost.h"
+#include "sim_host/bake/certificate_text.h"
+#include "sim_host/bake/default_path.h"
 #include "sim_host/bake/scene_model.h"
 #include "sim_host/certify/tick_certify.h"
 #include "sim_host/cli.h"
@@ -24,27 +27,44 @@ struct CertifyTicksOptions {
   std::string scene, along, output;
   SceneOverlays overlays;
   TickSearchOptions search;
+  bool json = false;
 };
 
-int run_certify_ticks(CertifyTicksOptions& options) {
+void fill(Json& json, const CertifyTicksOptions& options, const Model& model, const Certified& certified) {
+  json["scene"] = options.scene;
+  json.update(tick_json(certified.certificate));
+  json["stated_instructions"] = worst_tick_instructions(model);
+  json["found_by"] = certified.search.found_by;
+  json["seed"] = options.search.seed;
+  json["beyond_stated_ticks"] = certified.search.beyond_stated;
+  json["warm_us"] = certified.times.warm_us;
+  json["cold_us"] = certified.times.cold_us;
+}
+
+int run_certify_ticks(CertifyTicksOptions& options, Json& json) {
   const SceneModel scene(options.scene, options.overlays);
   const Progress bar = isatty(STDERR_FILENO) != 0 ? progress_bar(stderr) : Progress{};
   if (bar) options.search.progress = [&](double share) { bar("ticks", std::min(share, 1.0)); };
   std::vector<TimedPose> path;
   double hand_N_per_m = 0;
-  const std::optional<SceneDesc> described =
-      options.along.empty() ? scene.scene() : std::optional(load_scene(options.along, {}));
+  std::optional<SceneDesc> described = scene.scene();
+  if (!options.along.empty()) {
+    described = load_scene(options.along, {});
+    add_default_path(*described, scene.model());
+  }
   if (described && !described->path.point.empty()) {
     path = scripted_poses(described->path, scene.model().params.period_s);
     hand_N_per_m = described->path.hand_stiffness_N_per_m;
   }
   const Certified certified = certify_ticks(scene.bytes(), path, hand_N_per_m, options.search);
+  fill(json, options, scene.model(), certified);
   fmt::print("{}", certified_text(scene.model(), certified));
   const std::string output =
       options.output.empty() ? std::filesystem::path(options.scene).stem().string() + ".pal" : options.output;
   std::string error;
   if (!save_image(output, with_certificate(scene.bytes(), certified.certificate), error))
     throw std::runtime_error(output + ": " + error);
+  json["image"] = output;
   fmt::print("certified {} -> {}\n", options.scene, output);
   if (certified.search.beyond_stated == 0) return kExitOk;
   fmt::print("{} ticks took more than the image states; bake the scene anew, and report it if that does not help\n",
@@ -74,7 +94,10 @@ void add_certify_command(CLI::App& app, int& exit_code) {
       "  palpate certify config/scenes/ring.toml -o ring.pal\n"
       "  palpate certify ring.pal --along config/scenes/ring.toml\n"
       "  palpate certify mallet.pal --ticks 10000000 --seed 7 -o mallet.pal");
-  command->callback([options, &exit_code] { exit_code = run_certify_ticks(*options); });
+  add_json_flag(*command, options->json);
+  command->callback([options, &exit_code] {
+    exit_code = run_with_json(options->json, "certify", [&](Json& json) { return run_certify_ticks(*options, json); });
+  });
 }
 
 }  // namespace palpate

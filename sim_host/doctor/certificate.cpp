@@ -2,41 +2,26 @@
 #include <fmt/format.h>
 
 #include <iterator>
-#include <nlohmann/json.hpp>
 
 #include "sim_host/build_id.h"
 #include "sim_host/doctor/certify.h"
+#include "sim_host/doctor/doctor_json.h"
 #include "sim_host/latency/cyclictest_format.h"
+#include "sim_host/run/run_json.h"
 #include "sim_host/status_text.h"
 
 namespace palpate {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 const char* verdict_name(CertifyVerdict verdict) {
   if (verdict == CertifyVerdict::kPass) return "PASS";
   return verdict == CertifyVerdict::kFail ? "FAIL" : "INCOMPLETE";
 }
 
-const char* check_name(Verdict verdict) {
-  if (verdict == Verdict::kPass) return "pass";
-  return verdict == Verdict::kFail ? "fail" : "unknown";
-}
-
 double us(std::int64_t ns) { return 1e-3 * static_cast<double>(ns); }
 
-Json stage_json(const Histogram& h) {
-  return {{"count", h.total},       {"p50_us", us(percentile_ns(h, 0.5))}, {"p99_9_us", us(percentile_ns(h, 0.999))},
-          {"max_us", us(h.max_ns)}, {"tick_of_max", h.cycle_of_max},       {"overflows", h.overflow}};
-}
-
 Json machine_json(const MachineIdentity& m) {
-  Json checks = Json::array();
-  for (const DoctorItem& item : m.checks) {
-    checks.push_back({{"item", item.name}, {"verdict", check_name(item.verdict)}, {"found", item.found}});
-  }
   return {{"host", m.host},
           {"cpu_model", m.cpu_model},
           {"cpus", m.cpus},
@@ -47,38 +32,7 @@ Json machine_json(const MachineIdentity& m) {
           {"isolated_cpus", m.isolated_cpus},
           {"governor", m.governor},
           {"boot_options", m.boot_options},
-          {"checks", checks}};
-}
-
-Json stages_json(const RunSummary& s) {
-  Json stages = Json::object();
-  stages["wake_up"] = stage_json(s.wake);
-  stages["receive"] = stage_json(s.receive);
-  stages["compute"] = stage_json(s.compute);
-  for (int i = 0; i < kStageCount; ++i) {
-    stages[fmt::format("compute.{}", stage_name(static_cast<Stage>(i)))] = stage_json(s.stage[i]);
-  }
-  stages["transmit"] = stage_json(s.transmit);
-  stages["deadline_to_sent"] = stage_json(s.sent);
-  stages["publish"] = stage_json(s.publish);
-  stages["whole_tick"] = stage_json(s.busy);
-  return stages;
-}
-
-Json worst_json(const WorstTicks& worst) {
-  Json ticks = Json::array();
-  for (std::int32_t i = 0; i < worst.count; ++i) {
-    const TickTiming& t = worst.record[i].timing;
-    ticks.push_back({{"tick", worst.record[i].tick},
-                     {"whole_us", us(busy_ns(t))},
-                     {"wake_up_us", us(t.wake_latency_ns)},
-                     {"receive_us", us(t.receive_ns)},
-                     {"compute_us", us(t.compute_ns)},
-                     {"transmit_us", us(t.transmit_ns)},
-                     {"publish_us", us(t.publish_ns)},
-                     {"missed_before", worst.record[i].input.overrun_ticks}});
-  }
-  return ticks;
+          {"checks", items_json(m.checks)}};
 }
 
 const char* load_name(const CertifyOptions& options) { return options.host_load ? "host" : "none"; }

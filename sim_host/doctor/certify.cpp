@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <charconv>
 #include <ctime>
 #include <filesystem>
 #include <fstream>
@@ -152,23 +151,6 @@ std::string certificate_name(const std::string& host, std::int64_t seconds_since
     name += (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ? c : '-';
   return fmt::format("{}-{:04}{:02}{:02}T{:02}{:02}{:02}Z", name, utc.tm_year + 1900, utc.tm_mon + 1, utc.tm_mday,
                      utc.tm_hour, utc.tm_min, utc.tm_sec);
-}
-
-std::optional<double> parse_duration_s(const std::string& text) {
-  double total_s = 0;
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  while (at != end) {
-    double value = 0;
-    const auto [after, status] = std::from_chars(at, end, value, std::chars_format::fixed);
-    if (status != std::errc{} || after == end || !(value >= 0)) return std::nullopt;
-    const double unit_s = *after == 'h' ? 3600 : *after == 'm' ? 60 : *after == 's' ? 1 : 0;
-    if (unit_s == 0) return std::nullopt;
-    total_s += value * unit_s;
-    at = after + 1;
-  }
-  if (!(total_s > 0) || total_s > 31 * 86400.0) return std::nullopt;
-  return total_s;
 }
 
 }  // namespace palpate

@@ -54,7 +54,4 @@ std::string certificate_json(const Certificate& certificate);
 // "palpate-latency-HOST-20261121T040145Z".
 std::string certificate_name(const std::string& host, std::int64_t seconds_since_1970);
 
-// Seconds of "1h", "10m", "30s", "1h30m", "2.5m"; nothing for anything else or zero.
-std::optional<double> parse_duration_s(const std::string& text);
-
 }  // namespace palpate

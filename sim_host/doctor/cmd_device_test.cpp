@@ -13,13 +13,14 @@
 #include "hal/system/device_lock.h"
 #include "sim_host/cli.h"
 #include "sim_host/doctor/device_test.h"
+#include "sim_host/doctor/doctor_json.h"
 
 namespace palpate {
 
 namespace {
 
 // Drives are found, identified and set up as before a run, and none is enabled.
-int run_drives_test(const DeviceAddress& address, const ArmProfile& arm) {
+int run_drives_test(const DeviceAddress& address, const ArmProfile& arm, Json& json) {
   constexpr int kTimeout_ms = 10'000;
   constexpr double kUsualPeriod_s = 1e-3;
   std::string error;
@@ -34,18 +35,20 @@ int run_drives_test(const DeviceAddress& address, const ArmProfile& arm) {
   const std::string wrong = device.start([&clock] { clock.wait_until(clock.now_ns() + 1'000'000); });
   drives->transmit({});
   const std::string found = fmt::format("{} drives are those of the profile, with their watchdogs on", arm.axes.size());
-  fmt::print(
-      "{}",
-      doctor_table({{"drives", wrong.empty() ? Verdict::kPass : Verdict::kFail, wrong.empty() ? found : wrong, ""}}));
-  fmt::print("No motor was enabled.\n");
+  const std::vector<DoctorItem> rows{
+      {"drives", wrong.empty() ? Verdict::kPass : Verdict::kFail, wrong.empty() ? found : wrong, ""}};
+  json["items"] = items_json(rows);
+  json["fail"] = wrong.empty() ? 0 : 1;
+  fmt::print("{}No motor was enabled.\n", doctor_table(rows));
   return wrong.empty() ? kExitOk : kExitFailed;
 }
 
-int run_device_test(const std::string& device, const std::string& profile) {
+int run_device_test(const std::string& device, const std::string& profile, Json& json) {
   std::string line, error;
   const std::optional<DeviceAddress> address = parse_device_address(device, line, error);
   if (!address) throw std::runtime_error(error);
   fmt::print("{}\n", line);
+  json["device"] = device;
   DeviceLock lock;  // two that command one node are both obeyed, in turn
   if (const std::string name = lock_name(*address); !name.empty()) {
     lock = DeviceLock::take(name, error);
@@ -57,7 +60,7 @@ int run_device_test(const std::string& device, const std::string& profile) {
   if (!profile.empty()) {
     const std::optional<DeviceProfile> known = read_device_profile(profile, error);
     if (!known) throw std::runtime_error(error);
-    if (known->arm) return run_drives_test(*address, *known->arm);
+    if (known->arm) return run_drives_test(*address, *known->arm, json);
   }
   constexpr int kTimeout_ms = 10'000;
   const std::unique_ptr<Transport> transport = open_transport(*address, DeviceSide::kController, kTimeout_ms, error);
@@ -74,6 +77,8 @@ int run_device_test(const std::string& device, const std::string& profile) {
   fmt::print("{}", doctor_table(rows));
   const auto failed =
       std::count_if(rows.begin(), rows.end(), [](const DoctorItem& row) { return row.verdict == Verdict::kFail; });
+  json["items"] = items_json(rows);
+  json["fail"] = failed;
   fmt::print("{} rules: {} broken. No command carried a force.\n", rows.size(), failed);
   return failed == 0 ? kExitOk : kExitFailed;
 }
@@ -82,6 +87,7 @@ int run_device_test(const std::string& device, const std::string& profile) {
 
 void add_device_test_command(CLI::App& app, int& exit_code) {
   auto device = std::make_shared<std::string>(), profile = std::make_shared<std::string>();
+  auto as_json = std::make_shared<bool>(false);
   CLI::App* command = app.add_subcommand(
       "device-test", "Grade a device's firmware by the wire protocol's rules, with zero force throughout");
   command->add_option("ADDRESS", *device, "can:IFACE, usb:/dev/hidrawN or loopback:NAME, with ,classic and ,node=N")
@@ -97,7 +103,11 @@ void add_device_test_command(CLI::App& app, int& exit_code) {
       "  palpate device-test can:can0,classic,node=3\n"
       "  palpate device-test can:can0 --profile arm.toml      # of drives\n"
       "  palpate-device --device loopback:x & palpate device-test loopback:x");
-  command->callback([device, profile, &exit_code] { exit_code = run_device_test(*device, *profile); });
+  add_json_flag(*command, *as_json);
+  command->callback([device, profile, as_json, &exit_code] {
+    exit_code =
+        run_with_json(*as_json, "device-test", [&](Json& json) { return run_device_test(*device, *profile, json); });
+  });
 }
 
 }  // namespace palpate

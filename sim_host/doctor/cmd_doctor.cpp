@@ -3,28 +3,70 @@
 
 #include <fmt/format.h>
 #include "sim_host/cli.h"
+#include "sim_host/cli_checks.h"
 #include "sim_host/doctor/doctor.h"
+#include "sim_host/doctor/doctor_json.h"
+#include "sim_host/doctor/identify.h"
 
 namespace palpate {
 
 namespace {
 
 struct Options {
-  std::string device = "loopback", profile;
+  std::string device = "loopback", profile, identify;
   int cpu = -1;
   int priority = 80;
+  bool json = false;
 };
 
+int measure(const Options& options, Json& json) {
+  if (options.device != "loopback" || options.profile.empty())
+    throw CLI::ValidationError("--identify",
+                               "moves the simulated device alone: leave out --device, and say with "
+                               "--profile FILE which device it is to be");
+  const Identified found = identify_simulated(options.profile, options.identify);
+  json["refused"] = found.refused;
+  if (!found.refused.empty()) {
+    fmt::print("refused: {}\n", found.refused);
+    return kExitFailed;
+  }
+  const DeviceFit& f = found.fit;
+  json["mass_kg"] = f.mass_kg;
+  json["damping_Ns_per_m"] = f.damping_Ns_per_m;
+  json["friction_N"] = f.friction_N;
+  json["encoder_step_m"] = found.encoder_step_m;
+  json["delay_s"] = f.delay_s;
+  fmt::print(
+      "moved by {:.1f} mm with {:.2f} N; {:.1f} um RMS are left unexplained\n"
+      "mass     {:.4g} kg\ndamping  {:.4g} N s/m\nfriction {:.4g} N\nencoder  {:.4g} um\ndelay    {:.3g} ms\n"
+      "wrote    {}\n",
+      1e3 * f.travel_m, found.force_N, 1e6 * f.residual_m, f.mass_kg, f.damping_Ns_per_m, f.friction_N,
+      1e6 * found.encoder_step_m, 1e3 * f.delay_s, options.identify);
+  return kExitOk;
+}
+
 // Returns how many fail.
-int print_summary(const std::vector<DoctorItem>& items) {
+int tell(const std::vector<DoctorItem>& items, Json& json) {
   int failed = 0, unknown = 0;
   for (const DoctorItem& item : items) {
     failed += item.verdict == Verdict::kFail;
     unknown += item.verdict == Verdict::kUnknown;
   }
-  fmt::print("{} items: {} fail, {} unknown. Nothing was changed; Palpate starts either way.\n", items.size(), failed,
-             unknown);
+  json["items"] = items_json(items);
+  json["fail"] = failed;
+  json["unknown"] = unknown;
+  fmt::print("{}{} items: {} fail, {} unknown. Nothing was changed; Palpate starts either way.\n", doctor_table(items),
+             items.size(), failed, unknown);
   return failed;
+}
+
+int run_doctor(const Options& options, Json& json) {
+  std::vector<DoctorItem> items = examine_machine_and_device(options.cpu, options.priority, options.device);
+  const std::vector<DoctorItem> profile = examine_profile(options.device, options.profile);
+  items.insert(items.end(), profile.begin(), profile.end());
+  const std::vector<DoctorItem> heard = listen_to_device(options.device, options.profile);
+  items.insert(items.end(), heard.begin(), heard.end());
+  return tell(items, json) == 0 ? kExitOk : kExitFailed;
 }
 
 }  // namespace
@@ -41,22 +83,20 @@ void add_doctor_command(CLI::App& app, int& exit_code) {
   command->add_option("--priority", options->priority, "SCHED_FIFO priority of the loop")
       ->capture_default_str()
       ->check(CLI::Range(1, 98));
+  command
+      ->add_option("--identify", options->identify,
+                   "instead: measure mass, damping, friction, encoder step and delay by a small motion of a handle "
+                   "that nobody holds (simulated, as --profile says), and write them as a profile (.toml)")
+      ->check(ends_in({".toml"}));
   command->footer(
       "Exits with 1 when an item fails; unknown ones do not count.\n"
-      "Examples:\n  palpate doctor\n  palpate doctor --device can:can0 --profile arm.toml --cpu 3");
+      "Examples:\n  palpate doctor\n  palpate doctor --device can:can0 --profile arm.toml --cpu 3\n"
+      "  palpate doctor --identify measured.toml --profile config/devices/sim-6dof.toml");
+  add_json_flag(*command, options->json);
   command->callback([options, &exit_code] {
-    DoctorSources sources = this_machine();
-    sources.cpu = options->cpu;
-    sources.loop_priority = options->priority;
-    std::vector<DoctorItem> items = examine_machine(sources);
-    const std::vector<DoctorItem> device = examine_device(sources, options->device);
-    items.insert(items.end(), device.begin(), device.end());
-    const std::vector<DoctorItem> profile = examine_profile(options->device, options->profile);
-    items.insert(items.end(), profile.begin(), profile.end());
-    const std::vector<DoctorItem> heard = listen_to_device(options->device, options->profile);
-    items.insert(items.end(), heard.begin(), heard.end());
-    fmt::print("{}", doctor_table(items));
-    exit_code = print_summary(items) == 0 ? kExitOk : kExitFailed;
+    exit_code = run_with_json(options->json, "doctor", [&](Json& json) {
+      return options->identify.empty() ? run_doctor(*options, json) : measure(*options, json);
+    });
   });
 }
 

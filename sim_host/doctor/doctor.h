@@ -41,5 +41,7 @@ std::string doctor_table(const std::vector<DoctorItem>& items);
 std::string failing_items(const std::vector<DoctorItem>& items);
 // DoctorSources that read this machine.
 DoctorSources this_machine();
+// This machine and the device's bus, for a loop of that priority on that processor.
+std::vector<DoctorItem> examine_machine_and_device(int cpu, int loop_priority, const std::string& device);
 
 }  // namespace palpate

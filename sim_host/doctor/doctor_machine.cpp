@@ -182,4 +182,14 @@ DoctorSources this_machine() {
   return sources;
 }
 
+std::vector<DoctorItem> examine_machine_and_device(int cpu, int loop_priority, const std::string& device) {
+  DoctorSources sources = this_machine();
+  sources.cpu = cpu;
+  sources.loop_priority = loop_priority;
+  std::vector<DoctorItem> items = examine_machine(sources);
+  const std::vector<DoctorItem> bus = examine_device(sources, device);
+  items.insert(items.end(), bus.begin(), bus.end());
+  return items;
+}
+
 }  // namespace palpate

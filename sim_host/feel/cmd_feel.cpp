@@ -5,8 +5,10 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <mutex>
 #include <stdexcept>
 
+#include "config/bake/parallel.h"
 #include "sim_host/bake/default_path.h"
 #include "sim_host/bake/scene_model.h"
 #include "sim_host/cli.h"
@@ -14,6 +16,7 @@
 #include "sim_host/feel/device_grid.h"
 #include "sim_host/feel/feel.h"
 #include "sim_host/feel/z_width.h"
+#include "sim_host/json_output.h"
 #include "sim_host/overlay_options.h"
 
 namespace palpate {
@@ -24,7 +27,10 @@ struct FeelCommand {
   std::vector<std::string> scenes, manoeuvres;
   SceneOverlays overlays;
   FeelOptions options;
-  std::string csv, json, markdown, map, grid;
+  std::string csv, markdown, map, grid;
+  bool coarse = false, resume = false;
+  unsigned jobs = 1;
+  JsonOption json;
 };
 
 void write_file(const std::string& path, const std::string& text) {
@@ -42,7 +48,20 @@ std::vector<Manoeuvre> wanted(const FeelCommand& command) {
   return list;
 }
 
-void feel_scene(const FeelCommand& command, const std::string& path, std::vector<FeelRun>& runs, std::string& grid) {
+// The cells that are not in the table yet, shared out to threads; what a row says does not depend on their number.
+void feel_grid(const FeelCommand& command, const Model& model, const SceneDesc& scene, const TouchPlace& place,
+               GridFile& table) {
+  std::vector<GridCell> cells = grid_cells(command.coarse);
+  std::erase_if(cells, [&](const GridCell& cell) { return table.has(scene.name, cell); });
+  std::mutex mutex;
+  for_each_piece(cells.size(), command.jobs, [&](std::size_t i) {
+    run_cell(model, scene, place, cells[i]);
+    const std::lock_guard lock(mutex);
+    table.add(scene.name, cells[i]);
+  });
+}
+
+void feel_scene(const FeelCommand& command, const std::string& path, std::vector<FeelRun>& runs, GridFile& table) {
   const SceneModel compiled(path, command.overlays);
   if (!compiled.scene())
     throw std::runtime_error(path + ": an image names no device and no path; name the scene's .toml");
@@ -53,7 +72,7 @@ void feel_scene(const FeelCommand& command, const std::string& path, std::vector
                              ": feel moves the tool by hand, and here a hand holds the body; leave out device.holds");
   const TouchPlace place = touch_place_of(compiled.model(), scene);
   if (!command.grid.empty()) {
-    grid += grid_markdown(scene.name, device_grid(compiled.model(), scene, place));
+    feel_grid(command, compiled.model(), scene, place, table);
     return;
   }
   for (const Manoeuvre manoeuvre : wanted(command)) {
@@ -68,27 +87,27 @@ void feel_scene(const FeelCommand& command, const std::string& path, std::vector
   }
 }
 
-int run(const FeelCommand& command) {
+int run(const FeelCommand& command, Json& json) {
   if (!command.map.empty()) {
     z_width_plot().save(command.map);
+    json["map"] = command.map;
     fmt::print("wrote   {}\n", command.map);
   }
   std::vector<FeelRun> runs;
-  std::string grid =
-      "| scene | b N s/m | tau ms | coupling N/m | felt N/mm | port mJ | hand mJ | runs that swing | with a fault | "
-      "runs "
-      "|\n|---|---|---|---|---|---|---|---|---|---|\n";
-  for (const std::string& path : command.scenes) feel_scene(command, path, runs, grid);
+  GridFile table(command.grid, command.resume);
+  for (const std::string& path : command.scenes) feel_scene(command, path, runs, table);
   if (!command.grid.empty()) {
-    fmt::print("{}", grid);
-    write_file(command.grid, grid);
+    json["grid"] = command.grid;
+    fmt::print("{}wrote   {}\n", table.text(), command.grid);
   }
   if (runs.empty()) return kExitOk;
   fmt::print("{}", feel_table(runs));
-  if (!command.json.empty()) write_file(command.json, feel_json(runs));
+  json["runs"] = Json::parse(feel_json(runs));
+  if (!command.json.file.empty()) write_file(command.json.file, feel_json(runs));
   if (!command.markdown.empty()) write_file(command.markdown, feel_markdown(runs));
   int failed = 0;
   for (const FeelRun& run : runs) failed += feel_failure(run).empty() ? 0 : 1;
+  json["failed_runs"] = failed;
   fmt::print("{} of {} runs as they should be (docs/stability.md)\n", runs.size() - static_cast<std::size_t>(failed),
              runs.size());
   return failed == 0 ? kExitOk : kExitFailed;
@@ -122,18 +141,23 @@ void add_feel_command(CLI::App& app, int& exit_code) {
   command->add_option("--device", settings->options.device,
                       "NAME=VALUE: a property of the real device or hand (SI units), repeatable");
   command->add_option("--csv", settings->csv, "folder for a table of every tick of every run");
-  command->add_option("--json", settings->json, "write the figures (.json)")->check(ends_in({".json"}));
+  add_json_option(*command, settings->json, "write the runs' figures there");
   command->add_option("--markdown", settings->markdown, "write them as a table (.md)")->check(ends_in({".md"}));
   command
       ->add_option("--grid", settings->grid,
-                   "write the worst over a grid of devices and hands instead (.md); a minute for each scene")
+                   "write the worst over a grid of devices and hands instead (.md); minutes for each scene")
       ->check(ends_in({".md"}));
+  command->add_flag("--coarse", settings->coarse, "of the grid only corners and centre: a tenth of the time");
+  command->add_flag("--resume", settings->resume,
+                    "keep the rows that the grid's file holds, of this program and these scenes");
+  command->add_option("--jobs", settings->jobs, "rows of the grid at a time; 0: as many as there are processors")
+      ->check(CLI::Range(0U, 256U));
   command->add_option("--map", settings->map, "draw which stiffness a device keeps passive (.svg or .png)")
       ->check(ends_in({".svg", ".png"}));
   command->footer(footer());
   command->callback([settings, &exit_code] {
     if (settings->scenes.empty() && settings->map.empty()) throw CLI::RequiredError("SCENES or --map");
-    exit_code = run(*settings);
+    exit_code = run_with_json(settings->json.wanted(), "feel", [&](Json& json) { return run(*settings, json); });
   });
 }
 

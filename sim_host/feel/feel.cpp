@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "rt_core/tick.h"
+#include "sim_host/feel/finger_work.h"
 #include "sim_host/press/pose_csv.h"
 #include "sim_host/run/device_process.h"
 #include "sim_host/run/plant_options.h"
@@ -24,8 +25,9 @@ void set_device(const std::string& text, FeelSetup& setup) {
   const double number = std::strtod(value.c_str(), &end);
   if (value.empty() || *end != '\0' || !(number >= 0 && number <= 1e6))
     throw std::runtime_error(fmt::format("--device {}: expected NAME=VALUE with a number from 0 to 1e6", text));
-  std::string known = " delay_s encoder_rad";
+  std::string known = " delay_s encoder_rad echoes";
   if (name == "delay_s") return static_cast<void>(setup.delay_s = number);
+  if (name == "echoes") return static_cast<void>(setup.echoes = number > 0);
   if (name == "encoder_rad") return static_cast<void>(setup.encoder_rad = number);
 #define PALPATE_SET(member)                                                   \
   if (name == #member) return static_cast<void>(setup.plant.member = number); \
@@ -63,16 +65,23 @@ FeelRun run_feel(const Model& model, const SceneDesc& scene, const TouchPlace& p
   set_manoeuvre(manoeuvre, place, setup);
   const std::vector<TimedPose> scripted = scripted_poses(scene.path, model.params.period_s);
   if (scene.articulation != Articulation::kRigid)
-    setup.joints = [&](double time_s) {  // as the scene closes them, until they hold the body
-      const double row = std::min(time_s, place.approach_s) / model.params.period_s;
+    setup.joints = [&](double time_s) {  // as the scene closes them, but on its own path until they hold the body
+      const double until_s = manoeuvre == Manoeuvre::kPath ? time_s : std::min(time_s, place.approach_s);
+      const double row = until_s / model.params.period_s;
       return scripted[std::min(scripted.size() - 1, static_cast<std::size_t>(row + 0.5))].joints;
     };
   const StatePtr state = make_state(model);
   const ScratchPtr scratch = make_scratch(model);
   FeelMeters meters(model.params, setup.plant.encoder_m);
+  FingerWork fingers(model, *state, *scratch);
   run_feel_loop(
-      setup, [&](const Input& input, Output& output) { tick(model, *state, *scratch, input, output); },
-      [&](const FeelTick& now) {
+      setup,
+      [&](const Input& input, Output& output) {
+        tick(model, *state, *scratch, input, output);
+        fingers.add();
+      },
+      [&](FeelTick now) {
+        now.fingers_J = fingers.work_J();
         meters.add(now);
         if (listen) listen(now);
       });
@@ -84,7 +93,8 @@ FeelRun run_feel(const Model& model, const SceneDesc& scene, const TouchPlace& p
 
 std::string feel_csv_header() {
   return "time_s,handle_x_mm,handle_y_mm,handle_z_mm,tool_x_mm,tool_y_mm,tool_z_mm,force_x_N,force_y_N,force_z_N,"
-         "torque_x_Nm,torque_y_Nm,torque_z_Nm,model_N,depth_mm,stored_J,motor_J,hand_J,mode,stale_ticks,status\n";
+         "torque_x_Nm,torque_y_Nm,torque_z_Nm,model_N,depth_mm,stored_J,motor_J,hand_J,fingers_J,mode,stale_ticks,"
+         "status\n";
 }
 
 std::string feel_csv_row(const FeelTick& tick) {
@@ -92,10 +102,11 @@ std::string feel_csv_row(const FeelTick& tick) {
   const Vec3 f = tick.output.device_w.force_N, m = tick.output.device_w.torque_Nm;
   return fmt::format(
       "{:.4f},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.5f},{:.6g},"
-      "{:.6g},{:.6g},{},{},{}\n",
+      "{:.6g},{:.6g},{:.6g},{},{},{}\n",
       tick.time_s, h.x, h.y, h.z, t.x, t.y, t.z, f.x, f.y, f.z, m.x, m.y, m.z, norm(tick.output.contact_w.force_N),
       1e3 * tick.output.penetration_m, tick.output.energy_J, tick.energy.motor_J, tick.energy.to_hand_J(),
-      mode_name(tick.output.mode), tick.input.stale_ticks, bit_names(status_bit_texts(), tick.output.status));
+      tick.fingers_J, mode_name(tick.output.mode), tick.input.stale_ticks,
+      bit_names(status_bit_texts(), tick.output.status));
 }
 
 }  // namespace palpate

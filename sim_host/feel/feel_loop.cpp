@@ -77,6 +77,8 @@ void run_feel_loop(const FeelSetup& setup, const FeelController& controller, con
     now.energy = plant.energy();
     now.kinetic_J = plant.kinetic_J();
     samples.next(now.time_s, plant, now.input);
+    if (setup.echoes && now.input.stale_ticks == 0)
+      now.input.command_lag = static_cast<std::uint32_t>(n) - plant.obeyed();
     // An operator arms again until it is heard: the edge counts only in a tick with a fresh sample.
     armed = armed || (n > 0 && now.input.stale_ticks == 0);
     now.input.commands = armed ? Command::kArm : 0;

@@ -28,6 +28,7 @@ struct FeelSetup {
   double delay_s = 0;          // from sample to motor; rounded to sub-steps
   double encoder_rad = 0;      // angular quantum about each axis, from the first orientation
   double sample_period_s = 0;  // of the device; 0: the controller's
+  bool echoes = true;          // samples tell which command acted when they were made
   HandPath path;
   std::vector<SampleEvent> event;                     // by time
   std::function<JointCommand(double time_s)> joints;  // empty: none
@@ -41,6 +42,7 @@ struct FeelTick {
   Output output;
   PlantEnergy energy;  // until now
   double kinetic_J = 0;
+  double fingers_J = 0;  // work of driven fingers on the object; the controller's to tell
 };
 
 using FeelController = std::function<void(const Input&, Output&)>;

@@ -98,13 +98,14 @@ void FeelMeters::add_energy(const FeelTick& tick) {
   const bool touching = norm(tick.output.device_w.force_N) > 0;
   if (touching && !touching_) {
     figures_.contacts += 1;
-    port_begin_J_ = tick.energy.motor_J;
-    hand_begin_J_ = tick.energy.to_hand_J();
+    port_begin_J_ = tick.energy.motor_J - tick.fingers_J;
+    hand_begin_J_ = tick.energy.to_hand_J() - tick.fingers_J;
   }
+  figures_.fingers_J = std::max(figures_.fingers_J, tick.fingers_J);
   // The command of the tick before acts until now, so the tick after the last one with force still belongs to it.
   if (touching || touching_) {
-    figures_.port_J = std::max(figures_.port_J, tick.energy.motor_J - port_begin_J_);
-    figures_.hand_J = std::max(figures_.hand_J, tick.energy.to_hand_J() - hand_begin_J_);
+    figures_.port_J = std::max(figures_.port_J, tick.energy.motor_J - tick.fingers_J - port_begin_J_);
+    figures_.hand_J = std::max(figures_.hand_J, tick.energy.to_hand_J() - tick.fingers_J - hand_begin_J_);
   }
   touching_ = touching;
 }

@@ -26,8 +26,9 @@ struct FeelFigures {
   double felt_N_per_m = 0;   // rise of the force over the way of the handle, between half and all of the largest force
   double noise_N = 0;        // RMS at 50 to 500 Hz in the last second
   int contacts = 0;          // times the force rose from zero
-  double port_J = 0;         // most that one contact returned at the motors, more than it was given
-  double hand_J = 0;         // most that reached the hand, after the device's own losses
+  double port_J = 0;         // most that one contact returned at the motors, more than handle and fingers gave it
+  double fingers_J = 0;      // work of driven fingers on the object, at most
+  double hand_J = 0;         // most of that which reached the hand, after the device's own losses
   std::uint32_t status = 0;  // bits seen, together
   std::uint32_t fault = 0;
   int worst_mode = 0;  // of Mode

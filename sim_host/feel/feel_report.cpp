@@ -12,8 +12,9 @@ namespace palpate {
 
 namespace {
 
-constexpr double kStepShareMax = 0.10;  // of the largest force, in one tick: the output's own limit, to rounding
-constexpr double kModelSlack = 2;       // for the tick of a jump of the encoder: the tool is corrected at its end
+constexpr double kStepShareMax =
+    0.10;                          // of the largest force, in one tick; the output keeps below it (kOutputStepShare)
+constexpr double kModelSlack = 2;  // for the tick of a jump of the encoder: the tool is corrected at its end
 
 void fail(std::string& text, const std::string& what) { text += (text.empty() ? "" : ", ") + what; }
 
@@ -67,7 +68,7 @@ std::string feel_failure(const FeelRun& run) {
   const FeelFigures& f = run.figures;
   std::string text;
   if (f.alternations > 0) fail(text, fmt::format("swings in {} ticks", f.alternations));
-  if (f.step_share > kStepShareMax * (1 + 1e-6)) fail(text, fmt::format("steps by {:.0f} %", 100 * f.step_share));
+  if (!(f.step_share < kStepShareMax)) fail(text, fmt::format("steps by {:.0f} %", 100 * f.step_share));
   if (f.model_max_N > kModelSlack * f.force_limit_N) fail(text, fmt::format("winds up to {:.0f} N", f.model_max_N));
   const std::uint32_t wanted = run.manoeuvre == "slow" ? Fault::kSamplesSparse : 0u;  // it must not be rendered
   if (wanted != 0 && f.fault == 0) fail(text, "renders too few samples");
@@ -119,6 +120,7 @@ std::string feel_json(const std::vector<FeelRun>& runs) {
                    {"contacts", f.contacts},
                    {"port_J", f.port_J},
                    {"hand_J", f.hand_J},
+                   {"fingers_J", f.fingers_J},
                    {"status", bit_names(status_bit_texts(), f.status)},
                    {"fault", bit_names(fault_bit_texts(), f.fault)},
                    {"failure", feel_failure(run)}});

@@ -108,6 +108,10 @@ void set_lost(PathMaker& hand, FeelSetup& setup) {
   hand.to(kClear_m, 0.3);
 }
 
+HandPose hand_pose(const PathPoint& point) {
+  return {point.time_s, {point.position_m, rotation_by(point.rotation_rad)}, false};
+}
+
 // The articulated tool's place: the last pose at which its fingers are told to be as closed as they ever are.
 TouchPlace grasped(const SceneDesc& scene) {
   TouchPlace place;
@@ -122,15 +126,33 @@ TouchPlace grasped(const SceneDesc& scene) {
     if (!scene.path.point[i].closing.empty()) now = closing(scene.path.point[i]);
     if (now > most) most = now, held = i;  // the first: before the scene's own sway
   }
-  for (std::size_t i = 0; i <= held; ++i) {
-    const PathPoint& point = scene.path.point[i];
-    place.approach.push_back({point.time_s, {point.position_m, rotation_by(point.rotation_rad)}, false});
-  }
+  for (std::size_t i = 0; i <= held; ++i) place.approach.push_back(hand_pose(scene.path.point[i]));
   place.touch_w = place.approach.back().pose;
   place.approach_s = place.approach.back().time_s;
   place.out_w = unit_or(place.approach.front().pose.position_m - place.touch_w.position_m, {0, 1, 0});
   place.along_w = unit_or(cross(axis_off(place.out_w), place.out_w), {1, 0, 0});
   return place;
+}
+
+// A rigid tool's: where the scene's path first presses.
+TouchPlace first_touch(const Model& model, const SceneDesc& scene) {
+  constexpr double kTouch_N = 0.5;
+  const StatePtr state = make_state(model);
+  const ScratchPtr scratch = make_scratch(model);
+  Output output;
+  for (const TimedPose& pose : scripted_poses(scene.path, model.params.period_s)) {
+    Input input;
+    input.pose_w = pose.tool_w;
+    input.drive = Drive::kHeld;
+    tick(model, *state, *scratch, input, output);
+    if (!(norm(output.device_w.force_N) > kTouch_N)) continue;
+    TouchPlace place;
+    place.touch_w = pose.tool_w;
+    place.out_w = unit_or(output.device_w.force_N, {0, 1, 0});
+    place.along_w = unit_or(tangential_part({1, 0, 0}, place.out_w), axis_off(place.out_w));
+    return place;
+  }
+  throw std::runtime_error(scene.name + ": its path meets no body with half a newton; give it a [path] that presses");
 }
 
 }  // namespace
@@ -161,24 +183,9 @@ const std::vector<HandModel>& hand_models() {
 }
 
 TouchPlace touch_place_of(const Model& model, const SceneDesc& scene) {
-  if (scene.articulation != Articulation::kRigid) return grasped(scene);
-  constexpr double kTouch_N = 0.5;
-  const StatePtr state = make_state(model);
-  const ScratchPtr scratch = make_scratch(model);
-  Output output;
-  for (const TimedPose& pose : scripted_poses(scene.path, model.params.period_s)) {
-    Input input;
-    input.pose_w = pose.tool_w;
-    input.drive = Drive::kHeld;
-    tick(model, *state, *scratch, input, output);
-    if (!(norm(output.device_w.force_N) > kTouch_N)) continue;
-    TouchPlace place;
-    place.touch_w = pose.tool_w;
-    place.out_w = unit_or(output.device_w.force_N, {0, 1, 0});
-    place.along_w = unit_or(tangential_part({1, 0, 0}, place.out_w), axis_off(place.out_w));
-    return place;
-  }
-  throw std::runtime_error(scene.name + ": its path meets no body with half a newton; give it a [path] that presses");
+  TouchPlace place = scene.articulation != Articulation::kRigid ? grasped(scene) : first_touch(model, scene);
+  for (const PathPoint& point : scene.path.point) place.own.push_back(hand_pose(point));
+  return place;
 }
 
 void set_manoeuvre(Manoeuvre manoeuvre, const TouchPlace& place, FeelSetup& setup) {
@@ -223,8 +230,10 @@ void set_manoeuvre(Manoeuvre manoeuvre, const TouchPlace& place, FeelSetup& setu
     case Manoeuvre::kLost:
       set_lost(hand, setup);
       break;
+    case Manoeuvre::kPath:
+      break;
   }
-  setup.path = hand.path();
+  setup.path = manoeuvre == Manoeuvre::kPath ? HandPath(place.own) : hand.path();
   if (!setup.path.error().empty()) throw std::runtime_error(setup.path.error());
 }
 

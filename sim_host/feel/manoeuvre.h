@@ -23,7 +23,8 @@ namespace palpate {
   X(kPush, "push", "through to 60 mm at 0.5 m/s with that hand, and back as fast")                      \
   X(kTeleport, "teleport", "in to 5 mm; the encoder jumps 4 mm in, 4 mm out, 4 mm aside and back")      \
   X(kLost, "lost", "in to 6 mm; 1, 2, 3 and 5 samples are lost")                                        \
-  X(kSlow, "slow", "a press with a device that sends 400 samples a second")
+  X(kSlow, "slow", "a press with a device that sends 400 samples a second")                             \
+  X(kPath, "path", "the scene's own path")
 
 enum class Manoeuvre {
 #define PALPATE_MANOEUVRE(name, title, what) name,
@@ -46,6 +47,7 @@ struct TouchPlace {
   Vec3 along_w;                    // unit, across it
   std::vector<HandPose> approach;  // how the hand gets there; empty: straight in from outside
   double approach_s = 0;
+  std::vector<HandPose> own;  // the scene's own path
 };
 // Plays the scene's own path without a hand until the force reaches half a newton there. Articulated tools: where the
 // fingers are closed most. Throws std::runtime_error when the path meets no body.

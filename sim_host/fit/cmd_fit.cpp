@@ -6,11 +6,11 @@
 #include <cmath>
 #include <fstream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "sim_host/cli.h"
 #include "sim_host/fit/press_forward.h"
+#include "sim_host/json_output.h"
 #include "sim_host/overlay_options.h"
 #include "sim_host/report/curve_error.h"
 
@@ -99,8 +99,7 @@ std::string fit_text(const MaterialFit& fit, const CurveError& error, std::size_
   return text + fmt::format("cost      {} evaluations, {} bakes\n", fit.evaluations, bakes);
 }
 
-std::string fit_json(const MaterialFit& fit, const CurveError& error) {
-  nlohmann::ordered_json json;
+void fill(Json& json, const MaterialFit& fit, const CurveError& error) {
   for (const FittedValue& value : fit.value)
     json["parameters"][name_of(value.what).word] = {
         {"value", value.value}, {"half_width_95", value.half_width}, {"identified", value.identified}};
@@ -109,7 +108,6 @@ std::string fit_json(const MaterialFit& fit, const CurveError& error) {
   json["force_rms"] = error.force_rms;
   json["force_largest"] = error.force_largest;
   json["force_unnoticed"] = error.force_unnoticed;
-  return json.dump(1) + "\n";
 }
 
 // An overlay for --with.
@@ -127,7 +125,7 @@ void write_overlay(const std::string& path, const MaterialFit& fit) {
   fmt::print(stderr, "wrote   {}\n", path);
 }
 
-int run_fit(const FitCommand& command) {
+int run_fit(const FitCommand& command, Json& json) {
   const SceneModel stated(command.scene, command.overlays);
   if (!stated.scene())
     throw std::runtime_error(command.scene + ": an image cannot be baked again; name the scene's .toml");
@@ -138,7 +136,8 @@ int run_fit(const FitCommand& command) {
   const MaterialGuess guess{scene.material.youngs_modulus_Pa, stated.model().params.poisson_ratio, friction};
   const MaterialFit fit = settled_fit(forward, guess, wanted_of(command, scene, measured), measured);
   const CurveError error = left_over(fit, measured);
-  fmt::print("{}", command.json ? fit_json(fit, error) : fit_text(fit, error, measured.pose.size(), forward.bakes()));
+  fill(json, fit, error);
+  fmt::print("{}", fit_text(fit, error, measured.pose.size(), forward.bakes()));
   if (!command.out.empty()) write_overlay(command.out, fit);
   const bool known = std::ranges::any_of(fit.value, [](const FittedValue& value) { return value.identified; });
   return known ? kExitOk : kExitFailed;
@@ -157,7 +156,7 @@ void add_fit_command(CLI::App& app, int& exit_code) {
       ->check(CLI::IsMember({"E", "nu", "friction"}));
   add_overlay_options(*command, options->overlays);
   command->add_option("--out", options->out, "write what was found as an overlay for --with (.toml)");
-  command->add_flag("--json", options->json, "write the figures as JSON");
+  add_json_flag(*command, options->json);
   command->footer(
       "Columns: x_mm, y_mm, z_mm (and qw, qx, qy, qz) as `palpate press` writes them, or depth_mm of a press by the "
       "scene's "
@@ -167,7 +166,9 @@ void add_fit_command(CLI::App& app, int& exit_code) {
       "Examples:\n"
       "  palpate fit measured.csv organ.toml --out organ_material.toml\n"
       "  palpate fit measured.csv organ.toml --parameters E,friction --json");
-  command->callback([options, &exit_code] { exit_code = run_fit(*options); });
+  command->callback([options, &exit_code] {
+    exit_code = run_with_json(options->json, "fit", [&](Json& json) { return run_fit(*options, json); });
+  });
 }
 
 }  // namespace palpate

@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "hal/system/duration.h"
 #include "hal/system/rt_linux.h"
 #include "sim_host/cli.h"
 #include "sim_host/cli_checks.h"
@@ -20,13 +21,15 @@
 #include "sim_host/latency/latency.h"
 #include "sim_host/record/recording.h"
 #include "sim_host/record/recording_follower.h"
+#include "sim_host/run/run_json.h"
 
 namespace palpate {
 
 namespace {
 
 struct LatencyOptions {
-  std::string recording, histfile, json, plot, overlay, live, certify, load = "none";
+  JsonOption json;
+  std::string recording, histfile, plot, overlay, live, certify, load = "none";
   MeasureOptions measure;
   CertifyOptions certificate;
   double limit_us = 0;
@@ -60,7 +63,7 @@ void draw(const LatencyOptions& options, const LatencyData& data, const std::str
 }
 
 // Shows a run that another process records, until it ends or Ctrl-C.
-int run_live(const std::string& path) {
+int run_live(const std::string& path, Json& json) {
   constexpr std::chrono::milliseconds kRefresh{1000};
   constexpr int kMostQuiet = 5;  // refreshes without a tick: its recorder must have died
   const std::atomic<bool>& stop = install_stop_signals();
@@ -76,6 +79,7 @@ int run_live(const std::string& path) {
     quiet = number > 0 ? 0 : quiet + 1;
     const double elapsed_s = 1e-9 * static_cast<double>(all->last_deadline_ns - all->first_deadline_ns);
     printer.print(live_text({all.get(), recent.get(), elapsed_s, 0}));
+    json["run"] = summary_json(*all, 0);
     if (follower.ended()) return kExitOk;
     std::this_thread::sleep_for(kRefresh);
   }
@@ -99,7 +103,7 @@ void print_certify_progress(const LiveState& state) {
   if (terminal && over) fmt::print(stderr, "\n");
 }
 
-int run_certify(const LatencyOptions& options) {
+int run_certify(const LatencyOptions& options, Json& json) {
   CertifyOptions certify_options = options.certificate;
   const std::optional<double> duration_s = parse_duration_s(options.certify);
   if (!duration_s) throw std::runtime_error("--certify: '" + options.certify + "' is no duration such as 1h, 10m, 30s");
@@ -114,11 +118,13 @@ int run_certify(const LatencyOptions& options) {
   const std::string text = certificate_text(*certificate);
   fmt::print("{}", text);
   write_text(certificate->options.out + ".txt", text);
-  write_text(certificate->options.out + ".json", certificate_json(*certificate));
+  const std::string figures = certificate_json(*certificate);
+  json.update(Json::parse(figures));
+  write_text(certificate->options.out + ".json", figures);
   return certificate->verdict == CertifyVerdict::kPass ? kExitOk : kExitFailed;
 }
 
-int run_latency(const LatencyOptions& options) {
+int run_latency(const LatencyOptions& options, Json& json) {
   CyclictestRun run = this_system();
   run.command_line = command_line(options);
   run.cpu = options.measure.cpu >= 0 ? options.measure.cpu : 0;
@@ -128,10 +134,14 @@ int run_latency(const LatencyOptions& options) {
   const auto data = std::make_unique<LatencyData>(recorded ? latency_of_recording(options.recording)
                                                            : measure_wake_up(options.measure, verdicts));
   run.end_time = rfc2822_time(std::time(nullptr));
+  json["bare_loop"] = data->bare_loop;
+  json["wake_up"] = stages_json(data->summary)["wake_up"];
+  json["damage"] = data->damage;
+  if (!data->bare_loop) json["run"] = summary_json(data->summary, 0);
   fmt::print("{}{}", verdicts, latency_text(*data, options.worst));
   const std::vector<MicrosecondHistogram> threads{data->wake};
   if (!options.histfile.empty()) write_text(options.histfile, cyclictest_text(threads));
-  if (!options.json.empty()) write_text(options.json, cyclictest_json(threads, run));
+  if (!options.json.file.empty()) write_text(options.json.file, cyclictest_json(threads, run));
   if (!options.plot.empty()) {
     const std::string machine =
         fmt::format("{} {}{}", run.sysname, run.release, run.realtime_kernel ? " PREEMPT_RT" : "");
@@ -199,7 +209,7 @@ void add_latency_command(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(0, 98))
       ->excludes(recording);
   command->add_option("--histfile", options->histfile, "write cyclictest's histogram text to this file");
-  command->add_option("--json", options->json, "write cyclictest's JSON to this file");
+  add_json_option(*command, options->json, "write cyclictest's JSON there");
   command->add_option("--plot", options->plot, "draw the histograms to this .svg or .png file")
       ->check(ends_in({".svg", ".png"}));
   command->add_option("--overlay", options->overlay,
@@ -224,9 +234,10 @@ void add_latency_command(CLI::App& app, int& exit_code) {
     if (!options->overlay.empty() && options->plot.empty()) throw std::runtime_error("--overlay needs --plot FILE");
     if (live->count() > 0) options->recording = options->live.empty() ? "run.plr" : options->live;
     try {
-      exit_code = live->count() > 0           ? run_live(options->recording)
-                  : !options->certify.empty() ? run_certify(*options)
-                                              : run_latency(*options);
+      exit_code = run_with_json(options->json.wanted(), "latency", [&](Json& json) {
+        if (live->count() > 0) return run_live(options->recording, json);
+        return options->certify.empty() ? run_latency(*options, json) : run_certify(*options, json);
+      });
     } catch (const RecordingError& error) {
       throw std::runtime_error(about_file(options->recording, error.what()));
     }

@@ -11,6 +11,7 @@
 #include "config/body/mesh_io.h"
 #include "config/scene/schema.h"
 #include "sim_host/exit_codes.h"
+#include "sim_host/json_output.h"
 #include "sim_host/mesh/convex_parts.h"
 #include "sim_host/mesh/mesh_picture.h"
 #include "sim_host/mesh/surface_repair.h"
@@ -21,7 +22,7 @@ namespace {
 struct MeshOptions {
   std::string input, output, picture;
   double scale = 1e-3, edge_mm = 0, hole_mm = 0, sharp_deg = 60;
-  bool keep_largest = false, no_remesh = false, check = false, convex = false;
+  bool keep_largest = false, no_remesh = false, check = false, convex = false, json = false;
 };
 
 void print_state(const char* when, const SurfaceState& s) {
@@ -31,6 +32,13 @@ void print_state(const char* when, const SurfaceState& s) {
   fmt::print("{:<8}{}; {} open edges, {} shared by more than two triangles, {}{} pairs of triangles that cross\n", "",
              s.parts == 1 ? "one part" : fmt::format("{} parts", s.parts), s.open_edges, s.shared_edges, s.crossings,
              s.crossings >= 1000 ? " or more" : "");
+}
+
+Json state_json(const SurfaceState& s) {
+  const Vec3 size = s.bounds.size_m();
+  return {{"triangles", s.triangles},   {"vertices", s.vertices},         {"size_m", {size.x, size.y, size.z}},
+          {"surface_m2", s.area_m2},    {"volume_m3", s.volume_m3},       {"parts", s.parts},
+          {"open_edges", s.open_edges}, {"shared_edges", s.shared_edges}, {"crossing_pairs", s.crossings}};
 }
 
 bool is_sound(const SurfaceState& s) {
@@ -52,7 +60,7 @@ std::string default_output(const std::string& input, bool convex) {
 }
 
 // A line x y z in metres a corner, an empty line after each part: what config/tool/tool_mesh.cpp reads.
-int write_parts(const MeshOptions& options) {
+int write_parts(const MeshOptions& options, Json& json) {
   const std::vector<std::vector<Vec3>> parts =
       convex_parts(read_mesh(options.input, options.scale).mesh, options.input);
   std::ofstream out(options.output);
@@ -61,19 +69,24 @@ int write_parts(const MeshOptions& options) {
     out << "\n";
   }
   if (!out.flush()) throw std::runtime_error(options.output + ": cannot be written; check the folder and its space");
+  json["output"] = options.output;
+  json["convex_parts"] = parts.size();
   fmt::print("wrote   {}: {} convex parts\n", options.output, parts.size());
   return kExitOk;
 }
 
-int run(MeshOptions options) {
+int run(MeshOptions options, Json& json) {
   if (options.output.empty()) options.output = default_output(options.input, options.convex);
   check_files(options);
-  if (options.convex) return write_parts(options);
+  json["input"] = options.input;
+  if (options.convex) return write_parts(options, json);
   const MeshFile file = read_mesh(options.input, options.scale);
   if (file.welded_vertices > 0) fmt::print("read    joined {} vertices that coincide\n", file.welded_vertices);
   if (file.collapsed_triangles > 0)
     fmt::print("read    left out {} triangles whose corners coincide\n", file.collapsed_triangles);
   const SurfaceState before = survey(file.mesh);
+  json["before"] = state_json(before);
+  json["sound"] = is_sound(before);
   print_state("before", before);
   if (options.check) {
     fmt::print("{}\n", is_sound(before) ? "sound: it can be a body as it is" : "not sound: run without --check");
@@ -90,10 +103,17 @@ int run(MeshOptions options) {
     if (person) fmt::print(stderr, "        {} ...\n", step);
   });
   int number = 0;
-  for (const Repair& r : result.repair)
+  json["repairs"] = Json::array();
+  for (const Repair& r : result.repair) {
+    json["repairs"].push_back({{"what", r.what}, {"where_m", {r.where_m.x, r.where_m.y, r.where_m.z}}});
     fmt::print("mended  {}. {}{}\n", ++number, r.what, r.where_m == Vec3{} ? "" : " at " + position_text(r.where_m));
+  }
   if (result.repair.empty()) fmt::print("mended  nothing\n");
-  print_state("after", survey(result.mesh));
+  const SurfaceState after = survey(result.mesh);
+  json["after"] = state_json(after);
+  json["moved_m"] = repair.remesh ? Json(result.moved_m) : Json(nullptr);
+  json["output"] = options.output;
+  print_state("after", after);
   if (repair.remesh)
     fmt::print("{:<8}{:.3g} mm at most between the repaired and the remeshed surface\n", "", 1e3 * result.moved_m);
   write_obj(options.output, result.mesh);
@@ -122,6 +142,7 @@ void add_options(CLI::App& app, MeshOptions& options) {
   app.add_flag("--convex", options.convex,
                "cut it into convex parts, for a tool, and write their corners in metres: FILE's name with _parts.txt");
   app.add_flag("--check", options.check, "only say what the surface is like; exit code 1 if it is not sound");
+  add_json_flag(app, options.json);
   app.footer(
       "Examples:\n"
       "  palpate mesh organ.stl                          repaired and remeshed, to organ_repaired.obj\n"
@@ -141,7 +162,7 @@ int main(int argc, char** argv) {
   palpate::add_options(app, options);
   try {
     app.parse(argc, argv);
-    return palpate::run(options);
+    return palpate::run_with_json(options.json, "mesh", [&](palpate::Json& json) { return run(options, json); });
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? palpate::kExitOk : palpate::kExitUsage;
   } catch (const std::exception& error) {

@@ -11,9 +11,10 @@
 #include "sim_host/bake/scene_model.h"
 #include "sim_host/cli.h"
 #include "sim_host/cli_checks.h"
+#include "sim_host/overlay_options.h"
 #include "sim_host/press/grasp_run.h"
 #include "sim_host/press/grasp_stability.h"
-#include "sim_host/run/verdict.h"
+#include "sim_host/run/run_json.h"
 #include "sim_host/view/line_plot.h"
 #include "sim_host/view/picture.h"
 
@@ -23,9 +24,10 @@ namespace {
 
 struct GraspCommand {
   std::vector<std::string> scenes;
+  SceneOverlays overlays;
   std::string out = "grasp";
   double hand_N_per_m = 0;
-  bool order = false;
+  bool order = false, json = false;
   VerdictLimits limits;
 };
 
@@ -61,7 +63,32 @@ Drawing history_plot(const GraspRun& run) {
   return line_plot(curves, {run.name + ": stress at each anchor", "time (s)", "stress (kPa)"}, false);
 }
 
-void print_run(const Model& model, const GraspRun& run) {
+Json json_of(Vec3 v) { return {v.x, v.y, v.z}; }
+
+Json run_json(const Model& model, const GraspRun& run, const GraspStability& s) {
+  Json json = {{"name", run.name},
+               {"regions", run.regions},
+               {"force_N", json_of(run.contact_w.force_N)},
+               {"palm_force_N", json_of(run.palm_w.force_N)},
+               {"holds", s.holds},
+               {"imbalance_N", s.imbalance_N},
+               {"friction_needed", s.friction_needed < kHuge ? Json(s.friction_needed) : Json(nullptr)},
+               {"force_closure", s.closed},
+               {"quality_least", s.quality_least},
+               {"quality_most", s.quality_most},
+               {"chatter", run.chatter},
+               {"back_at_rest", run.back_at_rest},
+               {"ticks", run.ticks},
+               {"unconverged_ticks", run.unconverged_ticks}};
+  for (std::size_t part = 1; part < run.part_force_N.size(); ++part)
+    if (run.part_force_N[part] > 0) json["part_force_N"][hand_parts()[part - 1].name] = run.part_force_N[part];
+  for (std::size_t a = 0; a < run.held_stress_Pa.size(); ++a)
+    json["anchors"].push_back(
+        {{"position_m", json_of(model.anchor[a].position_m)}, {"stress_Pa", run.held_stress_Pa[a]}});
+  return json;
+}
+
+Json print_run(const Model& model, const GraspRun& run) {
   fmt::print(
       "{}: {} regions, sum of fingers on the hand ({:.3f}, {:.3f}, {:.3f}) N, palm on the body ({:.3f}, {:.3f}, "
       "{:.3f}) N\n",
@@ -89,10 +116,12 @@ void print_run(const Model& model, const GraspRun& run) {
   }
   fmt::print("  largest change per tick while held {:.2e} of the force; opened: {}\n", run.chatter,
              run.back_at_rest ? "exactly at rest" : "NOT at rest");
+  return run_json(model, run, s);
 }
 
 // How much the order of contact matters: thumb first against thumb last, everything else the same.
-void print_order(const Model& model, const SceneDesc& scene) {
+Json print_order(const Model& model, const SceneDesc& scene) {
+  Json json;
   for (const CouplingLaw law : {CouplingLaw::kCoupled, CouplingLaw::kTemporalPaper}) {
     Model varied = model;
     varied.params.coupling_law = law;
@@ -102,25 +131,28 @@ void print_order(const Model& model, const SceneDesc& scene) {
     for (std::size_t f = 1; f < kMaxFingers; ++f) fingers_late.delay_s[f] = 0.3;
     thumb_late.delay_s[0] = 0.3;
     const GraspRun a = run_grasp(varied, scene, fingers_late), b = run_grasp(varied, scene, thumb_late);
-    fmt::print("  thumb first against thumb last, {}: forces differ by {:.3e} of the largest\n",
-               law == CouplingLaw::kCoupled ? "coupled" : "temporal", force_difference(a, b));
+    const char* name = law == CouplingLaw::kCoupled ? "coupled" : "temporal";
+    json[name] = force_difference(a, b);
+    fmt::print("  thumb first against thumb last, {}: forces differ by {:.3e} of the largest\n", name,
+               force_difference(a, b));
   }
+  return json;
 }
 
-int run(const GraspCommand& command) {
+int run(const GraspCommand& command, Json& json) {
   std::filesystem::create_directories(command.out);
   const auto file = [&](const std::string& name) { return command.out + "/" + name; };
   std::vector<PlotCurve> curves;
   bool rest = true;
   std::vector<RunVerdict> verdicts;  // one a scene
   for (const std::string& path : command.scenes) {
-    const SceneModel scene(path);
+    const SceneModel scene(path, command.overlays);
     if (!scene.scene()) throw std::runtime_error(path + ": an image holds no path; name the scene's .toml");
     GraspOptions options;
     options.hand_N_per_m = command.hand_N_per_m;
     const GraspRun played = run_grasp(scene.model(), *scene.scene(), options);
-    print_run(scene.model(), played);
-    if (command.order) print_order(scene.model(), *scene.scene());
+    json["grasps"].push_back(print_run(scene.model(), played));
+    if (command.order) json["grasps"].back()["order_share"] = print_order(scene.model(), *scene.scene());
     rest = rest && played.back_at_rest;
     verdicts.push_back(judge_unconverged(played.unconverged_ticks, played.ticks, command.limits));
     curves.push_back(stress_by_anchor(played));
@@ -128,8 +160,10 @@ int run(const GraspCommand& command) {
     history_plot(played).save(file(played.name + ".stress.png"));
     save_picture(file(played.name + ".png"), scene.model(), *played.held);
   }
-  line_plot(curves, {"stress at the anchors while held", "anchor", "stress (kPa)"}, true).save(file("anchors.png"));
+  bar_plot(curves, {"stress at the anchors while held", "anchor", "stress (kPa)"}).save(file("anchors.png"));
   fmt::print("wrote   {}: anchors.png, and for each scene a picture, a stress history and its table\n", command.out);
+  json["folder"] = command.out;
+  json["verdicts"] = verdicts_json(verdicts);
   fmt::print("{}", verdict_text(verdicts));
   return rest && all_ok(verdicts) ? kExitOk : kExitFailed;
 }
@@ -147,13 +181,18 @@ void add_grasp_command(CLI::App& app, int& exit_code) {
                    "stiffness (N/m) of the arm that holds the wrist; 0: the wrist is where the path says")
       ->capture_default_str()
       ->check(number_in(0, 1e6));
+  add_overlay_options(*command, settings->overlays);
   add_allow_option(*command, settings->limits, {"unconverged"});
   command->add_flag("--order", settings->order, "also close the thumb first and last, with both coupling laws");
   command->footer(
       "Example:\n"
       "  palpate grasp config/scenes/grasp_cylinder_2.toml config/scenes/grasp_cylinder_3.toml \\\n"
-      "    config/scenes/grasp_cylinder_5.toml --order --out grasps");
-  command->callback([settings, &exit_code] { exit_code = run(*settings); });
+      "    config/scenes/grasp_cylinder_5.toml --order --out grasps\n"
+      "  palpate grasp config/scenes/grasp_cylinder_5.toml --with config/scenes/laws/cui_xiao_2008.toml");
+  add_json_flag(*command, settings->json);
+  command->callback([settings, &exit_code] {
+    exit_code = run_with_json(settings->json, "grasp", [&](Json& json) { return run(*settings, json); });
+  });
 }
 
 }  // namespace palpate

@@ -9,6 +9,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "sim_host/bake/default_path.h"
 #include "sim_host/bake/scene_model.h"
 #include "sim_host/cli.h"
 #include "sim_host/cli_checks.h"
@@ -16,6 +17,7 @@
 #include "sim_host/press/anchor_loads.h"
 #include "sim_host/press/force_csv.h"
 #include "sim_host/run/joint_script.h"
+#include "sim_host/run/run_json.h"
 #include "sim_host/run/verdict.h"
 #include "sim_host/status_text.h"
 #include "sim_host/tick_memory.h"
@@ -32,11 +34,20 @@ struct PressOptions {
   std::vector<int> plotted_anchors;
   SceneOverlays overlays;
   int every = 1;
-  bool resample = false;
+  bool resample = false, json = false;
   JointOptions joints;
   VerdictLimits limits;
   double hand_N_per_m = -1;  // -1: the scene's for the demo, otherwise none
 };
+
+// `demo`: what the scene scripts; of an image, what is done where nothing is scripted.
+PathDesc demo_path(const SceneModel& scene) {
+  if (!scene.scene()) return path_of_image(scene.model());
+  if (scene.scene()->path.point.empty())
+    throw std::runtime_error(
+        "--path demo: the scene has no [[path.point]], and how fingers close is not to be guessed");
+  return scene.scene()->path;
+}
 
 std::vector<TimedPose> poses_of(const PressOptions& options, const SceneModel& scene) {
   const double period_s = scene.model().params.period_s;
@@ -44,14 +55,12 @@ std::vector<TimedPose> poses_of(const PressOptions& options, const SceneModel& s
     const std::vector<TimedPose> poses = read_pose_file(options.path, period_s);
     return options.resample ? resample(poses, period_s) : poses;
   }
-  if (!scene.scene()) throw std::runtime_error("--path demo: an image holds no path; name the scene's .toml");
-  if (scene.scene()->path.point.empty()) throw std::runtime_error("--path demo: the scene has no [[path.point]]");
-  return scripted_poses(scene.scene()->path, period_s);
+  return scripted_poses(demo_path(scene), period_s);
 }
 
 PressDrive drive_of(const PressOptions& options, const SceneModel& scene) {
   if (options.hand_N_per_m >= 0) return {options.hand_N_per_m};
-  return {options.path == "demo" ? scene.scene()->path.hand_stiffness_N_per_m : 0.0};
+  return {options.path == "demo" ? demo_path(scene).hand_stiffness_N_per_m : 0.0};
 }
 
 // Rewrites one line of a terminal; silent when the output is not a terminal.
@@ -170,7 +179,27 @@ void check_anchors(const PressOptions& options, const Model& model) {
       throw std::runtime_error(fmt::format("--plotted-anchors: {}; this body has anchors 1 to {}", a, count));
 }
 
-int run_press(const PressOptions& options) {
+void fill(Json& json, const PressOptions& options, const Collected& all, const RunVerdict& verdict) {
+  json.update({{"scene", options.scene},
+               {"poses", all.rows},
+               {"force_max_N", all.force_max_N},
+               {"depth_max_m", all.depth_max_m},
+               {"tick_instructions_max", all.instructions_max >= 0 ? Json(all.instructions_max) : Json(nullptr)},
+               {"status", Json::array()},
+               {"faults", faults_json(all.fault)},
+               {"verdicts", verdicts_json({verdict})},
+               {"files", {options.out}}});
+  for (const BitText& bit : status_bit_texts()) {
+    const Collected::Seen& seen = all.status[bit.bit];
+    if (seen.ticks == 0) continue;
+    json["status"].push_back(bit_json(bit));
+    json["status"].back().update({{"ticks", seen.ticks}, {"first_s", seen.first_s}});
+  }
+  for (const std::string* file : {&options.vtu, &options.plot, &options.png, &options.anchors, &options.anchor_plot})
+    if (!file->empty()) json["files"].push_back(*file);
+}
+
+int run_press(const PressOptions& options, Json& json) {
   const SceneModel scene(options.scene, options.overlays);
   const Model& model = scene.model();
   check_anchors(options, model);
@@ -208,6 +237,7 @@ int run_press(const PressOptions& options) {
   write_anchors(options, model, all);
   const auto bit = static_cast<std::size_t>(std::countr_zero(Status::kNotConverged));
   const RunVerdict verdict = judge_unconverged(all.status[bit].ticks, all.rows, options.limits);
+  fill(json, options, all, verdict);
   fmt::print("{}", verdict_text({verdict}));
   if (all.fault != 0) return kExitFault;
   return verdict.ok() ? kExitOk : kExitFailed;
@@ -220,7 +250,11 @@ void add_press_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("press", "Move the tool through given poses and write the forces, no device");
   command->add_option("SCENE", options->scene, "scene (.toml) or image (.pal)")->required();
   add_overlay_options(*command, options->overlays);
-  command->add_option("--path", options->path, "tool poses (CSV), or `demo`: the motion the scene scripts for its hand")
+  command
+      ->add_option(
+          "--path", options->path,
+          "tool poses (CSV), or `demo`: the motion the scene scripts for its hand; where it scripts none, and of an "
+          "image, onto the highest point")
       ->capture_default_str();
   command->add_option("--out", options->out, "table to write (CSV)")->capture_default_str();
   command->add_option("--vtu", options->vtu, "write deformed surfaces for ParaView into this folder");
@@ -253,7 +287,10 @@ void add_press_command(CLI::App& app, int& exit_code) {
       "  palpate press mallet.pal --path poses.csv --out forces.csv --vtu surface --every 10\n"
       "  palpate press config/scenes/tools_on_layer.toml --with config/scenes/tools/flat_3_2.toml --plot flat.svg\n"
       "  palpate press config/scenes/grasp_cylinder_5.toml --close 1,0.8,0,0,0 --png pinch.png");
-  command->callback([options, &exit_code] { exit_code = run_press(*options); });
+  add_json_flag(*command, options->json);
+  command->callback([options, &exit_code] {
+    exit_code = run_with_json(options->json, "press", [&](Json& json) { return run_press(*options, json); });
+  });
 }
 
 }  // namespace palpate

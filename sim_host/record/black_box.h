@@ -42,6 +42,11 @@ class BlackBox {
   BlackBox(std::string prefix, const RecordingHeader& header, const State& initial_state, const Model* model,
            CandumpOptions candump, std::vector<PackedPiece> image = {});
 
+  // Before the first record, which is not the run's: `first` is its sequence. `known`: it is the initial state's tick.
+  void begin_at(std::uint64_t first, bool known) {
+    state_sequence_ = first;
+    state_known_ = known;
+  }
   // Every record of the run in order, from one thread.
   void add(const TickRecord& record);
   // At the end of the run. `death`: not empty when the controller ended other than in order, and how.

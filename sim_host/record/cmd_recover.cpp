@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "sim_host/cli.h"
+#include "sim_host/json_output.h"
 #include "sim_host/record/recover.h"
 
 namespace palpate {
@@ -13,10 +14,16 @@ namespace {
 
 struct RecoverOptions {
   std::string part, output;
+  bool json = false;
 };
 
-int run_recover(const RecoverOptions& options) {
+int run_recover(const RecoverOptions& options, Json& json) {
   const Recovered result = recover_recording(options.part, options.output);
+  json.update({{"record", result.path},
+               {"ticks", result.records},
+               {"crash_file_ticks", result.from_crash},
+               {"lost_records", result.lost},
+               {"damage", result.damage}});
   fmt::print("recovered {} ticks -> {}\n", result.records, result.path);
   if (result.from_crash > 0) {
     fmt::print("  the last {} of them from {}, which the controller wrote after its host had died\n", result.from_crash,
@@ -40,7 +47,10 @@ void add_recover_command(CLI::App& app, int& exit_code) {
       "controller notices and writes the rest, down to zero force, to RECORD.crash.plr. This joins both.\n"
       "Example:\n"
       "  palpate recover run.plr.part && palpate replay run.plr");
-  command->callback([options, &exit_code] { exit_code = run_recover(*options); });
+  add_json_flag(*command, options->json);
+  command->callback([options, &exit_code] {
+    exit_code = run_with_json(options->json, "recover", [&](Json& json) { return run_recover(*options, json); });
+  });
 }
 
 }  // namespace palpate

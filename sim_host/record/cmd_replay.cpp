@@ -5,12 +5,14 @@
 #include <cstring>
 #include <memory>
 
+#include "hal/bus/wire_table.h"
 #include "sim_host/build_id.h"
 #include "sim_host/cli.h"
+#include "sim_host/json_output.h"
 #include "sim_host/press/grasp_watch.h"
 #include "sim_host/record/mapped_file.h"
-#include "sim_host/record/record_csv.h"
 #include "sim_host/record/recorded_image.h"
+#include "sim_host/record/recording_exports.h"
 #include "sim_host/record/recording_reader.h"
 #include "sim_host/record/replay.h"
 #include "sim_host/record/state_dump.h"
@@ -20,11 +22,24 @@ namespace palpate {
 namespace {
 
 struct ReplayOptions {
-  std::string recording, image, dump;
+  std::string recording, image;
+  ExportOptions exports;
   std::int64_t state = -1;  // tick after which to print the state
+  bool json = false;
 };
 
-int report(const ReplayResult& result) {
+int report(const ReplayResult& result, Json& json) {
+  json.update({{"verified", true},
+               {"identical", result.identical()},
+               {"identical_ticks", result.ticks},
+               {"lost_records", result.lost},
+               {"damage", result.damage}});
+  if (result.differs)
+    json["difference"] = {{"tick", result.tick},
+                          {"stage", result.stage},
+                          {"field", result.field},
+                          {"recorded", result.recorded},
+                          {"replayed", result.replayed}};
   if (result.differs) {
     fmt::print(
         "differs at tick {}, stage {}, field {}\n  recorded {}\n  replayed {}\n  {} ticks before it are identical\n",
@@ -41,41 +56,52 @@ int report(const ReplayResult& result) {
 }
 
 // A slice without its initial state: its ticks can be shown, but nothing verified.
-int list_only(RecordingReader& recording, RecordCsv* csv) {
+int list_only(RecordingReader& recording, RecordingExports& exports, Json& json) {
   TickRecord record;
-  while (recording.next(record)) {
-    if (csv != nullptr) csv->add(record);
-  }
+  while (recording.next(record)) exports.add(record);
+  exports.finish();
+  json.update({{"verified", false},
+               {"listed_ticks", recording.records()},
+               {"first_tick", recording.first_sequence()},
+               {"damage", recording.error()}});
   fmt::print("listed: {} ticks from number {} on; not verified, the state before them is unknown\n{}",
              recording.records(), recording.first_sequence(),
              recording.error().empty() ? "" : "damaged recording: " + recording.error() + "\n");
   return kExitFailed;
 }
 
-int print_state(RecordingReader& recording, const Model& model, std::int64_t tick) {
+int print_state(RecordingReader& recording, const Model& model, std::int64_t tick, Json& json) {
+  json["tick"] = tick;
   const StatePtr state = state_after(recording, model, static_cast<std::uint64_t>(tick));
-  for (const auto& [name, value] : list_state(*state)) fmt::print("{:<44} {}\n", name, value);
+  for (const auto& [name, value] : list_state(*state)) {
+    json["state"][name] = value;
+    fmt::print("{:<44} {}\n", name, value);
+  }
   return kExitOk;
 }
 
-int run_replay(const ReplayOptions& options) {
+int run_replay(const ReplayOptions& options, Json& json) {
+  json["recording"] = options.recording;
   const MappedFile file(options.recording);
   RecordingReader recording(file.bytes());
   const RecordingHeader& header = recording.header();
-  std::unique_ptr<RecordCsv> csv;
-  if (!options.dump.empty()) csv = std::make_unique<RecordCsv>(options.dump);
-  if (!recording.state_known()) return list_only(recording, csv.get());
+  RecordingExports exports(options.exports);
+  if (!recording.state_known()) return list_only(recording, exports, json);
   const RecordedScene scene(recording, options.image);
-  if (options.state >= 0) return print_state(recording, scene.model(), options.state);
+  if (options.state >= 0) return print_state(recording, scene.model(), options.state, json);
   if (std::strcmp(header.build_id, kBuildId) != 0) {
     fmt::print("recorded by another build, verifying all the same\n  recorded {}\n  this one {}\n", header.build_id,
                kBuildId);
   }
   GraspWatch grasp(scene.model());
-  const int exit_code = report(replay(recording, scene.model(), [&](const TickRecord& recorded, const TickRecord&) {
-    if (csv) csv->add(recorded);
-    grasp.take(recorded);
-  }));
+  const int exit_code = report(replay(recording, scene.model(),
+                                      [&](const TickRecord& recorded, const TickRecord&) {
+                                        exports.add(recorded);
+                                        grasp.take(recorded);
+                                      }),
+                               json);
+  exports.finish();
+  json["grasp"] = grasp.text();
   fmt::print("{}", grasp.text());
   return exit_code;
 }
@@ -88,7 +114,19 @@ void add_replay_command(CLI::App& app, int& exit_code) {
   command->add_option("RECORDING", options->recording, "recording (.plr), written by `palpate run`")->required();
   command->add_option("--image", options->image,
                       "scene image to use; default: the one the recording names, or the one inside it");
-  command->add_option("--dump", options->dump, "write one row per recorded tick to this CSV file");
+  ExportOptions& exports = options->exports;
+  command->add_option("--dump", exports.ticks,
+                      "write one row per recorded tick to this CSV file, every field (docs/record_format.md)");
+  command->add_option("--dump-regions", exports.regions,
+                      "write one row per contact region of every tick to this CSV file");
+  command->add_option(
+      "--candump", exports.candump,
+      "write the traffic as `candump -L` writes it, encoded again from the recording, as if the handle's "
+      "frame were the world's");
+  command->add_flag("--classic", exports.classic, "with --candump: frames of classic CAN instead of CAN FD");
+  command->add_option("--node", exports.node, "with --candump: node number")
+      ->capture_default_str()
+      ->check(CLI::Range(1, wire::kMaxNode));
   command->add_option("--state", options->state, "print every field of the state after this tick, and nothing else")
       ->check(CLI::NonNegativeNumber);
   command->footer(
@@ -97,10 +135,12 @@ void add_replay_command(CLI::App& app, int& exit_code) {
       "(RECORD.fault-N.plr) are slices of a run: they replay from the state before their first tick.\n"
       "Examples:\n"
       "  palpate replay run.plr\n"
-      "  palpate replay run.plr --image mallet.pal --dump run.csv");
+      "  palpate replay run.plr --image mallet.pal --dump run.csv --dump-regions regions.csv\n"
+      "  palpate replay run.plr --candump run.log        canplayer vcan0=palpate0 -I run.log");
+  add_json_flag(*command, options->json);
   command->callback([options, &exit_code] {
     try {
-      exit_code = run_replay(*options);
+      exit_code = run_with_json(options->json, "replay", [&](Json& json) { return run_replay(*options, json); });
     } catch (const std::exception& error) {
       throw std::runtime_error(about_file(options->recording, error.what()));
     }

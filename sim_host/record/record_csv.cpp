@@ -2,38 +2,77 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
 #include <cstring>
-#include <stdexcept>
+#include <iterator>
 
-#include "sim_host/status_text.h"
+#include "sim_host/rings/record_fields.h"
 
 namespace palpate {
 
-RecordCsv::RecordCsv(const std::string& path) : file_(std::fopen(path.c_str(), "w")) {
-  if (file_ == nullptr) throw std::runtime_error(fmt::format("{}: cannot create: {}", path, std::strerror(errno)));
-  fmt::print(
-      file_,
-      "tick,deadline_ns,wake_latency_ns,receive_ns,compute_ns,transmit_ns,publish_ns,stale_ticks,overrun_ticks,"
-      "commands,x_m,y_m,z_m,qw,qx,qy,qz,tool_x_m,tool_y_m,tool_z_m,device_fx_N,device_fy_N,device_fz_N,"
-      "device_tx_Nm,device_ty_Nm,device_tz_Nm,contact_fx_N,contact_fy_N,contact_fz_N,penetration_m,energy_J,ramp,"
-      "mode,regions,contacts,status,fault,state_hash\n");
+namespace {
+
+constexpr char kOfTick[] = "sequence,tick";  // what a region's row begins with
+
+// device_force_N_x, tool_orientation_w, stage_ns_0.
+std::string columns(const FieldTable& table) {
+  std::string text;
+  for (const RecordField& field : table) {
+    if (field.is_reserved()) continue;
+    const char* parts = field.count == 3 ? "xyz" : field.count == 4 ? "wxyz" : nullptr;
+    for (std::uint32_t i = 0; i < field.count; ++i) {
+      text += fmt::format("{}{}", text.empty() ? "" : ",", field.name);
+      if (field.count > 1) text += parts != nullptr ? fmt::format("_{}", parts[i]) : fmt::format("_{}", i);
+    }
+  }
+  return text;
 }
 
-RecordCsv::~RecordCsv() { std::fclose(file_); }
+template <class T>
+void put_value(std::string& row, const std::byte* at) {
+  T value;
+  std::memcpy(&value, at, sizeof value);
+  fmt::format_to(std::back_inserter(row), "{}", value);  // fmt: the shortest text that reads back to these bits
+}
+
+void put_value(std::string& row, const RecordField& field, const std::byte* at) {
+  const std::string_view type = field.type;
+  if (type == "f8") put_value<double>(row, at);
+  if (type == "f4") put_value<float>(row, at);
+  if (type == "u8") put_value<std::uint64_t>(row, at);
+  if (type == "i8") put_value<std::int64_t>(row, at);
+  if (type == "u4") put_value<std::uint32_t>(row, at);
+  if (type == "i4") put_value<std::int32_t>(row, at);
+}
+
+std::string values(const FieldTable& table, const void* record) {
+  const auto* bytes = static_cast<const std::byte*>(record);
+  std::string row;
+  for (const RecordField& field : table) {
+    if (field.is_reserved()) continue;
+    for (std::uint32_t i = 0; i < field.count; ++i) {
+      if (!row.empty()) row += ',';
+      put_value(row, field, bytes + field.offset + i * field.value_bytes());
+    }
+  }
+  return row;
+}
+
+}  // namespace
+
+RecordCsv::RecordCsv(const std::string& ticks, const std::string& regions) {
+  if (!ticks.empty()) ticks_.emplace(ticks).write(columns(kTickFields) + '\n');
+  if (!regions.empty()) regions_.emplace(regions).write(fmt::format("{},{}\n", kOfTick, columns(kRegionFields)));
+}
 
 void RecordCsv::add(const TickRecord& record) {
-  const TickTiming& t = record.timing;
-  const Input& in = record.input;
-  const Output& out = record.output;
-  const auto vec = [](Vec3 v) { return fmt::format("{:.9g},{:.9g},{:.9g}", v.x, v.y, v.z); };
-  const Quat& q = in.pose_w.orientation;
-  fmt::print(file_, "{},{},{},{},{},{},{},{},{},{:#x},{},{:.9g},{:.9g},{:.9g},{:.9g},{},{},{},{},", record.tick,
-             t.deadline_ns, t.wake_latency_ns, t.receive_ns, t.compute_ns, t.transmit_ns, t.publish_ns, in.stale_ticks,
-             in.overrun_ticks, in.commands, vec(in.pose_w.position_m), q.w, q.x, q.y, q.z, vec(out.tool_w.position_m),
-             vec(out.device_w.force_N), vec(out.device_w.torque_Nm), vec(out.contact_w.force_N));
-  fmt::print(file_, "{:.9g},{:.9g},{:.9g},{},{},{},{:#x},{:#x},{:016x}\n", out.penetration_m, out.energy_J, out.ramp,
-             mode_name(out.mode), out.regions, out.contacts, out.status, out.fault, record.state_hash);
+  if (ticks_) ticks_->write(values(kTickFields, &record) + '\n');
+  for (std::int32_t i = 0; regions_ && i < record.region_count && i < kMaxRegions; ++i)
+    regions_->write(fmt::format("{},{},{}\n", record.sequence, record.tick, values(kRegionFields, &record.region[i])));
+}
+
+void RecordCsv::finish() {
+  if (ticks_) ticks_->finish();
+  if (regions_) regions_->finish();
 }
 
 }  // namespace palpate

@@ -46,7 +46,19 @@ void Recorder::finish() {
     lost_ += number;
     on_file([&] { file_->add_lost(expected_, number); });
   }
+  finish_file();
+}
+
+void Recorder::finish_file() {
   if (file_ != nullptr && file_->records() > 0) on_file([&] { file_->finish(); });
+}
+
+void Recorder::turn_at(const TickRecord& record) {
+  const std::uint64_t offset = record.sequence - record.tick;
+  if (!turn_ || offset == offset_) return;
+  offset_ = offset;
+  finish_file();
+  file_ = turn_(record.sequence, record.tick == 0);
 }
 
 // The file system may refuse at any moment (disk full): said at once, while the disk may still be cleared for the next
@@ -71,6 +83,7 @@ void Recorder::drain() {
       lost_ += number;
       on_file([&] { file_->add_lost(expected_, number); });
     }
+    turn_at(record);
     expected_ = record.sequence + 1;
     records_ += 1;
     on_file([&] { file_->add(record); });

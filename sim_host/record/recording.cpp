@@ -38,6 +38,16 @@ RecordingHeader recording_header(const TelemetryHeader& telemetry) {
   return header;
 }
 
+RecordingHeader recording_header(const TelemetryRegion& telemetry) {
+  RecordingHeader header = recording_header(telemetry.header);
+  if (const TelemetryScene* scene = newest_scene(telemetry)) {
+    header.scene_hash = scene->scene_hash;
+    copy_text(header.scene_name, scene->scene_name);
+    copy_text(header.image_path, scene->image_path);
+  }
+  return header;
+}
+
 std::uint32_t plr::crc32(const void* data, std::size_t bytes, std::uint32_t start) {
   const auto* at = static_cast<const unsigned char*>(data);
   std::uint32_t crc = ~start;

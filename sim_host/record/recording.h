@@ -21,6 +21,7 @@
 #include <stdexcept>
 
 #include "rt_core/record.h"
+#include "sim_host/rings/record_fields.h"
 #include "sim_host/rings/telemetry.h"
 
 namespace palpate {
@@ -40,8 +41,26 @@ struct RecordingHeader {
   char image_path[kImagePathBytes] = {};
 };
 
+constexpr FieldTable fields_of_recording_header() {
+  FieldTable table;
+  constexpr std::size_t base = 0;
+  PALPATE_MEMBER(RecordingHeader, layout_hash, "of the record's and the state's layout: equal in builds that fit");
+  PALPATE_MEMBER(RecordingHeader, scene_hash, "checksum of the image");
+  PALPATE_MEMBER(RecordingHeader, initial_state_hash, "CRC-32 of the bytes of the initial state");
+  PALPATE_MEMBER(RecordingHeader, period_ns, "of the loop");
+  PALPATE_MEMBER(RecordingHeader, scene_name, "of the scene");
+  PALPATE_MEMBER(RecordingHeader, build_id, "version, compiler and flags of the controller");
+  PALPATE_MEMBER(RecordingHeader, image_path, "of the image, where it was read");
+  return table;
+}
+inline constexpr FieldTable kRecordingHeaderFields = fields_of_recording_header();
+static_assert(kRecordingHeaderFields.covers(sizeof(RecordingHeader)),
+              "a member of RecordingHeader lacks its line here");
+
 // The header of a run whose controller shares `telemetry`. The texts are terminated, whatever the region holds.
 RecordingHeader recording_header(const TelemetryHeader& telemetry);
+// Of the scene its newest records are of.
+RecordingHeader recording_header(const TelemetryRegion& telemetry);
 
 // The format, for writer and reader.
 namespace plr {

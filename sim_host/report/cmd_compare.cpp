@@ -4,10 +4,10 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "sim_host/cli.h"
 #include "sim_host/cli_checks.h"
+#include "sim_host/json_output.h"
 #include "sim_host/report/read_path.h"
 
 namespace palpate {
@@ -35,8 +35,7 @@ Unit unit_of(Abscissa over) {
   return over == Abscissa::kTime ? Unit{"s", 1} : Unit{"rows", 1};
 }
 
-std::string json_text(const CurveError& e, const Unit& unit, bool within) {
-  nlohmann::ordered_json json;
+void fill(Json& json, const CurveError& e, const Unit& unit, bool within) {
   json["over"] = unit.name;
   json["from"] = unit.scale * e.from;
   json["to"] = unit.scale * e.to;
@@ -51,7 +50,6 @@ std::string json_text(const CurveError& e, const Unit& unit, bool within) {
   json["force_unnoticed"] = e.force_unnoticed;
   json["stiffness_unnoticed"] = e.stiffness_unnoticed;
   json["within_tolerance"] = within;
-  return json.dump(1) + "\n";
 }
 
 std::string table_text(const CurveError& e, const Unit& unit, const CompareCommand& command, bool within) {
@@ -69,14 +67,15 @@ std::string table_text(const CurveError& e, const Unit& unit, const CompareComma
                             within ? "within" : "above", command.tolerance_percent);
 }
 
-int run_compare(const CompareCommand& command) {
+int run_compare(const CompareCommand& command, Json& json) {
   const CsvTable reference = read_csv_table(command.reference), other = read_csv_table(command.other);
   const Abscissa over = common_abscissa(reference, other, abscissa_of(command.over));
   const bool vectors = reference.has("fx_N") && other.has("fx_N");
   const CurveError error = curve_error(path_of(reference, over, vectors), path_of(other, over, vectors));
   const bool within = std::abs(error.force_largest) <= command.tolerance_percent / 100;
   const Unit unit = unit_of(over);
-  fmt::print("{}", command.json ? json_text(error, unit, within) : table_text(error, unit, command, within));
+  fill(json, error, unit, within);
+  fmt::print("{}", table_text(error, unit, command, within));
   return within ? kExitOk : kExitFailed;
 }
 
@@ -97,7 +96,7 @@ void add_compare_command(CLI::App& app, int& exit_code) {
                    "largest error of the force, %; above it the exit code is 1")
       ->capture_default_str()
       ->check(number_in(0, 1e6));
-  command->add_flag("--json", options->json, "write the figures as JSON");
+  add_json_flag(*command, options->json);
   command->footer(
       "Forces are fx_N, fy_N, fz_N, or one number in force_N or f_N: tables of `palpate press`, of recordings, of "
       "measurements.\nErrors are relative to the reference there, but to no less than 5 % of its largest force. Over a "
@@ -105,7 +104,9 @@ void add_compare_command(CLI::App& app, int& exit_code) {
       "Examples:\n"
       "  palpate compare measured.csv forces.csv --tolerance 3\n"
       "  palpate compare before.csv after.csv --over time --json");
-  command->callback([options, &exit_code] { exit_code = run_compare(*options); });
+  command->callback([options, &exit_code] {
+    exit_code = run_with_json(options->json, "compare", [&](Json& json) { return run_compare(*options, json); });
+  });
 }
 
 }  // namespace palpate

@@ -18,6 +18,7 @@
 #include "sim_host/build_id.h"
 #include "sim_host/cli.h"
 #include "sim_host/cli_checks.h"
+#include "sim_host/json_output.h"
 #include "sim_host/latency/machine_identity.h"
 #include "sim_host/overlay_options.h"
 #include "sim_host/report/case_report.h"
@@ -35,7 +36,7 @@ struct ReportCommand {
   SceneOverlays overlays;
   std::vector<double> place_mm, normal{0, 1, 0};
   double radius_mm = 0, depth_mm = 0;
-  bool solve = false, again = false, quick = false;
+  bool solve = false, again = false, quick = false, json = false;
 };
 
 std::string text_of(const std::string& path) {
@@ -196,7 +197,7 @@ std::string today() {
   return text;
 }
 
-int run_report(const ReportCommand& command) {
+int run_report(const ReportCommand& command, Json& json) {
   const std::vector<std::string> scenes = scenes_of(command);
   if (command.solve && scenes.size() > 1 && !command.place_mm.empty())
     throw std::runtime_error("--place: one place is for one scene; name one scene");
@@ -206,7 +207,10 @@ int run_report(const ReportCommand& command) {
   const ReportStamp stamp{today(), kBuildId, machine_text()};
   write_file(command.out + "/report.html", report_html(cases, stamp));
   write_file(command.out + "/report.csv", report_csv(cases));
-  write_file(command.out + "/report.json", report_json(cases, stamp));
+  const std::string figures = report_json(cases, stamp);
+  json["folder"] = command.out;
+  json.update(Json::parse(figures));
+  write_file(command.out + "/report.json", figures);
   if (!command.markdown.empty()) write_file(command.markdown, report_markdown(cases, stamp));
   if (!command.picture.empty()) {
     pareto_plot(cases, "Every model on every case: error against cost").save(command.picture);
@@ -246,7 +250,10 @@ void add_report_command(CLI::App& app, int& exit_code) {
       "  palpate report --all tests/accuracy --out report\n"
       "  palpate report organ.toml --solve --depth-mm 3\n"
       "  palpate report tests/accuracy/block.toml --model elastic --model tip");
-  command->callback([options, &exit_code] { exit_code = run_report(*options); });
+  add_json_flag(*command, options->json);
+  command->callback([options, &exit_code] {
+    exit_code = run_with_json(options->json, "report", [&](Json& json) { return run_report(*options, json); });
+  });
 }
 
 }  // namespace palpate

@@ -23,7 +23,7 @@
 namespace palpate {
 
 inline constexpr std::uint64_t kMailboxMagic = 0x31304C49414D504Cull;  // bytes "LPMAIL01"
-inline constexpr std::uint32_t kMailboxVersion = 3;
+inline constexpr std::uint32_t kMailboxVersion = 4;
 
 // What the host asks for. Levels, not events: the newest replaces the older ones.
 struct HostCommand {
@@ -33,7 +33,7 @@ struct HostCommand {
   std::uint64_t heartbeat = 0;   // +1 several times a second while the host lives
   JointCommand joints;           // for an articulated tool; reserved must be 0
   LiveSettings live;             // what is wanted of the settings that may change during a run
-  std::uint64_t reserved = 0;    // must be 0
+  std::uint64_t scene = 0;       // number of the scene to go over to, of those that were announced; never goes back
 };
 static_assert(std::is_trivially_copyable_v<HostCommand> && sizeof(HostCommand) % 8 == 0);
 inline constexpr std::size_t kCommandWords = sizeof(HostCommand) / 8;
@@ -95,6 +95,13 @@ class MailboxWriter {
     current_.live = live;
     publish();
   }
+  // Together with the release of every command: what was asked of the scene before is not asked of this one.
+  void set_scene(std::uint64_t number) noexcept {
+    current_.generation += 1;
+    current_.commands = 0;
+    current_.scene = number;
+    publish();
+  }
   void beat() noexcept {
     current_.heartbeat += 1;
     publish();
@@ -137,10 +144,11 @@ class MailboxReader {
   MailboxResult poll(HostCommand& command) PALPATE_RT {
     HostCommand copy;
     if (region_ == nullptr || !read(copy)) return MailboxResult::kBusy;
-    if ((copy.commands & ~kKnownCommands) != 0 || copy.quit > 1 || copy.reserved != 0) return MailboxResult::kInvalid;
+    if ((copy.commands & ~kKnownCommands) != 0 || copy.quit > 1) return MailboxResult::kInvalid;
     if (!is_valid(copy.joints) || !is_valid(copy.live)) return MailboxResult::kInvalid;
-    if (copy.generation < generation_) return MailboxResult::kInvalid;
+    if (copy.generation < generation_ || copy.scene < scene_) return MailboxResult::kInvalid;
     generation_ = copy.generation;
+    scene_ = copy.scene;
     command = copy;
     return MailboxResult::kAccepted;
   }
@@ -166,7 +174,7 @@ class MailboxReader {
   }
 
   const MailboxRegion* region_ = nullptr;
-  std::uint64_t generation_ = 0;
+  std::uint64_t generation_ = 0, scene_ = 0;
 };
 
 }  // namespace palpate

@@ -9,7 +9,8 @@
 //
 // Payloads are 64-bit atomic words, so that a copy torn by the writer is a detected event and not a data race. There
 // are no fences: ThreadSanitizer in gcc 12 does not model them. Each data word is instead stored with release and
-// loaded with acquire, which on x86-64 compiles to the same plain moves as relaxed words with fences.
+// loaded with acquire, which on x86-64 compiles to the same plain moves as relaxed words with fences, and on AArch64 to
+// stlr and ldar.
 //
 // Interleaving that must be caught (version of the snapshot, or sequence of a slot; w = data words):
 //
@@ -38,13 +39,14 @@
 namespace palpate {
 
 inline constexpr std::uint64_t kTelemetryMagic = 0x3130544C4554504Cull;  // bytes "LPTELT01"
-inline constexpr std::uint32_t kTelemetryVersion = 2;
+inline constexpr std::uint32_t kTelemetryVersion = 3;
 // Slots of the ring: 4 s at 1 kHz, so an ordinary process under load does not lose records. Overflow: the oldest
 // record is overwritten and the reader counts it as lost.
 inline constexpr std::uint64_t kTelemetryCapacity = 4096;
 inline constexpr std::size_t kRecordWords = sizeof(TickRecord) / 8;
 inline constexpr std::size_t kBuildIdBytes = 256;
 inline constexpr std::size_t kImagePathBytes = 1024;
+inline constexpr std::size_t kSchemaBytes = 24 * 1024;  // of the text, and room for more; a test holds it
 
 static_assert(sizeof(TickRecord) % 8 == 0);
 static_assert(std::atomic<std::uint64_t>::is_always_lock_free, "words shared between processes must not hide a lock");
@@ -103,11 +105,14 @@ constexpr std::uint64_t record_layout_hash() noexcept {
 }
 inline constexpr std::uint64_t kRecordLayoutHash = record_layout_hash();
 
-// Written once, before the region is shared; never changes afterwards.
+// Written once, before the region is shared; never changes afterwards. The first three keep their places in every
+// version, so that a reader that knows nothing else finds the schema.
 struct TelemetryHeader {
   std::uint64_t magic;
   std::uint32_t version;
-  std::uint32_t record_words;
+  std::uint32_t schema_bytes;   // of the text, without its end; 0: none
+  std::uint64_t schema_offset;  // of the text from the region's beginning
+  std::uint64_t record_words;
   std::uint64_t layout_hash;
   std::uint64_t total_bytes;
   std::uint64_t capacity;
@@ -116,6 +121,15 @@ struct TelemetryHeader {
   char scene_name[kNameBytes];       // zero-terminated
   char build_id[kBuildIdBytes];      // zero-terminated
   char image_path[kImagePathBytes];  // zero-terminated
+};
+
+// A scene that the run went over to; the header has the one it began with. Never changes once first_sequence is set.
+inline constexpr std::size_t kMostLaterScenes = 16;
+struct TelemetryScene {
+  std::atomic<std::uint64_t> first_sequence;  // of its first record; 0: not yet
+  std::uint64_t scene_hash;
+  char scene_name[kNameBytes];
+  char image_path[kImagePathBytes];
 };
 
 struct TelemetryRegion {
@@ -127,6 +141,8 @@ struct TelemetryRegion {
     std::atomic<std::uint64_t> sequence;  // of the record inside; 0: being written, or never written
     std::atomic<std::uint64_t> word[kRecordWords];
   } slot[kTelemetryCapacity];
+  TelemetryScene later_scene[kMostLaterScenes];
+  char schema[kSchemaBytes];  // what lies where, in JSON (telemetry_schema.h); before the region is shared, too
 };
 static_assert(std::is_standard_layout_v<TelemetryRegion>);
 
@@ -142,6 +158,14 @@ inline const char* check_telemetry(const TelemetryRegion& region) noexcept {
   return nullptr;
 }
 
+// The scene that the newest records are of: null: the header's.
+inline const TelemetryScene* newest_scene(const TelemetryRegion& region) noexcept {
+  const TelemetryScene* newest = nullptr;
+  for (const TelemetryScene& scene : region.later_scene)
+    if (scene.first_sequence.load(std::memory_order_acquire) != 0) newest = &scene;
+  return newest;
+}
+
 // The controller's side. `write` is wait-free: a fixed number of plain stores.
 class TelemetryWriter {
  public:
@@ -154,6 +178,7 @@ class TelemetryWriter {
     TelemetryHeader& header = region.header;
     header.magic = kTelemetryMagic;
     header.version = kTelemetryVersion;
+    header.schema_offset = offsetof(TelemetryRegion, schema);
     header.record_words = kRecordWords;
     header.layout_hash = kRecordLayoutHash;
     header.total_bytes = sizeof(TelemetryRegion);
@@ -163,6 +188,18 @@ class TelemetryWriter {
     copy_text(header.scene_name, model.name);
     copy_text(header.build_id, build_id);
     copy_text(header.image_path, image_path);
+  }
+  // By an ordinary thread, before the loop may take it up: what is known of the run's later scene `number`, 1...
+  void announce_scene(std::uint64_t number, const Model& model, const char* image_path) noexcept {
+    TelemetryScene& scene = region_->later_scene[number - 1];
+    scene.scene_hash = model.scene_hash;
+    copy_text(scene.scene_name, model.name);
+    copy_text(scene.image_path, image_path);
+  }
+  // The next record is the first of later scene `number`, 1 to kMostLaterScenes.
+  void begin_scene(std::uint64_t number) PALPATE_RT {
+    // Release: with it the texts become visible; pairs with the acquire load in newest_scene().
+    region_->later_scene[number - 1].first_sequence.store(sequence_ + 1, std::memory_order_release);
   }
   // Publishes one record under the next sequence number 1, 2, 3..., whatever record.sequence says. Not before open().
   void write(const TickRecord& record) PALPATE_RT {

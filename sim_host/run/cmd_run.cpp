@@ -9,8 +9,8 @@
 #include "sim_host/cli_checks.h"
 #include "sim_host/doctor/doctor.h"
 #include "sim_host/overlay_options.h"
+#include "sim_host/run/run_json.h"
 #include "sim_host/run/run_session.h"
-#include "sim_host/run/verdict.h"
 
 namespace palpate {
 
@@ -18,7 +18,7 @@ namespace {
 
 struct RunCommand {
   RunOptions run;
-  bool no_record = false, no_black_box = false, live = false, virtual_time = false, real_time = false;
+  bool no_record = false, no_black_box = false, live = false, virtual_time = false, real_time = false, json = false;
   int worst = 3;
   CLI::Option* record_option = nullptr;
   VerdictLimits limits;
@@ -26,13 +26,7 @@ struct RunCommand {
 
 // One line about the real-time checklist, when something on it fails.
 void print_hint(const RunOptions& options) {
-  DoctorSources sources = this_machine();
-  sources.cpu = options.cpu;
-  sources.loop_priority = options.priority;
-  std::vector<DoctorItem> items = examine_machine(sources);
-  const std::vector<DoctorItem> device = examine_device(sources, options.device);
-  items.insert(items.end(), device.begin(), device.end());
-  const std::string failing = failing_items(items);
+  const std::string failing = failing_items(examine_machine_and_device(options.cpu, options.priority, options.device));
   if (failing.empty()) return;
   fmt::print(stderr,
              "hint: late ticks are likely under load, these checks fail: {}; `palpate doctor` says what to do\n",
@@ -50,6 +44,24 @@ void print_black_box(const RunResult& result) {
   }
 }
 
+void fill(Json& json, const RunOptions& options, const RunResult& result, const std::vector<RunVerdict>& verdicts) {
+  json["scene"] = options.scene;
+  json["virtual_time"] = result.virtual_time;
+  json.update(summary_json(result.summary, result.lost));
+  json["grasp"] = result.grasp;
+  json["record"] = options.record.empty() || !result.recorder_error.empty() ? Json(nullptr) : Json(options.record);
+  json["interrupted"] = result.interrupted;
+  json["controller_exit_code"] = result.controller_exit;
+  json["verdicts"] = verdicts_json(verdicts);
+  json["black_boxes"] = Json::array();
+  for (const BlackBoxDump& dump : result.dumps)
+    json["black_boxes"].push_back({{"cause", dump.cause},
+                                   {"recording", dump.recording},
+                                   {"log", dump.log},
+                                   {"ticks", dump.ticks},
+                                   {"replayable", dump.replayable}});
+}
+
 void settle_time(RunCommand& command) {
   RunOptions& options = command.run;
   if (command.real_time) options.time = RunTime::kReal;
@@ -59,7 +71,7 @@ void settle_time(RunCommand& command) {
   if (options.device.starts_with("auto")) options.device.replace(0, 4, "loopback");
 }
 
-int run(RunCommand& command) {
+int run(RunCommand& command, Json& json) {
   RunOptions& options = command.run;
   if (command.record_option->count() == 0) options.record = free_name(options.record);
   if (command.no_record) options.record.clear();
@@ -78,9 +90,11 @@ int run(RunCommand& command) {
   if (result.summary.ticks == 0) {
     fmt::print("nothing ran, nothing was recorded\n");
   } else if (!options.record.empty() && result.recorder_error.empty()) {
-    fmt::print("record  {} ({} ticks){}\n", options.record, result.summary.ticks,
-               result.interrupted ? ", stopped by signal" : "");
+    fmt::print("record  {} ({}{} ticks){}\n", options.record, result.later_recordings.empty() ? "" : "begins a run of ",
+               result.summary.ticks, result.interrupted ? ", stopped by signal" : "");
   }
+  for (const std::string& recording : result.later_recordings)
+    fmt::print("record  {} (the run went over to it)\n", recording);
   print_black_box(result);
   if (!result.recorder_error.empty()) {
     fmt::print(stderr, "palpate: recording incomplete: {}\n         `palpate recover {}{}` keeps what is there\n",
@@ -92,6 +106,7 @@ int run(RunCommand& command) {
   }
   const std::vector<RunVerdict> verdicts =
       judge(result.summary, {result.lost, options.arm, result.interrupted}, command.limits);
+  fill(json, options, result, verdicts);
   if (result.summary.ticks > 0) fmt::print("{}", verdict_text(verdicts));
   return exit_code_of(result, verdicts);
 }
@@ -128,6 +143,10 @@ void add_run_command(CLI::App& app, int& exit_code) {
                                                 "run-2.plr, run-3.plr ... when that exists");
   command->add_flag("--overwrite", options->overwrite,
                     "replace the recording of that name once the new one is complete");
+  command->add_option(
+      "--telemetry", options->telemetry,
+      "socket on which programs of the same user may come and read every tick while it is made, as many "
+      "as like (docs/record_format.md)");
   command->add_flag("--no-record", settings->no_record, "write no recording");
   command->add_option("--path", options->path,
                       "motion of the simulated hand, CSV: time_s,x_mm,y_mm,z_mm[,rx_deg,ry_deg,rz_deg]; default: the "
@@ -165,7 +184,10 @@ void add_run_command(CLI::App& app, int& exit_code) {
       "  palpate run mallet.pal --device can:can0 --profile arm.toml --cpu 3 --priority 80 --no-record\n"
       "  palpate run mallet.pal --path hand.csv --live --worst 16\n"
       "  palpate run config/scenes/grasp_cylinder_5.toml --close 0.7 --joint index_tip_flexion=20");
-  command->callback([settings, &exit_code] { exit_code = run(*settings); });
+  add_json_flag(*command, settings->json);
+  command->callback([settings, &exit_code] {
+    exit_code = run_with_json(settings->json, "run", [&](Json& json) { return run(*settings, json); });
+  });
 }
 
 }  // namespace palpate

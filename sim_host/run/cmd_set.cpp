@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "sim_host/cli.h"
+#include "sim_host/json_output.h"
 #include "sim_host/run/settings_port.h"
 
 namespace palpate {
@@ -21,7 +22,7 @@ void add_set_command(CLI::App& app, int& exit_code) {
       ->required()
       ->check(CLI::PositiveNumber);
   command->add_option("SETTING", options->words, "NAME=FACTOR, of what was baked; none: tell what is set");
-  command->add_flag("--json", options->json, "tell it as JSON");
+  add_json_flag(*command, options->json);
   command->footer("Settings:\n" + settings_help() +
                   "The tick follows in steps that move the force by less than 1 % of the device's largest. What was\n"
                   "asked for is recorded with every tick, and replays bit for bit.\n"
@@ -29,22 +30,18 @@ void add_set_command(CLI::App& app, int& exit_code) {
                   "  palpate set $(pgrep -x palpate) stiffness=0.5 friction=0\n"
                   "  palpate set $(pgrep -x palpate-rt)");
   command->callback([options, &exit_code] {
-    std::string words;
-    for (const std::string& word : options->words) words += (words.empty() ? "" : " ") + word;
-    const std::string answer = ask_run(options->host, words);
-    if (!options->json) {
+    exit_code = run_with_json(options->json, "set", [&](Json& json) {
+      std::string words;
+      for (const std::string& word : options->words) words += (words.empty() ? "" : " ") + word;
+      const std::string answer = ask_run(options->host, words);
       fmt::print("{}\n", answer);
-    } else {
       LiveSettings now;
       apply_settings(answer, now);
-#define PALPATE_FIELD(name, lowest, highest, key, meaning) \
-  json += fmt::format("{}\"{}\": {:g}", json.empty() ? "" : ", ", #name, now.name);
-      std::string json;
+#define PALPATE_FIELD(name, lowest, highest, key, meaning) json[#name] = Json::parse(fmt::format("{:g}", now.name));
       PALPATE_LIVE_SETTINGS(PALPATE_FIELD)
 #undef PALPATE_FIELD
-      fmt::print("{{{}}}\n", json);
-    }
-    exit_code = kExitOk;
+      return kExitOk;
+    });
   });
 }
 

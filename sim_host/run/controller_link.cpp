@@ -1,11 +1,14 @@
 #include "sim_host/run/controller_link.h"
 
 #include <fmt/format.h>
+#include <poll.h>
+#include <sys/socket.h>
 
 #include <csignal>
 #include <stdexcept>
 
 #include "sim_host/exit_codes.h"
+#include "sim_host/run/scene_shelf.h"
 
 namespace palpate {
 
@@ -45,6 +48,23 @@ ControllerLink::ControllerLink(const std::string& program, std::vector<std::stri
   if (const char* wrong = check_telemetry(telemetry())) {
     throw std::runtime_error(fmt::format("the controller's telemetry is of another build ({})", wrong));
   }
+}
+
+std::string ControllerLink::announce_scene(const std::string& path) {
+  constexpr int kLook_ms = 50, kLongest_ms = 10'000;
+  const std::string text = kAnnounce + path;
+  const int fd = control_.end(0);
+  if (send(fd, text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT) < 0) return "the controller does not listen";
+  for (int waited_ms = 0; waited_ms < kLongest_ms; waited_ms += kLook_ms) {
+    pollfd wait{fd, POLLIN, 0};
+    char answer[2048];
+    mailbox().beat();
+    if (poll(&wait, 1, kLook_ms) <= 0) continue;
+    const ssize_t got = recv(fd, answer, sizeof answer, MSG_DONTWAIT);
+    if (got < 1) return "the controller has ended";
+    return answer[0] == kReady ? "" : std::string(answer + 1, static_cast<std::size_t>(got - 1));
+  }
+  return "the controller did not answer";
 }
 
 int ControllerLink::finish() {

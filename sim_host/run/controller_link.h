@@ -4,7 +4,8 @@
 // Set-up protocol on the socket (SOCK_SEQPACKET), each step one descriptor with a label:
 //   host -> controller  'C'  the command mailbox      (the controller checks size and seals, maps it read-only)
 //   controller -> host  'T'  the telemetry region     (the host does the same)
-// Nothing travels on the socket afterwards; but the host keeps its end open as long as it lives, so that the controller
+// Afterwards the host may send 'S' and the path of an image to go over to, and gets one answer, '+' or '-' and why not;
+// nothing else travels there. The host keeps its end open as long as it lives, so that the controller
 // knows of its death at once.
 #pragma once
 
@@ -33,6 +34,9 @@ class ControllerLink {
   MailboxWriter& mailbox() { return *mailbox_writer_; }
   // What the writer writes to, for tests of what a broken host may do to a controller.
   MailboxRegion& mailbox_region() { return *static_cast<MailboxRegion*>(mailbox_memory_.data()); }
+  // Has the controller read and check another scene's image: "" when it is ready to go over to it (MailboxWriter::
+  // set_scene with the next number), otherwise why not. Waits up to 10 s, and shows meanwhile that the host lives.
+  std::string announce_scene(const std::string& path);
   Process& process() { return process_; }
   // Asks for zero force and the end of the loop, waits, then insists: SIGTERM after 3 s, SIGKILL after 1 s more.
   // Returns the controller's exit code.

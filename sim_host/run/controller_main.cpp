@@ -22,9 +22,9 @@
 #include "hal/loop/lockstep.h"
 #include "hal/loop/loop.h"
 #include "hal/system/device_lock.h"
+#include "hal/system/duration.h"
 #include "hal/system/private_file.h"
 #include "hal/system/rt_linux.h"
-#include "hal/system/shared_memory.h"
 #include "rt_core/image.h"
 #include "rt_core/stage_cost.h"
 #include "sim_host/build_id.h"
@@ -32,7 +32,9 @@
 #include "sim_host/run/controller_report.h"
 #include "sim_host/run/crash_file.h"
 #include "sim_host/run/heap_count.h"
+#include "sim_host/run/host_connection.h"
 #include "sim_host/run/host_port.h"
+#include "sim_host/run/switching_controller.h"
 #include "sim_host/run/tick_fit.h"
 #include "sim_host/tick_memory.h"
 
@@ -57,8 +59,9 @@ constexpr char kHelp[] =
     "  --device-fd N       use the inherited socket N instead of opening the loopback\n"
     "  --control-fd N      inherited Unix socket to the host: telemetry and commands; default: none; then\n"
     "                      SIGUSR1 arms: an operator's act, never by itself\n"
+    "  --telemetry PATH    listen on this socket for readers of the same user (docs/record_format.md)\n"
     "  --crash-file FILE   when the host dies: write the last ticks to this recording\n"
-    "  --duration S        stop after S seconds; default: when told to\n"
+    "  --duration S        stop after S seconds, or 10s, 5m, 1h; default: when told to\n"
     "  --cpu N             pin to this CPU; default: any\n"
     "  --priority P        SCHED_FIFO priority 1..98, 0: ordinary scheduling; default 80\n"
     "  --require-rt        refuse to run without scheduler, memory lock and CPU as asked; default on can: and usb:\n"
@@ -75,7 +78,7 @@ constexpr double kHostSilence_s = 2.0;  // forty heartbeats; see host_port.h
 constexpr double kStartTimeout_s = 3.0;
 
 struct Arguments {
-  std::string image, device = "auto", second_device, profile, crash_file;
+  std::string image, device = "auto", second_device, profile, crash_file, telemetry;
   int second_fd = -1, second_turn_fd = -1;
   int device_fd = -1, control_fd = -1, cpu = -1, priority = 80;
   int device_turn_fd = -1, host_turn_fd = -1;
@@ -97,18 +100,22 @@ double number(const char* option, const char* text, double lowest, double highes
   throw Failure{kUsage, std::string(option) + ": '" + text + "' is not a number in the allowed range"};
 }
 
+double duration_s(const char* text) {
+  const std::optional<double> seconds = seconds_of(text);
+  if (seconds && *seconds >= 0.001 && *seconds <= 1e6) return *seconds;
+  throw Failure{kUsage, std::string("--duration: '") + text + "' is no duration such as 10s, 5m or 1h"};
+}
+
 Arguments parse(int argc, char** argv) {
   Arguments arguments;
-  const option options[] = {{"image", 1, nullptr, 'i'},        {"device", 1, nullptr, 'd'},
-                            {"device-fd", 1, nullptr, 'f'},    {"control-fd", 1, nullptr, 'c'},
-                            {"duration", 1, nullptr, 's'},     {"cpu", 1, nullptr, 'u'},
-                            {"priority", 1, nullptr, 'p'},     {"help", 0, nullptr, 'h'},
-                            {"version", 0, nullptr, 'v'},      {"device-turn-fd", 1, nullptr, 'D'},
-                            {"host-turn-fd", 1, nullptr, 'H'}, {"crash-file", 1, nullptr, 'x'},
-                            {"require-rt", 0, nullptr, 'q'},   {"allow-no-rt", 0, nullptr, 'a'},
-                            {"profile", 1, nullptr, 'P'},      {"second-device", 1, nullptr, '2'},
-                            {"second-fd", 1, nullptr, 'F'},    {"second-turn-fd", 1, nullptr, 'T'},
-                            {nullptr, 0, nullptr, 0}};
+  const option options[] = {
+      {"image", 1, nullptr, 'i'},          {"device", 1, nullptr, 'd'},       {"device-fd", 1, nullptr, 'f'},
+      {"control-fd", 1, nullptr, 'c'},     {"duration", 1, nullptr, 's'},     {"cpu", 1, nullptr, 'u'},
+      {"priority", 1, nullptr, 'p'},       {"help", 0, nullptr, 'h'},         {"version", 0, nullptr, 'v'},
+      {"device-turn-fd", 1, nullptr, 'D'}, {"host-turn-fd", 1, nullptr, 'H'}, {"crash-file", 1, nullptr, 'x'},
+      {"require-rt", 0, nullptr, 'q'},     {"allow-no-rt", 0, nullptr, 'a'},  {"profile", 1, nullptr, 'P'},
+      {"second-device", 1, nullptr, '2'},  {"second-fd", 1, nullptr, 'F'},    {"second-turn-fd", 1, nullptr, 'T'},
+      {"telemetry", 1, nullptr, 't'},      {nullptr, 0, nullptr, 0}};
   const auto integer = [](const char* name, double low, double high) {
     return static_cast<int>(number(name, optarg, low, high));
   };
@@ -120,9 +127,10 @@ Arguments parse(int argc, char** argv) {
     if (c == 'T') arguments.second_turn_fd = integer("--second-turn-fd", 0, 1 << 20);
     if (c == 'P') arguments.profile = optarg;
     if (c == 'x') arguments.crash_file = optarg;
+    if (c == 't') arguments.telemetry = optarg;
     if (c == 'f') arguments.device_fd = integer("--device-fd", 0, 1 << 20);
     if (c == 'c') arguments.control_fd = integer("--control-fd", 0, 1 << 20);
-    if (c == 's') arguments.duration_s = number("--duration", optarg, 0.001, 1e6);
+    if (c == 's') arguments.duration_s = duration_s(optarg);
     if (c == 'u') arguments.cpu = integer("--cpu", -1, 1023);
     if (c == 'p') arguments.priority = integer("--priority", 0, 98);
     if (c == 'D') arguments.device_turn_fd = integer("--device-turn-fd", 0, 1 << 20);
@@ -148,29 +156,6 @@ Model load_image(const std::string& path, PrivateFile& file) {
     throw Failure{kUsage, path + ": " + result.field + ": " + describe(result.error) + "; bake the scene again"};
   }
   return model;
-}
-
-// The two memories shared with the host; empty without one.
-struct HostConnection {
-  SharedMemory mailbox, telemetry;
-  TelemetryWriter writer;
-};
-
-void connect_host(const Arguments& arguments, const Model& model, HostConnection& host) {
-  std::string error;
-  const int fd = receive_descriptor(arguments.control_fd, 'C', kSocketTimeout_ms, error);
-  if (fd >= 0) host.mailbox = SharedMemory::open_peer(fd, sizeof(MailboxRegion), error);
-  if (!host.mailbox) throw Failure{kUnavailable, "the host's command region is refused: " + error};
-  if (const char* wrong = check_mailbox(*static_cast<const MailboxRegion*>(host.mailbox.data()))) {
-    throw Failure{kUnavailable, std::string("the host's command region is of another build (") + wrong + ")"};
-  }
-  host.telemetry = SharedMemory::create("palpate-telemetry", sizeof(TelemetryRegion), error);
-  if (!host.telemetry) throw Failure{kUnavailable, "telemetry: " + error};
-  const std::unique_ptr<char, void (*)(void*)> full(realpath(arguments.image.c_str(), nullptr), std::free);
-  host.writer.open(*static_cast<TelemetryRegion*>(host.telemetry.data()), model,
-                   static_cast<std::int64_t>(model.params.period_s * 1e9 + 0.5), kBuildId,
-                   full ? full.get() : arguments.image.c_str());
-  if (!send_descriptor(arguments.control_fd, 'T', host.telemetry.fd(), error)) throw Failure{kUnavailable, error};
 }
 
 // A set-up that cannot carry its traffic in every period is refused before anything is sent, with the table.
@@ -326,21 +311,32 @@ std::string missing_rights(const RtSetup& setup, const Arguments& arguments) {
   return missing;
 }
 
+// What speaks against going over to a scene beyond scene_misfit().
+std::string refuse_scene(const Arguments& arguments, const Connection& connection, const Model& next) {
+  const bool real = connection.address.kind != TransportKind::kLoopback;
+  const std::string profile = refuse_profile(real, arguments.device, arguments.profile, next.params);
+  if (!profile.empty() || arguments.virtual_time()) return profile;
+  const TickFit fit{worst_tick_instructions(next), measure_slowest_tick_ns(next), next.params.period_s};
+  return fit.fits() || !real ? "" : "its worst tick does not fit the period on this machine: " + tick_fit_text(fit);
+}
+
 // The real-time thread: set-up, system-call filter, loop. Prints only before the filter is in place.
 template <Device D, Clock C>
 LoopSummary run_loop(const Arguments& arguments, const Model& model, Core& core, HostConnection& host, D& bus,
                      const Connection& connection, C& clock, const std::atomic<bool>& interrupted, LoopUsage& usage) {
   std::string missing;
   std::atomic<bool> stop{false};
-  const auto* mailbox = static_cast<const MailboxRegion*>(host.mailbox.data());
+  const MailboxRegion* mailbox = host.mailbox_region();
   HostPort port(mailbox, static_cast<std::uint32_t>(kHostSilence_s / model.params.period_s), interrupted, stop);
   if (mailbox == nullptr) port.arm_on(install_arm_signal());
   CrashFile crash(arguments.control_fd, arguments.crash_file);
-  TelemetrySink sink(mailbox != nullptr ? &host.writer : nullptr);
+  TelemetrySink sink(host.telemetry ? &host.writer : nullptr);
   D* second = nullptr;
   if constexpr (std::same_as<D, DeviceBus>) second = connection.second;
   SupervisedDevice device(bus, port), other(second != nullptr ? *second : bus, port);
-  ModelController controller(model, *core.state, *core.scratch);
+  SceneShelf shelf(model, [&](const Model& next) { return refuse_scene(arguments, connection, next); });
+  SwitchingController controller(model, *core.state, *core.scratch, shelf, port,
+                                 host.telemetry ? &host.writer : nullptr);
   if constexpr (std::same_as<D, AxisDevice>) start_drives(bus, clock);
   LoopSummary summary;
   std::thread thread([&] {
@@ -368,14 +364,14 @@ LoopSummary run_loop(const Arguments& arguments, const Model& model, Core& core,
     summary.faults |= port.faults();
     crash.loop_ended();
   });
-  const bool host_died = mailbox != nullptr && crash.wait_for_death();
+  const bool host_died = mailbox != nullptr && crash.wait_for_death([&] { host.hear(arguments.control_fd, shelf); });
   if (host_died) {
     port.host_has_died();
-    crash.write(*static_cast<const TelemetryRegion*>(host.telemetry.data()), model, true);
+    crash.write(host.ring(), host.newest_model(shelf, model), true);
   }
   thread.join();
   if (!host_died && (port.faults() & Fault::kHostSilent) != 0) {
-    crash.write(*static_cast<const TelemetryRegion*>(host.telemetry.data()), model, false);
+    crash.write(host.ring(), host.newest_model(shelf, model), false);
   }
   if (!missing.empty()) {
     throw Failure{kUnavailable, "refused: " + missing +
@@ -438,7 +434,11 @@ int run(int argc, char** argv) {
   const Model model = load_image(arguments.image, image);
   Core core(model);
   HostConnection host;
-  if (arguments.control_fd >= 0) connect_host(arguments, model, host);
+  std::string error;
+  if (arguments.control_fd >= 0 || !arguments.telemetry.empty())
+    error = host.share_telemetry(model, arguments.image, arguments.telemetry);
+  if (error.empty() && arguments.control_fd >= 0) error = host.connect(arguments.control_fd);
+  if (!error.empty()) throw Failure{kUnavailable, error};
   Connection connection = connect_device(arguments, arguments.device, arguments.device_fd, model.params);
   const std::optional<Connection> second = connect_second(arguments, model.params, connection);
   std::optional<DeviceBus> other;

@@ -38,12 +38,13 @@ bool CrashFile::has_ended(int timeout_ms) {
   return ::poll(&wait, 1, timeout_ms) > 0;
 }
 
-bool CrashFile::wait_for_death() {
+bool CrashFile::wait_for_death(const std::function<void()>& hear) {
   for (;;) {  // bound: the life of the loop
-    pollfd wait[2] = {{ended_fd_, POLLIN, 0}, {control_fd_, 0, 0}};
+    pollfd wait[2] = {{ended_fd_, POLLIN, 0}, {control_fd_, POLLIN, 0}};
     if (::poll(wait, control_fd_ >= 0 ? 2 : 1, -1) < 0 && errno != EINTR) return false;
     if ((wait[0].revents & POLLIN) != 0) return false;
     if ((wait[1].revents & (POLLHUP | POLLERR)) != 0) return true;
+    if ((wait[1].revents & POLLIN) != 0) hear();
   }
 }
 
@@ -55,12 +56,15 @@ void CrashFile::write(const TelemetryRegion& ring, const Model& model, bool loop
     TelemetryReader reader(ring);
     TickRecord record;
     std::uint64_t expected = 0;
+    const TelemetryScene* later = newest_scene(ring);
+    const std::uint64_t first = later != nullptr ? later->first_sequence.load() : 1;
+    const RecordingHeader header = recording_header(ring);
     const auto drain = [&] {
       for (std::uint64_t i = 0; i < kTelemetryCapacity && reader.next(record); ++i) {
+        if (record.sequence < first) continue;  // of a scene before
         if (!file) {
-          file = std::make_unique<RecordingWriter>(PartFile(path_, WhenItExists::kReplace),
-                                                   recording_header(ring.header), block_of(*initial));
-          file->begin_slice(record.sequence, record.sequence == 1);
+          file = std::make_unique<RecordingWriter>(PartFile(path_, WhenItExists::kReplace), header, block_of(*initial));
+          file->begin_slice(record.sequence, record.sequence == first);
         } else if (record.sequence > expected) {
           file->add_lost(expected, record.sequence - expected);
         }

@@ -3,6 +3,7 @@
 // between the host's death and zero force are in a file: `palpate recover` joins it to the host's.
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "sim_host/rings/telemetry.h"
@@ -20,10 +21,11 @@ class CrashFile {
 
   // By the loop's thread when it has ended.
   void loop_ended() noexcept;
-  // By the main thread: waits until the host has died (true) or the loop has ended (false).
-  bool wait_for_death();
-  // Writes what the ring holds; while the loop still runs, also every further tick until it has ended. Errors go to
-  // stderr: there is nobody else left.
+  // By the main thread: waits until the host has died (true) or the loop has ended (false). `hear` is called when the
+  // host has said something on the socket.
+  bool wait_for_death(const std::function<void()>& hear);
+  // Writes what the ring holds of the newest scene, whose model it is; while the loop still runs, also every further
+  // tick until it has ended. Errors go to stderr: there is nobody else left.
   void write(const TelemetryRegion& ring, const Model& model, bool loop_runs);
 
  private:

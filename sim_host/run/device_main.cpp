@@ -23,6 +23,7 @@
 #include "hal/loop/clock.h"
 #include "hal/loop/deadline.h"
 #include "hal/loop/lockstep.h"
+#include "hal/system/duration.h"
 #include "hal/system/rt_linux.h"
 #include "hal/system/shared_memory.h"
 #include "sim_host/exit_codes.h"
@@ -46,7 +47,8 @@ constexpr char kHelp[] =
     "  --profile FILE     of a device with drives: these are simulated, each by its own protocol (docs/devices.md);\n"
     "                     the path is in the world then, the device where the profile says;\n"
     "                     the hand waits until a drive is enabled\n"
-    "  --duration S       stop after S seconds; default: when the controller is gone (loopback) or on a signal\n"
+    "  --duration S       stop after S seconds, or 10s, 5m, 1h; default: when the controller is gone (loopback) or on "
+    "a signal\n"
     "  --bus-model B      classic or fd: frames take the time they need at 1 Mbit/s (fd: data at 5 Mbit/s)\n"
     "  --hand-fd N        inherited memory that says where the hand is pulled (palpate view); it leaves its motion "
     "then\n"
@@ -110,6 +112,12 @@ std::string help() {
          "         echo '2.0 lose 5' > faults.txt; palpate-device --device can:vcan0 --faults faults.txt\n";
 }
 
+double duration_s(const char* text) {
+  const std::optional<double> seconds = seconds_of(text);
+  if (seconds && *seconds >= 0.001 && *seconds <= 1e6) return *seconds;
+  throw Failure{kUsage, std::string("--duration: '") + text + "' is no duration such as 10s, 5m or 1h"};
+}
+
 Arguments parse(int argc, char** argv) {
   Arguments arguments;
   const option options[] = {{"device", 1, nullptr, 'd'},   {"device-fd", 1, nullptr, 'f'}, {"path", 1, nullptr, 'p'},
@@ -124,7 +132,7 @@ Arguments parse(int argc, char** argv) {
     if (c == 'w') arguments.hand_fd = static_cast<int>(number("--hand-fd", optarg, 0, 1 << 20));
     if (c == 'p') arguments.path = optarg;
     if (c == 'P') arguments.profile = optarg;
-    if (c == 's') arguments.duration_s = number("--duration", optarg, 0.001, 1e6);
+    if (c == 's') arguments.duration_s = duration_s(optarg);
     if (c == 'r') arguments.priority = static_cast<int>(number("--priority", optarg, 0, 98));
     if (c == 'u') arguments.cpu = static_cast<int>(number("--cpu", optarg, -1, 1023));
     if (c == 'a') arguments.faults = optarg;

@@ -13,6 +13,8 @@
 #include <stdexcept>
 
 #include "rt_core/tool/held_body.h"
+#include "sim_host/bake/default_path.h"
+#include "sim_host/bake/image_file.h"
 #include "sim_host/run/plant_options.h"
 
 namespace palpate {
@@ -64,6 +66,25 @@ std::string path_csv(const SceneDesc& scene) {
   return text;
 }
 
+namespace {
+
+// Of the scene; where only its image is known, the one that every body can take.
+std::string motion_csv(const SceneImage& scene) {
+  if (scene.scene && scene.scene->path.point.empty())
+    throw std::runtime_error("the simulated hand needs a motion: give --path CSV, or the scene a [path]");
+  if (scene.scene) return path_csv(*scene.scene);
+  const ImageFile image(scene.image_path);
+  const ModelParams& params = image.model().params;
+  SceneDesc described;
+  described.path = path_of_image(image.model());
+  described.device.holds = params.held_part;
+  described.device.grip_m = {params.grip_x_m, params.grip_y_m, params.grip_z_m};
+  fmt::print("        an image holds no motion: the hand presses the body's highest point and slides along x\n");
+  return path_csv(described);
+}
+
+}  // namespace
+
 PlantOptions plant_of(const SceneDesc& scene) {
   const DeviceDesc& device = scene.device;
   const PathDesc& hand = scene.path;
@@ -104,10 +125,7 @@ std::vector<std::string> plant_arguments(const SceneDesc& scene) {
 DeviceProcess::DeviceProcess(const std::string& program, const SceneImage& scene, const std::string& path,
                              const std::string& device, int priority, int turn_fd, int hand_fd,
                              const std::string& profile) {
-  if (path.empty() && (!scene.scene || scene.scene->path.point.empty())) {
-    throw std::runtime_error("the simulated hand needs a motion: give --path CSV, or a .toml scene with a [path]");
-  }
-  const Descriptor file(path.empty() ? text_file(path_csv(*scene.scene)) : -1);
+  const Descriptor file(path.empty() ? text_file(motion_csv(scene)) : -1);
   std::vector<std::string> arguments{
       "--device", device, "--device-fd", std::to_string(kDeviceEnd), "--priority", std::to_string(priority)};
   std::vector<std::pair<int, int>> descriptors{{sockets_.end(1), kDeviceEnd}};

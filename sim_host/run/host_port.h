@@ -52,6 +52,8 @@ class HostPort {
   const JointCommand& joints() const noexcept { return command_.joints; }
   // What it last asked of the live settings; as they were baked without a host.
   const LiveSettings& live() const noexcept { return command_.live; }
+  // Which of the announced scenes it wants; 0: the one the run began with.
+  std::uint64_t scene() const noexcept { return command_.scene; }
   // Fault bits; they stay for the rest of this controller's life.
   std::uint32_t faults() const noexcept { return faults_; }
 

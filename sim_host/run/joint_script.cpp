@@ -47,13 +47,7 @@ void set_joint(JointCommand& joints, const Model& model, std::size_t j, double v
   if (!(value >= low - 1e-9 && value <= high + 1e-9))
     refuse(where, fmt::format("{:g} is outside {:g} to {:g} {}", value, low, high, slides ? "mm" : "degrees"));
   joints.direct |= 1u << j;
-  joints.target[j] = static_cast<float>(value * unit);
-}
-
-std::size_t joint_named(const std::vector<std::string>& names, const std::string& name, const std::string& where) {
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) refuse(where, fmt::format("no joint '{}'; joints are {}", name, fmt::join(names, ", ")));
-  return static_cast<std::size_t>(found - names.begin());
+  joints.target[j] = joint_target(joint, value * unit);
 }
 
 // One column's value into a row.
@@ -75,6 +69,38 @@ void need_joints(const Model& model, const std::string& option) {
 }
 
 }  // namespace
+
+std::size_t joint_named(const std::vector<std::string>& names, const std::string& name, const std::string& where) {
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) refuse(where, fmt::format("no joint '{}'; joints are {}", name, fmt::join(names, ", ")));
+  return static_cast<std::size_t>(found - names.begin());
+}
+
+const std::vector<std::string>& finger_names() { return kFingers; }
+
+std::vector<std::size_t> joints_of_finger(const Model& model, std::int32_t finger) {
+  std::vector<std::size_t> joints;
+  for (std::size_t j = 0; j < model.joint.size(); ++j)
+    if (model.joint[j].finger == finger) joints.push_back(j);
+  return joints;
+}
+
+float joint_target(const Joint& joint, double position) {
+  const double within = std::clamp(position, joint.lowest, joint.highest);
+  const auto target = static_cast<float>(within);
+  // The tick compares in double precision, and would tell of a limit that nobody asked to pass.
+  if (double{target} > joint.highest) return std::nextafter(target, -10.0f);
+  if (double{target} < joint.lowest) return std::nextafter(target, 10.0f);
+  return target;
+}
+
+void apply_joint_word(const std::string& word, const Model& model, const std::string& where, JointCommand& joints) {
+  need_joints(model, where);
+  const std::size_t equals = word.find('=');
+  if (equals == std::string::npos) refuse(where, "write NAME=VALUE, as index_flexion=30");
+  set_joint(joints, model, joint_named(joint_names(model), word.substr(0, equals), where),
+            number(word.substr(equals + 1), where), where);
+}
 
 std::vector<std::string> joint_names(const Model& model) {
   std::vector<std::string> names;
@@ -149,14 +175,7 @@ JointScript::JointScript(const JointOptions& options, const Model& model, std::v
     refuse("--close", fmt::format("{} values; allowed 1 or {}, thumb first", options.close.size(), kMaxFingers));
   for (std::size_t f = 0; !options.close.empty() && f < kMaxFingers; ++f)
     set_fraction(row.joints, f, options.close[options.close.size() == 1 ? 0 : f], "--close");
-  const std::vector<std::string> names = joint_names(model);
-  for (const std::string& given : options.joint) {
-    const std::size_t equals = given.find('=');
-    if (equals == std::string::npos) refuse("--joint " + given, "write NAME=VALUE, as index_flexion=30");
-    const std::string where = "--joint " + given;
-    set_joint(row.joints, model, joint_named(names, given.substr(0, equals), where),
-              number(given.substr(equals + 1), where), where);
-  }
+  for (const std::string& given : options.joint) apply_joint_word(given, model, "--joint " + given, row.joints);
   const bool closes = std::ranges::any_of(scripted, [](const TimedJoints& r) {
     return std::ranges::any_of(r.joints.closing, [](float closing) { return closing > 0; });
   });

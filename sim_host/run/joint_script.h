@@ -22,6 +22,16 @@ struct JointOptions {
 
 // Name of each joint: of a hand by finger, of a gripper jaw0, jaw1, ...
 std::vector<std::string> joint_names(const Model& model);
+// Thumb first.
+const std::vector<std::string>& finger_names();
+// Those a finger moves when it closes, from the palm to the tip; of a gripper all.
+std::vector<std::size_t> joints_of_finger(const Model& model, std::int32_t finger);
+// A position (rad or m) as a command has it: within the joint's limits, not beyond by a rounding either.
+float joint_target(const Joint& joint, double position);
+// "NAME=VALUE", degrees or millimetres, into the command; throws as JointScript does, naming `where`.
+void apply_joint_word(const std::string& word, const Model& model, const std::string& where, JointCommand& joints);
+// Number of a joint by its name; throws naming `where` and the joints there are.
+std::size_t joint_named(const std::vector<std::string>& names, const std::string& name, const std::string& where);
 
 struct TimedJoints {
   double time_s = 0;

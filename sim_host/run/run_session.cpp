@@ -19,7 +19,6 @@
 #include "sim_host/bake/image_file.h"
 #include "sim_host/bake/scene_image.h"
 #include "sim_host/exit_codes.h"
-#include "sim_host/press/grasp_watch.h"
 #include "sim_host/record/recorded_image.h"
 #include "sim_host/record/recorder.h"
 #include "sim_host/record/recording_writer.h"
@@ -28,6 +27,7 @@
 #include "sim_host/run/device_process.h"
 #include "sim_host/run/hand_path_file.h"
 #include "sim_host/run/host_time.h"
+#include "sim_host/run/scene_log.h"
 #include "sim_host/run/second_hand.h"
 #include "sim_host/run/settings_port.h"
 #include "sim_host/run/socket_pair.h"
@@ -74,6 +74,7 @@ std::vector<std::string> controller_arguments(const RunOptions& options, const s
   std::vector<std::string> arguments{"--image", image,        "--device",
                                      device,    "--priority", std::to_string(options.priority)};
   if (!options.record.empty()) arguments.insert(arguments.end(), {"--crash-file", crash_path(options.record)});
+  if (!options.telemetry.empty()) arguments.insert(arguments.end(), {"--telemetry", options.telemetry});
   if (options.cpu >= 0) arguments.insert(arguments.end(), {"--cpu", std::to_string(options.cpu)});
   if (options.allow_no_rt) arguments.emplace_back("--allow-no-rt");
   if (!options.profile.empty()) arguments.insert(arguments.end(), {"--profile", options.profile});
@@ -193,7 +194,7 @@ class Watch {
  public:
   // `device`: null when it is not ours. `recorder`: drained at each look; null when it has a thread of its own.
   Watch(ControllerLink& link, HostTime& time, DeviceProcess* device, Recorder* recorder, const RunOptions& options,
-        const JointScript& joints, SharedSummary& summary)
+        const JointScript& joints, SharedSummary& summary, SceneLog& scenes)
       : link_(link),
         time_(time),
         device_(device),
@@ -201,6 +202,7 @@ class Watch {
         options_(options),
         joints_(joints),
         summary_(summary),
+        scenes_(scenes),
         reader_(link.telemetry()),
         show_(!options.quiet && !options.progress && isatty(STDERR_FILENO) != 0),
         all_(std::make_unique<RunSummary>()),
@@ -212,6 +214,7 @@ class Watch {
       if (options_.companion.goes_on && !options_.companion.goes_on()) break;
       tell_joints();
       tell_live();
+      tell_scene();
       look();
       report(time_.elapsed_s(), false);
     }
@@ -247,8 +250,33 @@ class Watch {
   void tell_live() {
     const LiveSettings before = live_;
     if (options_.companion.live) options_.companion.live(live_);
-    settings_.poll(live_);
+    settings_.poll(live_, [this](const std::string& path) { return go_over(path); });
     if (!(live_ == before)) link_.mailbox().set_live(live_);
+  }
+
+  void tell_scene() {
+    const std::string path = options_.companion.scene && ticked_ ? options_.companion.scene() : "";
+    if (path.empty()) return;
+    const std::string wrong = go_over(path);
+    if (options_.companion.changed) options_.companion.changed(wrong);
+  }
+  // "" when the controller will, otherwise why not.
+  std::string go_over(const std::string& path) {
+    if (faulted_) return "a fault is latched, and leaves only by a reset";
+    // A scene without a tick leaves no record by which another could be told to begin.
+    if (!ticked_) return "the run has not made its first tick: ask again";
+    const std::string wrong = link_.announce_scene(path);
+    if (!wrong.empty()) return wrong;
+    const TelemetryScene& announced = link_.telemetry().later_scene[scene_++];
+    try {
+      scenes_.expect(path, announced.scene_hash);
+      if (options_.companion.goes_over) options_.companion.goes_over(path);  // before its first tick can come
+    } catch (const std::runtime_error& error) {
+      return error.what();  // it stays on the controller's shelf, and is never asked for
+    }
+    arming_ = false;
+    link_.mailbox().set_scene(scene_);
+    return "";
   }
 
   // The next look: false when there is nobody left to look at.
@@ -268,8 +296,9 @@ class Watch {
   void look() {
     TickRecord newest;
     if (!reader_.newest(newest)) return;
+    ticked_ = true;
     // Arming is an edge, ignored by a tick that happens to have no fresh sample: offer edges until one is taken.
-    if (options_.arm && newest.output.mode == Mode::kIdle && newest.sequence >= kTicksBeforeArming) {
+    if (options_.arm && newest.output.mode == Mode::kIdle && newest.tick >= kTicksBeforeArming) {
       arming_ = !arming_;
       link_.mailbox().set(arming_ ? Command::kArm : 0, false);
     }
@@ -295,6 +324,8 @@ class Watch {
   const RunOptions& options_;
   const JointScript& joints_;
   SharedSummary& summary_;
+  SceneLog& scenes_;
+  std::uint64_t scene_ = 0;  // the newest that was announced
   TelemetryReader reader_;
   SettingsPort settings_;
   LiveSettings live_;
@@ -303,6 +334,7 @@ class Watch {
   std::unique_ptr<RunSummary> all_, recent_;
   double reported_s_ = 0;
   bool arming_ = false;
+  bool ticked_ = false;  // there was a first tick
   bool faulted_ = false;
   bool rendering_ = false;
   bool device_died_ = false;
@@ -313,30 +345,23 @@ RunResult follow(ControllerLink& link, HostTime& time, DeviceProcess* device, co
                  const JointScript& joints, const DeviceAddress& address, const ImageFile& image,
                  std::optional<PartFile> record_file) {
   const bool virtual_time = runs_in_virtual_time(options);
-  const TelemetryHeader& header = link.telemetry().header;
-  const StatePtr initial = make_state(image.model());  // every run starts after a reset
-  const std::vector<PackedPiece> packed = pack_image(image.bytes());
-  std::unique_ptr<RecordingWriter> file;
-  if (record_file) {
-    file = std::make_unique<RecordingWriter>(std::move(*record_file), recording_header(header), block_of(*initial),
-                                             packed);
-  }
-  std::unique_ptr<BlackBox> box;
-  if (!options.black_box.empty()) {
-    box = std::make_unique<BlackBox>(options.black_box, recording_header(header), *initial, &image.model(),
-                                     candump_options(address, virtual_time), packed);
-  }
+  const RecordingHeader header = recording_header(link.telemetry().header);
+  SceneLogOptions kept;
+  if (record_file) kept.record = options.record;
+  kept.exists = options.overwrite ? WhenItExists::kReplace : WhenItExists::kRefuse;
+  kept.black_box = options.black_box;
+  kept.candump = candump_options(address, virtual_time);
+  SceneLog scenes(kept, header, image, std::move(record_file));
   const auto summary = std::make_unique<SharedSummary>();
-  GraspWatch grasp(image.model());
-  Recorder recorder(link.telemetry(), file.get(), [&](const TickRecord& record) {
+  Recorder recorder(link.telemetry(), scenes.file(), [&](const TickRecord& record) {
     summary->take(record);
-    grasp.take(record);
-    if (box) box->add(record);
+    scenes.add(record);
     if (options.companion.tick) options.companion.tick(record);
   });
-  if (options.companion.begins) options.companion.begins(recording_header(header));
+  recorder.on_turn([&](std::uint64_t first, bool whole) { return scenes.turn(first, whole); });
+  if (options.companion.begins) options.companion.begins(header);
   if (!virtual_time) recorder.start();
-  Watch watch(link, time, device, virtual_time ? &recorder : nullptr, options, joints, *summary);
+  Watch watch(link, time, device, virtual_time ? &recorder : nullptr, options, joints, *summary, scenes);
   RunResult result;
   result.virtual_time = virtual_time;
   result.elapsed_s = watch.run();
@@ -344,13 +369,12 @@ RunResult follow(ControllerLink& link, HostTime& time, DeviceProcess* device, co
   result.interrupted = stop_signal != 0;
   result.controller_exit = watch.finish();
   recorder.stop();  // the controller has ended: the ring holds its last word
-  if (box) {
-    box->finish(death_text(result.controller_exit));
-    result.dumps = box->dumps();
-    result.black_box_error = box->error();
-  }
+  scenes.finish(death_text(result.controller_exit));
+  result.dumps = scenes.dumps();
+  result.black_box_error = scenes.black_box_error();
+  result.later_recordings = scenes.later_recordings();
   result.summary = summary->all();
-  result.grasp = grasp.text();
+  result.grasp = scenes.grasp();
   result.lost = recorder.lost();
   result.recorder_error = recorder.error();
   return result;

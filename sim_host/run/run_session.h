@@ -28,7 +28,11 @@ struct RunCompanion {
   std::function<bool()> goes_on;                        // asked at every look; false ends the run in order
   std::function<std::optional<JointCommand>()> joints;  // asked at every look; something replaces the script
   std::function<void(LiveSettings&)> live;              // asked at every look: may change what is wanted
-  int hand_fd = -1;                                     // memory that pulls the simulated hand; -1: none
+  // Asked at every look: path of an image to go over to, or "". `changed` is told the answer: "", or why not.
+  std::function<std::string()> scene;
+  std::function<void(const std::string& wrong)> changed;
+  std::function<void(const std::string& image)> goes_over;  // the run will go over to it, whoever asked
+  int hand_fd = -1;                                         // memory that pulls the simulated hand; -1: none
 };
 
 struct RunOptions {
@@ -39,6 +43,7 @@ struct RunOptions {
   RunTime time = RunTime::kAutomatic;
   bool pace = false;  // virtual time no faster than real time
   double duration_s = 10;
+  std::string telemetry;           // socket on which the controller meets readers (telemetry_door.h); empty: none
   std::string record = "run.plr";  // empty: do not record
   bool overwrite = false;          // an existing recording of that name is replaced once the new one is complete
   std::string path;                // CSV of the simulated hand's motion; empty: the scene's own
@@ -66,8 +71,9 @@ struct RunResult {
   std::uint64_t lost = 0;
   int controller_exit = 0;
   std::string recorder_error;
-  bool interrupted = false;  // Ctrl-C
-  bool device_died = false;  // the simulated one, before the end
+  bool interrupted = false;                   // Ctrl-C
+  bool device_died = false;                   // the simulated one, before the end
+  std::vector<std::string> later_recordings;  // of the scenes that the run went over to
   std::vector<BlackBoxDump> dumps;
   std::string black_box_error;
   double elapsed_s = 0;  // until the stop

@@ -16,8 +16,8 @@ namespace palpate {
 
 namespace {
 
-constexpr std::size_t kMostBytes = 1024;
-constexpr int kAnswer_ms = 3000;  // a host looks 20 times a second
+constexpr std::size_t kMostBytes = 4096;
+constexpr int kAnswer_ms = 15000;  // a host looks 20 times a second, and may read an image first
 constexpr char kRefused[] = "refused: ";
 
 struct Name {
@@ -135,16 +135,28 @@ SettingsPort::~SettingsPort() {
   if (fd_ >= 0) close(fd_);
 }
 
-bool SettingsPort::poll(LiveSettings& settings) {
+namespace {
+
+std::string answer_to(const std::string& words, LiveSettings& settings, const SettingsPort::ChangeScene& change_scene) {
+  if (words.starts_with(kSceneWord)) {
+    const std::string image = words.substr(sizeof kSceneWord - 1);
+    const std::string wrong = change_scene ? change_scene(image) : "this run keeps its scene";
+    return wrong.empty() ? "goes over to " + image : kRefused + wrong;
+  }
+  const std::string wrong = apply_settings(words, settings);
+  return wrong.empty() ? settings_text(settings) : kRefused + wrong;
+}
+
+}  // namespace
+
+bool SettingsPort::poll(LiveSettings& settings, const ChangeScene& change_scene) {
   const LiveSettings before = settings;
   constexpr int kMostAtOnce = 8;  // who floods is answered at the next look
   for (int i = 0; i < kMostAtOnce && fd_ >= 0; ++i) {
     const int asker = accept4(fd_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
     if (asker < 0) break;
     if (is_trusted(asker)) {
-      const std::string words = received(asker, 2);
-      const std::string wrong = apply_settings(words, settings);
-      send_text(asker, wrong.empty() ? settings_text(settings) : kRefused + wrong);
+      send_text(asker, answer_to(received(asker, 2), settings, change_scene));
     }
     close(asker);
   }

@@ -5,6 +5,7 @@
 
 #include <sys/types.h>
 
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -19,6 +20,9 @@ std::string settings_text(const LiveSettings& settings);
 // One line for each setting: name, range, meaning.
 std::string settings_help();
 
+// Instead of settings: this and the path of an image asks the run to go over to another scene.
+inline constexpr char kSceneWord[] = "scene=";
+
 // The host's end. Never waits.
 class SettingsPort {
  public:
@@ -26,8 +30,10 @@ class SettingsPort {
   ~SettingsPort();
   SettingsPort(const SettingsPort&) = delete;
   SettingsPort& operator=(const SettingsPort&) = delete;
+  // Asked to go over to the scene of an image: "" when the run will, otherwise why not.
+  using ChangeScene = std::function<std::string(const std::string& image)>;
   // Answers whoever has asked since; true when `settings` changed.
-  bool poll(LiveSettings& settings);
+  bool poll(LiveSettings& settings, const ChangeScene& change_scene = {});
 
  private:
   int fd_ = -1;

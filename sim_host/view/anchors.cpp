@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "rt_core/contact/regions.h"
+#include "rt_core/skeleton/mutual_skeleton.h"
 
 namespace palpate {
 namespace {
@@ -33,14 +34,24 @@ bool add_table_beams(const Model& model, const State& state, std::int32_t slot, 
   return true;
 }
 
-bool add_straight_beams(const Model& model, const State& state, std::int32_t slot, AnchorField& field) {
+bool solve_straight_beams(const Model& model, const State& state, std::span<const std::int32_t> order,
+                          std::int32_t index, const AnchorField& field, Skeleton& skeleton) {
+  const Region& region = state.region[order[static_cast<std::size_t>(index)]];
+  if (model.params.coupling_law == CouplingLaw::kMutualPaper && order.size() > 1)
+    return solve_mutual_skeleton(model, state, order, index, force_on_body(region), skeleton);
   const bool temporal = model.params.coupling_law == CouplingLaw::kTemporalPaper;
   std::vector<Vec3> offset;
   for (std::int32_t a = 0; temporal && a < field.count; ++a) offset.push_back(field.anchor[a].displacement_w);
-  const Region& region = state.region[slot];
+  return solve_skeleton(model, offset, region.centre_w, force_on_body(region), skeleton);
+}
+
+// Of the region order[index]. Beams between contacts move nothing: both ends are contacts.
+bool add_straight_beams(const Model& model, const State& state, std::span<const std::int32_t> order, std::int32_t index,
+                        AnchorField& field) {
+  const std::int32_t slot = order[static_cast<std::size_t>(index)];
   Skeleton skeleton;
-  if (!solve_skeleton(model, offset, region.centre_w, force_on_body(region), skeleton)) return false;
-  for (std::int32_t a = 0; a < skeleton.count; ++a) {
+  if (!solve_straight_beams(model, state, order, index, field, skeleton)) return false;
+  for (std::int32_t a = 0; a < field.count; ++a) {
     const Anchor& anchor = model.anchor[static_cast<std::size_t>(a)];
     const Vec3 force_w = skeleton.force_w[a];
     field.by_region_w[slot][a] = anchor_displacement(skeleton, anchor, a);
@@ -97,9 +108,10 @@ AnchorField anchors_of(const Model& model, const State& state) {
   if (field.count == 0) return field;
   std::int32_t order[kMaxRegions];
   const std::int32_t regions = contact_order(state, order);
+  const std::span<const std::int32_t> all(order, static_cast<std::size_t>(regions));
   for (std::int32_t i = 0; i < regions; ++i) {
     const bool carried = uses_beam_table(model) ? add_table_beams(model, state, order[i], field)
-                                                : add_straight_beams(model, state, order[i], field);
+                                                : add_straight_beams(model, state, all, i, field);
     field.degenerate += carried ? 0 : 1;
   }
   return field;

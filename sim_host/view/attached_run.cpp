@@ -1,20 +1,14 @@
 // Watching a run of another process.
-#include <dirent.h>
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cctype>
 #include <chrono>
-#include <cstring>
 #include <filesystem>
 
-#include "hal/system/shared_memory.h"
 #include "sim_host/record/mapped_file.h"
 #include "sim_host/record/part_file.h"
 #include "sim_host/record/recorded_image.h"
 #include "sim_host/record/recording_follower.h"
-#include "sim_host/rings/telemetry.h"
+#include "sim_host/rings/telemetry_door.h"
 #include "sim_host/view/live_run.h"
 
 namespace palpate {
@@ -66,18 +60,13 @@ class Watcher : public LiveRun {
 // The telemetry of a controller, whose sealed memory any process of the same user may map read-only.
 class WatchedRing : public Watcher {
  public:
-  explicit WatchedRing(const std::string& process) : process_(process) {
-    std::string error;
-    memory_ = SharedMemory::open_peer(open_ring(), sizeof(TelemetryRegion), error);
-    if (!memory_) throw std::runtime_error("--attach " + process + ": " + error);
-    if (const char* wrong = check_telemetry(region()))
-      throw std::runtime_error("--attach " + process + ": its telemetry is of another build (" + wrong + ")");
-    const RecordingHeader header = recording_header(region().header);
+  explicit WatchedRing(const std::string& where) : telemetry_(attach_telemetry(where)) {
+    const RecordingHeader header = recording_header(telemetry_.region());
     image_ = std::make_unique<ImageFile>(header.image_path);
     if (image_->model().scene_hash != header.scene_hash)
       throw std::runtime_error(std::string(header.image_path) + ": has changed since the controller read it");
     begin(image_->model(), header.period_ns);
-    reader_ = std::make_unique<TelemetryReader>(region());
+    reader_ = std::make_unique<TelemetryReader>(telemetry_.region());
     remark_ = "attached: what was before is not known, the shape is near the run's";
     start();
   }
@@ -85,30 +74,17 @@ class WatchedRing : public Watcher {
   const Model& model() const override { return image_->model(); }
 
  private:
-  const TelemetryRegion& region() const { return *static_cast<const TelemetryRegion*>(memory_.data()); }
-
-  int open_ring() const {
-    const std::string folder = "/proc/" + process_ + "/fd";
-    std::error_code error;
-    for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-      std::error_code gone;
-      const std::string target = std::filesystem::read_symlink(entry.path(), gone).string();
-      if (target.find("memfd:palpate-telemetry") == std::string::npos) continue;
-      if (const int fd = open(entry.path().c_str(), O_RDONLY | O_CLOEXEC); fd >= 0) return fd;
-    }
-    throw std::runtime_error("--attach " + process_ + ": " + (error ? error.message() : "no telemetry there") +
-                             "; name the process id of a running palpate-rt of your own user, as `pgrep palpate-rt` "
-                             "prints it, or the recording that a run is writing");
-  }
-
   bool take() override {
     TickRecord record;
-    while (reader_->next(record)) track_->append(record);
-    return std::filesystem::exists("/proc/" + process_);
+    if (newest_scene(telemetry_.region()) != scene_) return false;  // it went over to another: attach again
+    const std::uint64_t first = scene_ != nullptr ? scene_->first_sequence.load() : 1;
+    while (reader_->next(record))
+      if (record.sequence >= first) track_->append(record);
+    return std::filesystem::exists("/proc/" + std::to_string(telemetry_.controller));
   }
 
-  std::string process_;
-  SharedMemory memory_;
+  AttachedTelemetry telemetry_;
+  const TelemetryScene* scene_ = newest_scene(telemetry_.region());
   std::unique_ptr<ImageFile> image_;
   std::unique_ptr<TelemetryReader> reader_;
 };
@@ -143,10 +119,12 @@ class WatchedRecording : public Watcher {
 
 }  // namespace
 
-std::unique_ptr<LiveRun> attach_to(const std::string& process_or_recording) {
-  const bool number = std::ranges::all_of(process_or_recording, [](unsigned char c) { return std::isdigit(c) != 0; });
-  if (number && !process_or_recording.empty()) return std::make_unique<WatchedRing>(process_or_recording);
-  return std::make_unique<WatchedRecording>(process_or_recording);
+std::unique_ptr<LiveRun> attach_to(const std::string& where) {
+  const bool number = std::ranges::all_of(where, [](unsigned char c) { return std::isdigit(c) != 0; });
+  std::error_code none;
+  if ((number && !where.empty()) || std::filesystem::is_socket(where, none))
+    return std::make_unique<WatchedRing>(where);
+  return std::make_unique<WatchedRecording>(where);
 }
 
 }  // namespace palpate

@@ -9,6 +9,7 @@
 #include "config/scene/progress.h"
 #include "sim_host/cli.h"
 #include "sim_host/cli_checks.h"
+#include "sim_host/json_output.h"
 #include "sim_host/record/mapped_file.h"
 #include "sim_host/record/recorded_image.h"
 #include "sim_host/view/movie.h"
@@ -20,9 +21,10 @@ namespace {
 struct FilmOptions {
   std::string recording, output = "movie.png", image;
   MovieOptions movie;
+  bool json = false;
 };
 
-int run_movie(const FilmOptions& options) {
+int run_movie(const FilmOptions& options, Json& json) {
   const MappedFile file(options.recording);
   const RecordingReader recording(file.bytes());
   const RecordedScene scene(recording, options.image);
@@ -30,6 +32,11 @@ int run_movie(const FilmOptions& options) {
   const MovieMade made = save_movie(options.output, file.bytes(), scene.model(), options.movie, [&](double part) {
     if (bar) bar("frames", part);
   });
+  json.update({{"recording", options.recording},
+               {"files", {options.output}},
+               {"frames", made.frames},
+               {"from_s", made.from_s},
+               {"to_s", made.to_s}});
   fmt::print("wrote   {} ({} frames, {:.2f} to {:.2f} s of the run)\n", options.output, made.frames, made.from_s,
              made.to_s);
   return kExitOk;
@@ -63,9 +70,10 @@ void add_movie_command(CLI::App& app, int& exit_code) {
       "Examples:\n"
       "  palpate movie run.plr -o press.png --speed 0.5\n"
       "  palpate movie run.plr --from 1.5s --to 4s --width 480 --height 360 -o slide.png");
+  add_json_flag(*command, options->json);
   command->callback([options, &exit_code] {
     try {
-      exit_code = run_movie(*options);
+      exit_code = run_with_json(options->json, "movie", [&](Json& json) { return run_movie(*options, json); });
     } catch (const RecordingError& error) {
       throw std::runtime_error(about_file(options->recording, error.what()));
     }

@@ -10,6 +10,7 @@
 #include "sim_host/bake/scene_model.h"
 #include "sim_host/cli.h"
 #include "sim_host/cli_checks.h"
+#include "sim_host/json_output.h"
 #include "sim_host/press/pose_csv.h"
 #include "sim_host/record/mapped_file.h"
 #include "sim_host/record/recorded_image.h"
@@ -23,9 +24,10 @@ namespace palpate {
 namespace {
 
 struct DrawOptions {
-  std::string source, output = "picture.png", image, plot;
+  std::string source, output = "picture.png", image, plot, view;
   std::int64_t tick = -1;
   int width = 1200, height = 900;
+  bool json = false;
 };
 
 // Whether a file starts like a recording.
@@ -47,7 +49,8 @@ History read_history(const MappedFile& file) {
   double strongest = -1;
   while (recording.next(record)) {
     const Output& output = record.output;
-    const double force = norm(output.contact_w.force_N);
+    // As in the viewer: what happens after the force was let go, when the hand falls into the body, is no press.
+    const double force = output.mode == Mode::kForce ? norm(output.contact_w.force_N) : -0.5;
     if (history.samples.empty()) history.first_tick = record.tick;
     if (force > strongest) {
       strongest = force;
@@ -61,7 +64,15 @@ History read_history(const MappedFile& file) {
   return history;
 }
 
-int draw_recording(const DrawOptions& options, const MappedFile& file) {
+PictureOptions picture_of(const DrawOptions& options) {
+  PictureOptions picture;
+  picture.width = options.width;
+  picture.height = options.height;
+  if (!options.view.empty()) picture.view = standard_views().at(options.view);
+  return picture;
+}
+
+int draw_recording(const DrawOptions& options, const MappedFile& file, Json& json) {
   RecordingReader recording(file.bytes());
   const RecordedScene scene(recording, options.image);
   const History history = read_history(file);
@@ -71,11 +82,10 @@ int draw_recording(const DrawOptions& options, const MappedFile& file) {
         fmt::format("--tick {}: the recording holds ticks {} to {}", wanted, history.first_tick, history.last_tick));
   }
   const StatePtr state = state_after(recording, scene.model(), wanted);
-  PictureOptions picture;
-  picture.width = options.width;
-  picture.height = options.height;
+  PictureOptions picture = picture_of(options);
   picture.title = fmt::format("{}, tick {}", scene.model().name, wanted);
   save_picture(options.output, scene.model(), *state, picture);
+  json["tick"] = wanted;
   fmt::print("wrote   {} (tick {})\n", options.output, wanted);
   if (!options.plot.empty()) {
     force_history_plot(history.samples, scene.model().name).save(options.plot);
@@ -96,18 +106,17 @@ int draw_scene(const DrawOptions& options) {
     Output output;
     tick(scene.model(), *state, *scratch, input, output);  // a hand's joints go to where they begin
   }
-  PictureOptions picture;
-  picture.width = options.width;
-  picture.height = options.height;
-  save_picture(options.output, scene.model(), *state, picture);
+  save_picture(options.output, scene.model(), *state, picture_of(options));
   fmt::print("wrote   {}\n", options.output);
   return kExitOk;
 }
 
-int run_picture(const DrawOptions& options) {
+int run_picture(const DrawOptions& options, Json& json) {
+  json.update({{"source", options.source}, {"files", {options.output}}});
+  if (!options.plot.empty()) json["files"].push_back(options.plot);
   if (options.source.ends_with(".toml")) return draw_scene(options);
   const MappedFile file(options.source);
-  return is_recording(file) ? draw_recording(options, file) : draw_scene(options);
+  return is_recording(file) ? draw_recording(options, file, json) : draw_scene(options);
 }
 
 }  // namespace
@@ -124,15 +133,21 @@ void add_picture_command(CLI::App& app, int& exit_code) {
   command->add_option("--image", options->image, "scene image, when it is no longer where the recording says");
   command->add_option("--plot", options->plot, "also draw the force history (.svg or .png)")
       ->check(ends_in({".svg", ".png"}));
+  command
+      ->add_option("--view", options->view,
+                   "oblique, front, back, left, right, top or bottom; default: from the side of the contacts")
+      ->check(CLI::IsMember({"oblique", "front", "back", "left", "right", "top", "bottom"}));
   command->add_option("--width", options->width, "pixels")->capture_default_str()->check(CLI::Range(200, 4000));
   command->add_option("--height", options->height, "pixels")->capture_default_str()->check(CLI::Range(150, 4000));
   command->footer(
       "Examples:\n"
       "  palpate picture run.plr -o deformed.png --plot forces.svg\n"
+      "  palpate picture run.plr --tick 2500 --view front -o front.png\n"
       "  palpate picture config/scenes/heart_compass.toml -o scene.png");
+  add_json_flag(*command, options->json);
   command->callback([options, &exit_code] {
     try {
-      exit_code = run_picture(*options);
+      exit_code = run_with_json(options->json, "picture", [&](Json& json) { return run_picture(*options, json); });
     } catch (const RecordingError& error) {
       throw std::runtime_error(about_file(options->source, error.what()));
     }

@@ -6,6 +6,7 @@
 
 #include "rt_core/contact/elastic/linearised.h"
 #include "rt_core/tool/articulate.h"
+#include "sim_host/view/contact_profile.h"
 
 namespace palpate {
 
@@ -75,13 +76,6 @@ Vec3 linear_displacement(const Model& model, std::int32_t vertex,
   return sum;
 }
 
-// Displacement over the depth at `rho` contact radii from the middle.
-double hertz_profile(double rho) {
-  if (rho <= 1) return 1 - 0.5 * rho * rho;
-  constexpr double kPi = 3.14159265358979323846;
-  return ((2 - rho * rho) * std::asin(1 / rho) + std::sqrt(rho * rho - 1)) / kPi;
-}
-
 TipDent dent_of(const TouchingTip& tip, double depth_m) {
   const ElasticRow& row = tip.row;
   TipDent dent;
@@ -135,11 +129,9 @@ Vec3 TipDent::at(Vec3 point_w, Vec3 normal) const {
   if (!(facing > 0)) return {};
   // The whole distance: what lies far below the tip, as a ring's other side, is far from it.
   const Vec3 from = point_w - foot_w;
-  const double x = dot(from, along) / along_m, y = norm(from - dot(from, along) * along) / across_m;
-  const double rho = std::sqrt(x * x + y * y);
-  if (rho >= kReach) return {};
-  const double fade = rho < 0.5 * kReach ? 1 : 2 * (1 - rho / kReach);
-  return (depth_m * hertz_profile(rho) * fade * std::min(1.0, 2 * facing)) * inward;
+  const double rho = ContactEllipse{along, across_m, along_m}.radii(from);
+  const double fade = fade_out(rho, 0.5 * kReach, kReach);
+  return (depth_m * contact_profile(TipShape::kBall, rho) * fade * std::min(1.0, 2 * facing)) * inward;
 }
 
 }  // namespace palpate

@@ -112,4 +112,24 @@ Drawing line_plot(const std::vector<PlotCurve>& curves, const PlotText& text, bo
   return drawing;
 }
 
+Drawing bar_plot(const std::vector<PlotCurve>& series, const PlotText& text) {
+  constexpr double kFilled = 0.76;  // of the way from one group to the next
+  Drawing drawing(kWidth, kHeight);
+  Axes axes = axes_of(series);
+  axes.x_low -= 0.5, axes.x_high += 0.5;
+  draw_axes(drawing, axes, text);
+  const double width = kFilled / static_cast<double>(std::max<std::size_t>(1, series.size()));
+  for (std::size_t k = 0; k < series.size(); ++k) {
+    const Colour c = kSeries[k % kSeries.size()];
+    for (std::size_t i = 0; i < series[k].x.size(); ++i) {
+      const double left = axes.x(series[k].x[i] - 0.5 * kFilled + width * static_cast<double>(k));
+      const double right = axes.x(series[k].x[i] - 0.5 * kFilled + width * static_cast<double>(k + 1));
+      const double end = axes.y(series[k].y[i]), zero = axes.y(0);
+      drawing.rectangle(left, std::min(end, zero), right - left, std::abs(zero - end), c);
+    }
+    draw_legend(drawing, axes.right, k, series[k].name, c);
+  }
+  return drawing;
+}
+
 }  // namespace palpate

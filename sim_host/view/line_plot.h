@@ -20,5 +20,7 @@ struct PlotText {
 // Lines through the points; with `marks` also a dot at each; the names stand at the right. The y axis starts at 0 or at
 // the lowest value below it. A curve that lies on an earlier one is dashed.
 Drawing line_plot(const std::vector<PlotCurve>& curves, const PlotText& text, bool marks);
+// A bar for each value, those of one x beside one another: for what has no between, as anchors. x: 1, 2, ... of groups.
+Drawing bar_plot(const std::vector<PlotCurve>& series, const PlotText& text);
 
 }  // namespace palpate

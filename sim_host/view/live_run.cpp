@@ -13,12 +13,6 @@ bool has_simulated_hand(const std::string& device) {
   return device.starts_with("auto") || device.starts_with("loopback");
 }
 
-JointCommand all_fingers(float closing) {
-  JointCommand command;
-  for (float& finger : command.closing) finger = closing;
-  return command;
-}
-
 }  // namespace
 
 StartedRun::StartedRun(RunOptions options, bool mouse) : mouse_(mouse), has_hand_(has_simulated_hand(options.device)) {
@@ -26,14 +20,20 @@ StartedRun::StartedRun(RunOptions options, bool mouse) : mouse_(mouse), has_hand
   RunCompanion& companion = options.companion;
   // As often as a mouse speaks: every 10 ms.
   companion.look = std::chrono::milliseconds(10);
-  companion.begins = [this](const RecordingHeader& header) { begin(header); };
-  companion.tick = [this](const TickRecord& record) { track_->append(record); };
-  companion.goes_on = [this] { return !stopping_.load(); };
-  companion.joints = [this]() -> std::optional<JointCommand> {
-    const float closing = steering_.closing();
-    if (closing < 0 && !mouse_) return std::nullopt;
-    return all_fingers(std::max(0.0f, closing));
+  companion.begins = [this, first = SceneChoice{options.scene, options.overlays}](const RecordingHeader& header) {
+    begin(header, first);
   };
+  companion.tick = [this](const TickRecord& record) { take(record); };
+  companion.scene = [this] { return change_->image_wanted(); };
+  companion.changed = [this](const std::string& wrong) {
+    if (!wrong.empty()) change_->refused(wrong);
+  };
+  // While force ramps out: the next hand begins open.
+  companion.goes_over = [this](const std::string& image) {
+    steering_.take_up(change_->accepted(image)->image.model());
+  };
+  companion.goes_on = [this] { return !stopping_.load(); };
+  companion.joints = [this] { return steering_.told(mouse_); };
   companion.live = [this](LiveSettings& wanted) { steering_.apply_settings(wanted); };
   if (has_hand_) companion.hand_fd = steering_.fd();
   thread_ = std::thread([this, options] { run(options); });
@@ -49,11 +49,28 @@ StartedRun::~StartedRun() {
   if (thread_.joinable()) thread_.join();
 }
 
-void StartedRun::begin(const RecordingHeader& header) {
-  image_ = std::make_unique<ImageFile>(header.image_path);
-  track_ = std::make_unique<RunTrack>(1e-9 * static_cast<double>(header.period_ns));
-  initial_ = make_state(image_->model());
+void StartedRun::begin(const RecordingHeader& header, const SceneChoice& first) {
+  scene_ = std::make_shared<LiveScene>(first, header.image_path);
+  change_ = std::make_unique<SceneChange>(first, header.image_path);
+  steering_.take_up(scene_->image.model());
   begun_.store(true);
+}
+
+void StartedRun::take(const TickRecord& record) {
+  const std::uint64_t offset = record.sequence - record.tick;
+  if (scene_->track.size() > 0 && offset != offset_) {
+    if (std::shared_ptr<LiveScene> next = change_->arrived()) {
+      const std::lock_guard lock(mutex_);
+      scene_ = std::move(next);
+    }
+  }
+  offset_ = offset;
+  scene_->track.append(record);
+}
+
+std::shared_ptr<const LiveScene> StartedRun::scene() const {
+  const std::lock_guard lock(mutex_);
+  return scene_;
 }
 
 void StartedRun::run(RunOptions options) {
@@ -72,12 +89,14 @@ const RunResult& StartedRun::result() {
 }
 
 std::string StartedRun::notice() const {
-  if (track_->full()) return "an hour is over: what comes now is not shown; close and start again";
+  const std::shared_ptr<const LiveScene> now = scene();
+  if (now->track.full()) return "an hour is over: what comes now is not shown; close and start again";
   if (!goes_on()) {
-    const std::size_t size = track_->size();
-    const std::uint32_t fault = size > 0 ? track_->at(size - 1).fault : 0;
+    const std::size_t size = now->track.size();
+    const std::uint32_t fault = size > 0 ? now->track.at(size - 1).fault : 0;
     return fault == 0 ? "the run is over" : "the run ended with a fault: " + bit_names(fault_bit_texts(), fault);
   }
+  if (const SceneChange::News news = change_->news(); news.going_on()) return news.title + ": " + news.words;
   if (!mouse_ || !has_hand_) return "";
   const bool fresh = steering_.pulls() == 0;
   return fresh ? "Drag the tool with the mouse: it is the device" : "";

@@ -12,6 +12,7 @@
 #include "sim_host/bake/image_file.h"
 #include "sim_host/run/run_session.h"
 #include "sim_host/view/run_track.h"
+#include "sim_host/view/scene_change.h"
 #include "sim_host/view/steering.h"
 
 namespace palpate {
@@ -38,9 +39,14 @@ class StartedRun : public LiveRun {
   StartedRun(RunOptions options, bool mouse);
   // Ends the run in order: force ramps to zero first.
   ~StartedRun() override;
-  const Model& model() const override { return image_->model(); }
-  const RunTrack& track() const override { return *track_; }
-  const State& initial() const override { return *initial_; }
+  // The scene it is in now. What model(), track() and initial() return is of it, and goes when the run goes over to
+  // another and nobody holds it.
+  std::shared_ptr<const LiveScene> scene() const;
+  const Model& model() const override { return scene()->image.model(); }
+  const RunTrack& track() const override { return scene()->track; }
+  const State& initial() const override { return *scene()->initial; }
+  // Asks it to go over to another.
+  SceneChange& change() { return *change_; }
   bool goes_on() const override { return !ended_.load(); }
   std::string notice() const override;
   Steering* steering() override { return has_hand_ ? &steering_ : nullptr; }
@@ -50,13 +56,15 @@ class StartedRun : public LiveRun {
 
  private:
   void run(RunOptions options);
-  void begin(const RecordingHeader& header);
+  void begin(const RecordingHeader& header, const SceneChoice& first);
+  void take(const TickRecord& record);
 
   Steering steering_;
   bool mouse_, has_hand_;
-  std::unique_ptr<ImageFile> image_;
-  std::unique_ptr<RunTrack> track_;
-  StatePtr initial_;
+  std::unique_ptr<SceneChange> change_;
+  mutable std::mutex mutex_;  // of the scene
+  std::shared_ptr<LiveScene> scene_;
+  std::uint64_t offset_ = 0;  // of a record's sequence number and its tick: constant in a scene
   std::atomic<bool> begun_{false}, ended_{false}, stopping_{false};
   std::exception_ptr error_;  // of run_session; read after ended_
   RunResult result_;

@@ -43,8 +43,9 @@ RunOutline outline_of(RecordingReader& recording) {
       outline.first_touch = std::min(outline.first_touch, at.tick);
       outline.last_touch = at.tick;
     }
-    outline.largest_N = std::max(outline.largest_N, at.largest_region_N);
-    if (const double force_N = norm(at.contact_N); force_N > strongest_N) {
+    const bool rendering = at.mode == Mode::kForce;  // as RunTrack
+    if (rendering) outline.largest_N = std::max(outline.largest_N, at.largest_region_N);
+    if (const double force_N = rendering ? norm(at.contact_N) : -0.5; force_N > strongest_N) {
       strongest_N = force_N;
       outline.strongest = at.tick;
     }

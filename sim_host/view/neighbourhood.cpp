@@ -34,15 +34,25 @@ Neighbourhood make_neighbourhood(NeighbourhoodLaw law, Real contact_radius_m, Re
   const Real q = contact_radius_m / reach_m;
   result.log = log_law(contact_radius_m, reach_m, 1.0, 0.0);
   if (law == NeighbourhoodLaw::kLogC1) result.inverse_at_contact = 1.0 / c1_profile(q);
-  if (law == NeighbourhoodLaw::kPunch) {
-    result.at_reach = math::asin(q);
-    result.inverse_at_contact = 1.0 / (0.5 * kPi - result.at_reach);
-  }
+  result.edge = {{1, 0, 0}, contact_radius_m, contact_radius_m};
   return result;
 }
 
-Real neighbourhood_blend(const Neighbourhood& n, Real distance_m) {
-  if (n.law == NeighbourhoodLaw::kNone || !(distance_m < n.reach_m)) return 0;
+Neighbourhood punch_neighbourhood(TipShape tip, ContactEllipse edge, Real reach_m) {
+  const Real most = kMostContactRadius * reach_m;
+  edge = {edge.along, min_of(edge.across_m, most), min_of(edge.along_m, most)};
+  Neighbourhood result = make_neighbourhood(NeighbourhoodLaw::kPunch, max_of(edge.across_m, edge.along_m), reach_m);
+  result.tip = tip;
+  result.edge = edge;
+  return result;
+}
+
+Real neighbourhood_blend(const Neighbourhood& n, Vec3 from_middle) {
+  const Real distance_m = norm(from_middle);
+  if (n.law == NeighbourhoodLaw::kNone || !(distance_m < n.reach_m) || !is_finite(from_middle)) return 0;
+  if (n.law == NeighbourhoodLaw::kPunch)
+    return contact_profile(n.tip, n.edge.radii(from_middle)) *
+           fade_out(distance_m, max_of(n.contact_radius_m, 0.5 * n.reach_m), n.reach_m);
   if (distance_m <= n.contact_radius_m) return 1;
   Real g = 0;
   switch (n.law) {
@@ -53,8 +63,6 @@ Real neighbourhood_blend(const Neighbourhood& n, Real distance_m) {
       g = c1_profile(distance_m / n.reach_m) * n.inverse_at_contact;
       break;
     case NeighbourhoodLaw::kPunch:
-      g = (math::asin(n.contact_radius_m / distance_m) - n.at_reach) * n.inverse_at_contact;
-      break;
     case NeighbourhoodLaw::kNone:
       break;
   }

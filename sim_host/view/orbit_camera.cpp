@@ -13,6 +13,14 @@ constexpr double kSteepest_rad = kQuarterTurn - 1e-3;
 
 }  // namespace
 
+const std::map<std::string, StandardView>& standard_views() {
+  static const std::map<std::string, StandardView> views{
+      {"oblique", StandardView::kOblique}, {"front", StandardView::kFront}, {"back", StandardView::kBack},
+      {"left", StandardView::kLeft},       {"right", StandardView::kRight}, {"top", StandardView::kTop},
+      {"bottom", StandardView::kBottom}};
+  return views;
+}
+
 OrbitCamera::OrbitCamera(const Camera& camera, Vec3 pivot_m) : fov_rad_(camera.vertical_fov_rad) {
   const Vec3 forward = unit_or(camera.target_m - camera.eye_m, {0, 0, -1});
   elevation_rad_ = std::clamp(std::asin(std::clamp(-forward.y, -1.0, 1.0)), -kSteepest_rad, kSteepest_rad);

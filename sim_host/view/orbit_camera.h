@@ -3,7 +3,9 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <span>
+#include <string>
 
 #include "sim_host/view/mesh_raster.h"
 
@@ -13,6 +15,8 @@ namespace palpate {
 using Matrix4 = std::array<float, 16>;
 
 enum class StandardView { kOblique, kFront, kBack, kLeft, kRight, kTop, kBottom };
+// By the names a person writes.
+const std::map<std::string, StandardView>& standard_views();
 
 class OrbitCamera {
  public:

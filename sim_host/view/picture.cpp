@@ -4,15 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "config/hand/hand_model.h"
 #include "rt_core/tool/articulate.h"
 #include "sim_host/view/anchors.h"
+#include "sim_host/view/picture_foot.h"
 #include "sim_host/view/plot.h"
 #include "sim_host/view/png_file.h"
 #include "sim_host/view/stroke_font.h"
-#include "sim_host/view/view_scales.h"
 
 namespace palpate {
 
@@ -24,33 +23,16 @@ constexpr Colour kInk = colour(0x1f2933), kGrey = colour(0x5b6672);
 constexpr Colour kSkinColour = colour(0xd8a488);
 constexpr Colour kToolColour = colour(0x6d8fae), kArrowColour = colour(0x1b74c4);
 
-// Force of a region on the tool, as long as it is drawn.
-struct ForceArrow {
-  Vec3 tail_w, tip_w;
-  double force_N;
-};
-
-std::vector<ForceArrow> force_arrows(const Model& model, const State& state, double force_max_N) {
-  double largest = force_max_N;
-  for (const Region& region : state.region) {
-    if (force_max_N > 0 || region.id == 0 || region.lost_ticks > 0) continue;
-    largest = std::max(largest, state.live.stiffness * norm(region.wrench_w.force_N));
-  }
-  std::vector<ForceArrow> arrows;
-  const double size = model.params.surface_size_m;
-  for (const Region& region : state.region) {
-    const double force = state.live.stiffness * norm(region.wrench_w.force_N);
-    if (region.id == 0 || region.lost_ticks > 0 || !(force > 0.01 * largest) || !(largest > 0)) continue;
-    const double length = size * (0.12 + 0.33 * std::min(1.0, force / largest));
-    arrows.push_back({region.centre_w, region.centre_w + length * unit_or(region.wrench_w.force_N, {}), force});
-  }
-  return arrows;
+// The ends of the arrows.
+std::vector<Vec3> tips_of(const std::vector<DrawnForce>& forces, const ForceScale& scale) {
+  std::vector<Vec3> tips;
+  for (const DrawnForce& force : forces) tips.push_back(force.tail_w + scale.m_per_N * force.force_N);
+  return tips;
 }
 
-std::vector<Vec3> tips_of(const std::vector<ForceArrow>& arrows) {
-  std::vector<Vec3> tips;
-  for (const ForceArrow& arrow : arrows) tips.push_back(arrow.tip_w);
-  return tips;
+Camera camera_of(const Model& model, const State& state, const std::vector<Vec3>& tips, const PictureOptions& options) {
+  if (options.camera) return *options.camera;
+  return default_camera(model, state, tips, double(options.width) / options.height, options.view);
 }
 
 class Renderer {
@@ -62,11 +44,11 @@ class Renderer {
         options_(options),
         is_hand_(model.params.articulation == Articulation::kHand),
         samples_(std::clamp(options.supersampling, 1, 4)),
-        forces_(force_arrows(model, state, options.force_max_N)),
-        projection_(options.camera
-                        ? *options.camera
-                        : default_camera(model, state, tips_of(forces_), double(options.width) / options.height),
-                    options.width * samples_, options.height * samples_),
+        forces_(drawn_forces(state)),
+        force_scale_(force_scale(options.force_max_N > 0 ? options.force_max_N : force_sum(state).largest_N,
+                                 model.params.surface_size_m)),
+        camera_(camera_of(model, state, tips_of(forces_, force_scale_), options)),
+        projection_(camera_, options.width * samples_, options.height * samples_),
         solid_(options.width * samples_, options.height * samples_),
         rest_(solid_),
         tool_(solid_),
@@ -87,6 +69,9 @@ class Renderer {
     Canvas canvas = resolve();
     draw_force_labels(canvas);
     draw_title(canvas);
+    const double deep_m = projection_(shadow_centre_).z;
+    draw_foot(canvas, Projection(camera_, options_.width, options_.height),
+              2 * deep_m * std::tan(0.5 * camera_.vertical_fov_rad) / options_.height, force_scale_);
     return canvas;
   }
 
@@ -112,7 +97,9 @@ class Renderer {
   const PictureOptions& options_;
   bool is_hand_;
   int samples_;
-  std::vector<ForceArrow> forces_;
+  std::vector<DrawnForce> forces_;  // the largest first
+  ForceScale force_scale_;
+  Camera camera_;
   Projection projection_;
   Layer solid_, rest_, tool_, arrows_;
   double scale_top_m_ = 1e-3;
@@ -165,8 +152,9 @@ void Renderer::draw_anchors() {
 
 void Renderer::draw_arrows() {
   const double size = model_.params.surface_size_m;
-  for (const ForceArrow& force : forces_)
-    arrows_.draw(arrow_mesh(force.tail_w, force.tip_w, 0.010 * size), projection_, kArrow);
+  for (const DrawnForce& force : forces_)
+    arrows_.draw(arrow_mesh(force.tail_w, force.tail_w + force_scale_.m_per_N * force.force_N, 0.010 * size),
+                 projection_, kArrow);
 }
 
 void Renderer::make_shadow() {
@@ -336,6 +324,7 @@ void Renderer::draw_legend(Canvas& canvas) const {
     canvas.polyline(Stroke{{x1, y}, {x1 + 6 * unit, y}}, 1.2 * unit, kGrey);
     canvas.text(x1 + 11 * unit, y + 5.5 * unit, tick_label(mm), 15 * unit, kInk);
   }
+  canvas.text(x1, top + height + 24 * unit, colour_meaning(model_), 15 * unit, kGrey, Align::kMiddle);
   canvas.text(x1, top - 36 * unit, "displacement", 15 * unit, kInk, Align::kMiddle);
   canvas.text(x1, top - 16 * unit, "(mm)", 15 * unit, kInk, Align::kMiddle);
 }
@@ -344,16 +333,15 @@ void Renderer::draw_legend(Canvas& canvas) const {
 void Renderer::draw_force_labels(Canvas& canvas) const {
   const double unit = options_.height / 900.0, size = 18 * unit, gap = 9 * unit;
   // The largest first; a number that would cover one already there is left out (a hand has up to fifteen).
-  std::vector<ForceArrow> forces = forces_;
-  std::ranges::stable_sort(forces, std::greater{}, &ForceArrow::force_N);
   struct Box {
     double x, y, width;  // of the number's middle
   };
   std::vector<Box> placed;
-  for (const ForceArrow& force : forces) {
-    const Vec3 tail = (1.0 / samples_) * projection_(force.tail_w), tip = (1.0 / samples_) * projection_(force.tip_w);
+  for (const DrawnForce& force : forces_) {
+    const Vec3 tail = (1.0 / samples_) * projection_(force.tail_w),
+               tip = (1.0 / samples_) * projection_(force.tail_w + force_scale_.m_per_N * force.force_N);
     const Vec3 way = unit_or({tip.x - tail.x, tip.y - tail.y, 0}, {1, 0, 0});
-    const std::string number = fmt::format("{:.2f} N", force.force_N);
+    const std::string number = fmt::format("{:.2f} N", norm(force.force_N));
     const double width = text_width(number, size);
     const Box box{tip.x + way.x * (gap + 0.5 * width), tip.y + way.y * (gap + 0.5 * size), width};
     const auto covers = [&](const Box& other) {
@@ -373,20 +361,10 @@ void Renderer::draw_force_labels(Canvas& canvas) const {
 
 void Renderer::draw_title(Canvas& canvas) const {
   const double unit = options_.height / 900.0;
-  Vec3 force;
-  double depth = 0;
-  int regions = 0;
-  for (const Region& region : state_.region) {
-    if (region.id == 0 || region.lost_ticks > 0) continue;
-    force += state_.live.stiffness * region.wrench_w.force_N;
-    depth = std::max(depth, region.depth_max_m);
-    ++regions;
-  }
+  const ForceSum sum = force_sum(state_);
   canvas.text(36 * unit, 52 * unit, options_.title.empty() ? model_.name : options_.title, 26 * unit, kInk,
               Align::kStart, false, true);
-  canvas.text(36 * unit, 82 * unit,
-              fmt::format("|F| = {:.2f} N    depth {:.2f} mm    {} contact region{}", norm(force), depth * 1e3, regions,
-                          regions == 1 ? "" : "s"),
+  canvas.text(36 * unit, 82 * unit, fmt::format("{}    depth {:.2f} mm", force_words(sum), sum.depth_m * 1e3),
               17 * unit, kGrey);
   draw_legend(canvas);
 }

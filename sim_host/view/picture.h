@@ -9,7 +9,7 @@
 #include "rt_core/model.h"
 #include "rt_core/state.h"
 #include "sim_host/view/deformed_surface.h"
-#include "sim_host/view/mesh_raster.h"
+#include "sim_host/view/orbit_camera.h"
 
 namespace palpate {
 
@@ -18,16 +18,18 @@ inline constexpr Vec3 kWorldUp{0, 1, 0};
 
 struct PictureOptions {
   int width = 1200, height = 900;
-  int supersampling = 2;          // samples per pixel and axis, 1..4
-  std::optional<Camera> camera;   // otherwise `default_camera`
-  std::string title;              // otherwise the scene's name
-  double displacement_max_m = 0;  // top of the colour scale; 0: the largest displacement, rounded up
-  double force_max_N = 0;         // force of the longest arrow; 0: the largest region's
+  int supersampling = 2;             // samples per pixel and axis, 1..4
+  std::optional<Camera> camera;      // otherwise `default_camera`
+  std::optional<StandardView> view;  // of default_camera
+  std::string title;                 // otherwise the scene's name
+  double displacement_max_m = 0;     // top of the colour scale; 0: the largest displacement, rounded up
+  double force_max_N = 0;            // force of the longest arrow; 0: the largest region's
 };
 
 // Sees the body, `points_w` and the tool (of a long one the end near the body), slightly from above, from the side on
-// which the contacts are, and leaves room for title and legend. `aspect`: width over height.
-Camera default_camera(const Model& model, const State& state, std::span<const Vec3> points_w, double aspect);
+// which the contacts are, or from `view`, and leaves room for title, legend and scales. `aspect`: width over height.
+Camera default_camera(const Model& model, const State& state, std::span<const Vec3> points_w, double aspect,
+                      std::optional<StandardView> view = {});
 Canvas render_scene(const Model& model, const State& state, const DeformedSurface& surface,
                     const PictureOptions& options = {});
 // Writes render_scene of the scene's own shape models as PNG.

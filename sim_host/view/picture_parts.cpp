@@ -3,11 +3,11 @@
 #include <array>
 #include <cmath>
 
+#include "config/hand/hand_mesh.h"
 #include "config/hand/hand_model.h"
 #include "config/tool/piece_card.h"
 #include "rt_core/tool/articulate.h"
 #include "rt_core/tool/shapes.h"
-#include "sim_host/view/hand_mesh.h"
 #include "sim_host/view/picture.h"
 
 namespace palpate {
@@ -71,14 +71,20 @@ struct Fit {
 
 }  // namespace
 
-Camera default_camera(const Model& model, const State& state, std::span<const Vec3> points_w, double aspect) {
+Camera default_camera(const Model& model, const State& state, std::span<const Vec3> points_w, double aspect,
+                      std::optional<StandardView> view) {
   constexpr double kFov = 0.5;
-  const Vec3 forward = view_direction(model, state);
+  Vec3 forward = view_direction(model, state);
+  if (view) {
+    OrbitCamera turned;
+    turned.look_from(*view);
+    forward = Projection(turned.camera(), 1, 1).forward();
+  }
   const Vec3 right = unit_or(cross(forward, kWorldUp), {1, 0, 0}), up = cross(right, forward);
   const double slope = std::tan(0.5 * kFov), wide = slope * aspect;
-  // Shares of the half picture: the legend stands at the right, the title at the top, a force's number may stand beyond
-  // an arrow's tip.
-  Fit across{-0.86 * wide, 0.72 * wide}, upward{-0.90 * slope, 0.72 * slope};
+  // Shares of the half picture: the legend stands at the right, the title at the top, scales at the foot, a force's
+  // number may stand beyond an arrow's tip.
+  Fit across{-0.86 * wide, 0.72 * wide}, upward{-0.78 * slope, 0.72 * slope};
   std::vector<Vec3> points = scene_points(model, state);
   points.insert(points.end(), points_w.begin(), points_w.end());
   for (const Vec3 p : points) {

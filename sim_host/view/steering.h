@@ -1,19 +1,22 @@
-// The mouse as a device: what a viewer tells the simulated hand of a run, and a hand's fingers.
+// The mouse as a device: what a viewer tells the simulated hand of a run, and a hand's fingers and joints.
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <mutex>
-#include <string>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "hal/system/shared_memory.h"
+#include "rt_core/io.h"
 #include "rt_core/live.h"
+#include "rt_core/model.h"
 #include "sim_host/rings/hand_target.h"
 
 namespace palpate {
 
-// Pull and closing are told by one thread; the run asks from another.
+// A viewer tells from one thread; the run asks from another.
 class Steering {
  public:
   // Throws std::runtime_error when there is no memory to share.
@@ -24,10 +27,22 @@ class Steering {
   void hold();
   // How often it was pulled so far.
   std::uint64_t pulls() const { return pulls_.load(); }
-  // 0 open to 1 closed, of all fingers or jaws; from the first call on.
-  void close_to(double closing) { closing_.store(static_cast<float>(closing)); }
-  // Below 0: nobody asked yet.
-  float closing() const { return closing_.load(); }
+  // The tool of a scene that begins: open, and no joint away from its finger.
+  void take_up(const Model& model);
+  // Nobody moved a finger yet: they go on from where the run has them.
+  void begin_from(const double (&closing)[kMaxFingers]);
+  // Moves one finger or jaw, or all (finger < 0), by a share of its way: 0 open to 1 closed. Joints that were moved by
+  // themselves go along as far as the others do.
+  void close_by(std::int32_t finger, double share);
+  // Moves one joint by a share of its range, the way its finger closes; it stays there whatever its finger does, until
+  // it is let go. Nothing where there is no such joint.
+  void move_joint(std::size_t joint, double share);
+  // Puts it there (rad or m), within its limits.
+  void put_joint(std::size_t joint, double position);
+  // It goes with its finger again.
+  void free_joint(std::size_t joint);
+  // Where the fingers and joints are told to be; nothing before anybody asked, unless somebody `is_there` to.
+  std::optional<JointCommand> told(bool is_there) const;
   // One of the run's live settings is to be this; the others stay as anybody wanted them.
   void set(float LiveSettings::*which, float value) {
     const std::lock_guard lock(mutex_);
@@ -45,9 +60,14 @@ class Steering {
  private:
   SharedMemory memory_;
   HandTargetWriter writer_;
-  std::mutex mutex_;
+  double at(std::size_t joint) const;
+  void put(std::size_t joint, double position);
+
+  mutable std::mutex mutex_;
   std::vector<std::pair<float LiveSettings::*, float>> asked_;
-  std::atomic<float> closing_{-1};
+  std::vector<Joint> joint_;  // of the tool
+  JointCommand joints_;
+  bool moved_ = false;  // somebody asked
   std::atomic<std::uint64_t> pulls_{0};
 };
 

@@ -2,10 +2,12 @@
 
 #include <memory>
 
+#include "rt_core/contact/contact.h"
 #include "rt_core/contact/regions.h"
 #include "rt_core/tool/articulate.h"
 #include "sim_host/view/anchors.h"
 #include "sim_host/view/displacement_angle.h"
+#include "sim_host/view/surface_bend.h"
 
 namespace palpate {
 namespace {
@@ -64,6 +66,46 @@ Real reach_of(const Model& model, const State& state, std::int32_t slot) {
   return reach > 0 ? reach : model.params.neighbourhood_radius_m;
 }
 
+// The tool point that touches in a region alone, or -1.
+std::int32_t only_point_of(const Model& model, const State& state, std::int32_t slot) {
+  std::int32_t only = -1;
+  for (std::int32_t i = 0; i < model.sizes.n_tool_point; ++i) {
+    if (state.point[i].region != slot) continue;
+    if (only >= 0) return -1;
+    only = i;
+  }
+  return only;
+}
+
+TipShape tip_shape(const ToolPiece& piece) {
+  if (piece.shape == PieceShape::kSphere || piece.shape == PieceShape::kCapsule) return TipShape::kBall;
+  return piece.shape == PieceShape::kCone ? TipShape::kCone : TipShape::kFlat;
+}
+
+// The dent of a region by the profile of what presses. One tip alone has its own, with its true radius: a ball by the
+// depth that the global shape leaves of it, a whole tip's flat end by its face. Many points, and a rounded face that
+// touches by one of them, are a flat face of the area that touches.
+Neighbourhood punch_of(const Model& model, const State& state, const ShapeRegion& r, Real reach_m) {
+  const Region& region = state.region[r.slot];
+  const Real by_area_m = contact_radius_m(region.area_m2, reach_m);
+  const Neighbourhood face = make_neighbourhood(NeighbourhoodLaw::kPunch, by_area_m, reach_m);
+  const std::int32_t point = only_point_of(model, state, r.slot);
+  const Real depth_m = norm(r.local_amplitude_w);
+  if (point < 0 || !(depth_m > 0) || !(reach_m > 0)) return face;
+  const ToolPoint& tip = model.tool_point[static_cast<std::size_t>(point)];
+  const ToolPiece& piece = model.piece[static_cast<std::size_t>(tip.piece)];
+  const Vec3 normal = region.normal_w, across = unit_or(tangential_part(axis_off(normal), normal), {1, 0, 0});
+  if (tip_shape(piece) == TipShape::kBall)
+    return punch_neighbourhood(
+        TipShape::kBall,
+        ball_contact(depth_m, tip.margin_m, surface_bend(model, region.centre_w, normal, 0.5 * reach_m)), reach_m);
+  if (method_of(model) != Method::kTips) return face;
+  const Real end_m = piece.half_extent_m[0], tall_m = 2 * piece.half_extent_m[2];
+  // Of a cone: depth = pi/2 a / tan(angle).
+  const Real radius_m = tip_shape(piece) == TipShape::kCone ? 2 / kPi * depth_m * end_m / tall_m : end_m;
+  return punch_neighbourhood(tip_shape(piece), {across, radius_m, radius_m}, reach_m);
+}
+
 void prepare_region(const Model& model, const State& state, const AnchorField& anchors, std::int32_t slot,
                     ShapeField& field) {
   const Region& region = state.region[slot];
@@ -76,7 +118,10 @@ void prepare_region(const Model& model, const State& state, const AnchorField& a
   const Real reach_m = reach_of(model, state, slot);
   r.local = make_neighbourhood(model.params.neighbourhood_law, contact_radius_m(region.area_m2, reach_m), reach_m);
   for (std::int32_t i = 0; i < anchors.count; ++i) r.anchor_displacement_w[i] = anchors.by_region_w[slot][i];
-  if (!field.interpolated) return;
+  if (!field.interpolated) {
+    if (r.local.law == NeighbourhoodLaw::kPunch) r.local = punch_of(model, state, r, reach_m);
+    return;
+  }
 
   Vec3 own[kMaxRbf];
   rbf_coefficients(model, r.anchor_displacement_w, own);
@@ -87,6 +132,7 @@ void prepare_region(const Model& model, const State& state, const AnchorField& a
     RbfVector g{};
     rbf_terms(model, r.contact_w, g);
     r.local_amplitude_w = r.dent_w - rbf_value(model, g, own);
+    if (r.local.law == NeighbourhoodLaw::kPunch) r.local = punch_of(model, state, r, reach_m);
   }
 }
 
@@ -102,7 +148,7 @@ Vec3 displacement_by_patch(const Model& model, const ShapeRegion& r, const Patch
   }
   const Vec3 global = displacement_by_angle(corner, normal);
   const Real blend = r.local.law == NeighbourhoodLaw::kNone ? rbf_contact_weight(model, r.node, g, x)
-                                                            : neighbourhood_blend(r.local, norm(x - r.contact_w));
+                                                            : neighbourhood_blend(r.local, x - r.contact_w);
   return global + blend * (r.dent_w - global);
 }
 
@@ -134,8 +180,8 @@ Vec3 displacement_at(const Model& model, const ShapeField& field, Vec3 rest_poin
   if (field.interpolated) sum = rbf_value(model, g, field.coefficient_w);
   for (std::int32_t i = 0; i < field.count; ++i) {
     const ShapeRegion& r = field.region[i];
-    const Real distance_m = norm(rest_point_w - r.contact_w);
-    sum += distance_m * r.node_coefficient_w + neighbourhood_blend(r.local, distance_m) * r.local_amplitude_w;
+    const Vec3 from = rest_point_w - r.contact_w;
+    sum += norm(from) * r.node_coefficient_w + neighbourhood_blend(r.local, from) * r.local_amplitude_w;
   }
   return sum;
 }

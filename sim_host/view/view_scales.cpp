@@ -1,5 +1,7 @@
 #include "sim_host/view/view_scales.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -35,6 +37,31 @@ ForceScale force_scale(double largest_N, double body_size_m) {
   scale.m_per_N = kLongest * body_size_m / largest_N;
   scale.reference_N = round_below(kLegend / kLongest * largest_N);
   return scale;
+}
+
+ForceSum force_sum(const State& state) {
+  ForceSum sum;
+  for (const Region& region : state.region) {
+    if (region.id == 0 || region.lost_ticks > 0) continue;
+    const Vec3 force_N = state.live.stiffness * region.wrench_w.force_N;
+    sum.sum_N += force_N;
+    sum.largest_N = std::max(sum.largest_N, norm(force_N));
+    sum.depth_m = std::max(sum.depth_m, region.depth_max_m);
+    ++sum.regions;
+  }
+  return sum;
+}
+
+std::string force_words(const ForceSum& sum) {
+  if (sum.regions == 0) return "no contact";
+  const double force_N = norm(sum.sum_N);
+  if (sum.regions == 1) return fmt::format("|F| = {:.2f} N", force_N);
+  return fmt::format("|sum of {} forces| = {:.2f} N, largest {:.2f} N", sum.regions, force_N, sum.largest_N);
+}
+
+const char* colour_meaning(const Model& model) {
+  const Method method = method_of(model.params);
+  return method == Method::kElastic || method == Method::kNodes ? "as solved" : "drawn shape";
 }
 
 std::vector<DrawnForce> drawn_forces(const State& state) {

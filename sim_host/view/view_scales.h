@@ -1,6 +1,7 @@
 // The scales of a view: colours of displacement, lengths of force arrows, the bar that says how long a millimetre is.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "rt_core/model.h"
@@ -32,6 +33,18 @@ struct DrawnForce {
   Vec3 tail_w, force_N;
   Vec3 friction_N;  // its tangential part
 };
+// What the body does to the tool in all, of every region in contact, and what a picture's first line says of it: where
+// there are several, that the number is their sum, which no arrow has.
+struct ForceSum {
+  Vec3 sum_N;
+  double largest_N = 0, depth_m = 0;
+  int regions = 0;
+};
+ForceSum force_sum(const State& state);
+std::string force_words(const ForceSum& sum);
+// What a body's colours are, for the legend: displacement that the model computes everywhere, or a law of shape drawn
+// around the contact that it computes.
+const char* colour_meaning(const Model& model);
 // Of each region in contact, the largest first; none below a hundredth of it.
 std::vector<DrawnForce> drawn_forces(const State& state);
 

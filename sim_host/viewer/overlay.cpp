@@ -7,6 +7,7 @@
 
 #include "sim_host/view/picture.h"
 #include "sim_host/view/plot.h"
+#include "sim_host/view/world_axes.h"
 #include "sim_host/viewer/plots.h"
 
 namespace palpate {
@@ -38,6 +39,9 @@ class Overlay {
   void text(ImFont* font, float size, ImVec2 at, Colour c, const std::string& text, float opacity = 1) {
     list_->AddText(font, size, at, packed(c, opacity), text.c_str());
   }
+  ImVec2 number_extent(const std::string& text) const {
+    return fonts_.title->CalcTextSizeA(unit_, 1e9f, 0, text.c_str());
+  }
   ImVec2 extent(float size, const std::string& text) const {
     return fonts_.text->CalcTextSizeA(size, 1e9f, 0, text.c_str());
   }
@@ -47,9 +51,15 @@ class Overlay {
   }
 
   void title() {
-    const float x = low_.x + 1.4f * unit_, y = low_.y + 1.0f * unit_;
-    text(fonts_.title, fonts_.title->FontSize, {x, y}, theme::kInk, scene_.title);
-    text(fonts_.text, unit_, {x, y + 1.15f * fonts_.title->FontSize}, theme::kGrey, scene_.line);
+    const float x = low_.x + 1.4f * unit_, y = low_.y + 1.0f * unit_, large = fonts_.title->FontSize;
+    const float beside = scene_.letter.empty() ? 0 : 1.4f * large;
+    if (beside > 0) {
+      const ImVec2 room = fonts_.title->CalcTextSizeA(0.8f * large, 1e9f, 0, scene_.letter.c_str());
+      list_->AddRectFilled({x, y + 0.02f * large}, {x + large, y + 1.02f * large}, packed(scene_.letter_colour), 4);
+      text(fonts_.title, 0.8f * large, {x + 0.5f * (large - room.x), y + 0.12f * large}, theme::kPaper, scene_.letter);
+    }
+    text(fonts_.title, large, {x + beside, y}, theme::kInk, scene_.title);
+    text(fonts_.text, unit_, {x, y + 1.15f * large}, theme::kGrey, scene_.line);
     if (scene_.notice.empty()) return;
     const ImVec2 room = extent(unit_, scene_.notice);
     const ImVec2 at{low_.x + 0.5f * (size_.x - room.x), low_.y + size_.y - 6.6f * unit_};
@@ -59,13 +69,13 @@ class Overlay {
     text(fonts_.text, unit_, at, theme::kInk, scene_.notice);
   }
 
-  // With a light rim, to be read over anything.
+  // Strong and with a light rim, to be read over anything.
   void number(ImVec2 at, Colour c, const std::string& what) {
     for (int k = 0; k < 8; ++k) {
-      const float angle = 0.785398f * static_cast<float>(k), rim = 0.11f * unit_;
-      text(fonts_.text, unit_, {at.x + rim * std::cos(angle), at.y + rim * std::sin(angle)}, theme::kPaper, what);
+      const float angle = 0.785398f * static_cast<float>(k), rim = 0.10f * unit_;
+      text(fonts_.title, unit_, {at.x + rim * std::cos(angle), at.y + rim * std::sin(angle)}, theme::kPaper, what);
     }
-    text(fonts_.text, unit_, at, c, what);
+    text(fonts_.title, unit_, at, c, what);
   }
 
   // Beyond the arrow's tip, in its direction; what would cover a number already there is left out.
@@ -73,7 +83,7 @@ class Overlay {
     const ImVec2 tail = on_screen(tail_w), tip = on_screen(tail_w + scene_.forces.m_per_N * force_N);
     const float dx = tip.x - tail.x, dy = tip.y - tail.y, length = std::max(1.0f, std::hypot(dx, dy));
     const std::string what = fmt::format("{:.2f} N", norm(force_N));
-    const ImVec2 room = extent(unit_, what);
+    const ImVec2 room = number_extent(what);
     const float reach = 0.45f * unit_ + 0.5f * (std::abs(dx) * room.x + std::abs(dy) * room.y) / length;
     ImVec2 middle{tip.x + dx / length * reach, tip.y + dy / length * reach};
     const Bar bar = legend_bar();
@@ -121,8 +131,8 @@ class Overlay {
       list_->AddLine({left + width, y}, {left + 1.3f * width, y}, packed(theme::kGrey));
       text(fonts_.text, 0.9f * unit_, {left + 1.6f * width, y - 0.5f * unit_}, theme::kInk, tick_label(mm));
     }
-    const char* const kind = is_solved(*scene_.model) ? "as solved" : "drawn shape";
-    const ImVec2 room = extent(unit_, kind);
+    const char* const kind = colour_meaning(*scene_.model);
+    const ImVec2 room = number_extent(kind);
     number({left + 0.8f * width - 0.5f * room.x, top + height + 0.6f * unit_}, theme::kGrey, kind);
     const char* const head[] = {"displacement", "(mm)"};
     for (int i = 0; i < 2; ++i) {
@@ -131,10 +141,6 @@ class Overlay {
            {left + 0.8f * width - 0.5f * wide.x, top - (2.6f - 1.15f * static_cast<float>(i)) * unit_}, theme::kInk,
            head[i]);
     }
-  }
-  // Whether the model computes the displacement everywhere, or a law of shape draws it around what it computes.
-  static bool is_solved(const Model& model) {
-    return method_of(model.params) == Method::kElastic || method_of(model.params) == Method::kNodes;
   }
   static ImU32 step(int i) { return packed(displacement_colour(1 - i / 64.0)); }
 
@@ -171,24 +177,15 @@ class Overlay {
   }
 
   void axes(ImVec2 centre) {
-    struct Axis {
-      Vec3 way;
-      const char* name;
-      Colour c;
-    };
-    Axis axis[] = {
-        {{1, 0, 0}, "x", colour(0xc0504d)}, {{0, 1, 0}, "y", colour(0x5a9a4b)}, {{0, 0, 1}, "z", colour(0x3c78b4)}};
-    // The farthest first.
-    std::ranges::sort(axis, {}, [this](const Axis& a) { return -dot(a.way, projection_.forward()); });
-    for (const Axis& a : axis) {
-      const auto x = static_cast<float>(dot(a.way, projection_.right())),
-                 y = -static_cast<float>(dot(a.way, projection_.up()));
+    for (const WorldAxis& a : world_axes(projection_)) {
+      const auto x = static_cast<float>(a.right), y = static_cast<float>(a.down);
       const ImVec2 tip{centre.x + 2.0f * unit_ * x, centre.y + 2.0f * unit_ * y};
-      list_->AddLine(centre, tip, packed(a.c), 2.2f);
-      list_->AddCircleFilled(tip, 3.0f, packed(a.c));
+      list_->AddLine(centre, tip, packed(a.colour), 2.2f);
+      list_->AddCircleFilled(tip, 3.0f, packed(a.colour));
       const ImVec2 room = extent(0.9f * unit_, a.name);
       text(fonts_.text, 0.9f * unit_,
-           {centre.x + 2.7f * unit_ * x - 0.5f * room.x, centre.y + 2.7f * unit_ * y - 0.5f * room.y}, a.c, a.name);
+           {centre.x + 2.7f * unit_ * x - 0.5f * room.x, centre.y + 2.7f * unit_ * y - 0.5f * room.y}, a.colour,
+           a.name);
     }
   }
 

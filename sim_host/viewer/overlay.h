@@ -21,7 +21,9 @@ struct OverlayScene {
   const Model* model;
   const State* state;
   std::string title, line;  // line: under the title
-  std::string notice;       // "" or what to know of what is shown, in the middle above
+  std::string letter;       // before the title, in its colour; "" for none
+  Colour letter_colour{};
+  std::string notice;  // "" or what to know of what is shown, in the middle above
   DisplacementScale colours;
   ForceScale forces;
   ViewLayers layers;

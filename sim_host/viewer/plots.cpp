@@ -68,6 +68,7 @@ void legend(const Frame& frame, std::span<const PlotLine> lines) {
   }
 }
 
+// Broken where a column holds nothing (not-a-number).
 void draw_line(const Frame& frame, const PlotLine& line, double top) {
   const auto at = [&](std::size_t column, float value) {
     const float share = (static_cast<float>(column) + 0.5f) / static_cast<float>(line.columns.size());
@@ -75,14 +76,22 @@ void draw_line(const Frame& frame, const PlotLine& line, double top) {
                   frame.high.y - value / static_cast<float>(top) * (frame.high.y - frame.low.y)};
   };
   std::vector<ImVec2> points;
+  const auto stroke = [&] {
+    frame.list->AddPolyline(points.data(), static_cast<int>(points.size()), packed(line.colour, line.opacity), 0,
+                            line.width);
+    points.clear();
+  };
   for (std::size_t c = 0; c < line.columns.size(); ++c) {
     const auto [low, high] = line.columns[c];
-    const bool falls = c > 0 && line.columns[c - 1].high > high;
+    if (std::isnan(low)) {
+      stroke();
+      continue;
+    }
+    const bool falls = !points.empty() && line.columns[c - 1].high > high;
     points.push_back(at(c, falls ? high : low));
     if (high > low) points.push_back(at(c, falls ? low : high));
   }
-  frame.list->AddPolyline(points.data(), static_cast<int>(points.size()), packed(line.colour, line.opacity), 0,
-                          line.width);
+  stroke();
 }
 
 }  // namespace

@@ -96,7 +96,9 @@ void main() {
   if (t > 0.0 && ray.y < 0.0) {
     float fade = 1.0 - smoothstep(0.55, 1.9, length(from));
     c = mix(c, vec3(0.45, 0.5, 0.56), 0.20 * net * fade);
-    if (max(abs(from.x), abs(from.y)) < 0.97) c = mix(c, vec3(0.169, 0.204, 0.251), 0.42 * texture(shadow, 0.5 + 0.5 * from).r);
+    // What stands beyond the shadow's picture is cut off there: it fades before that.
+    float edge = 1.0 - smoothstep(0.7, 0.97, max(abs(from.x), abs(from.y)));
+    c = mix(c, vec3(0.169, 0.204, 0.251), 0.42 * edge * texture(shadow, 0.5 + 0.5 * clamp(from, -0.99, 0.99)).r);
   }
   colour = vec4(c, 1.0);
 })";

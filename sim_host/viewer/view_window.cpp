@@ -72,7 +72,6 @@ ViewWindow::~ViewWindow() {
   ImGui_ImplOpenGL3_Shutdown();
   ImGui_ImplGlfw_Shutdown();
   ImGui::DestroyContext();
-  scene_.release();
   picture_.release();
   glfwDestroyWindow(window_);
   glfwTerminate();
@@ -103,9 +102,10 @@ void ViewWindow::poll() {
   picture_.resize(width_, height_, 1, GL_RGBA8);
 }
 
-void ViewWindow::begin_ui() {
+void ViewWindow::begin_ui(const std::function<void(ImGuiIO&)>& input) {
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
+  if (input) input(ImGui::GetIO());
   ImGui::NewFrame();
 }
 

@@ -2,6 +2,7 @@
 // that a screenshot needs no window on any screen.
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "sim_host/viewer/gl_objects.h"
@@ -22,13 +23,13 @@ class ViewWindow {
   bool wants_to_close() const;
   void close();
   void poll();
-  void begin_ui();
+  // `input` may change what mouse and keys are taken to do.
+  void begin_ui(const std::function<void(ImGuiIO&)>& input);
   void end_ui();  // the picture is complete then
   void present();
   int width() const { return width_; }
   int height() const { return height_; }
   const Fonts& fonts() const { return fonts_; }
-  GlFramebuffer& scene() { return scene_; }
   const GlFramebuffer& picture() const { return picture_; }
   std::string driver() const;
 
@@ -39,7 +40,7 @@ class ViewWindow {
   int width_, height_;
   bool visible_;
   Fonts fonts_;
-  GlFramebuffer scene_, picture_;
+  GlFramebuffer picture_;
 };
 
 // Of this process so far.

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "config/bake/tool_points.h"
+#include "config/hand/hand_mesh.h"
 #include "config/hand/hand_model.h"
-#include "sim_host/view/hand_mesh.h"
 
 namespace palpate {
 namespace {

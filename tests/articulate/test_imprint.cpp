@@ -101,7 +101,7 @@ TEST(Imprint, ThePalmFlattensWhatLiesAgainstItAndPressesNothing) {
     const bool within = std::abs(at.x) < palm.half_extent_m[0] && std::abs(at.y) < palm.half_extent_m[1];
     if (!within) continue;
     EXPECT_GE(over_palm_m(held, held.surface.position_m[i]), -1e-12);
-    flat += over_palm_m(held, held.surface.position_m[i]) < 1e-12 ? 1 : 0;
+    flat += over_palm_m(held, held.surface.position_m[i]) < 1e-12 ? 1U : 0U;
   }
   EXPECT_GT(flat, 100u);
   EXPECT_EQ(norm(held.bench.state->articulation.piece_force_tool_N.data()[model.piece.size() - 1]), 0);

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "config/bake/tool_points.h"
+#include "config/hand/hand_mesh.h"
 #include "config/hand/hand_model.h"
 #include "rt_core/tool/articulate.h"
 #include "sim_host/press/grasp_run.h"
-#include "sim_host/view/hand_mesh.h"
 #include "tests/support/baked_scene.h"
 
 namespace palpate::test {

@@ -164,7 +164,7 @@ TEST(ClosestPointLimits, MedialAxisIsCappedFlaggedAndStillInside) {
   const SurfacePoint s = closest_surface_point(body.model, {}, 1e12, -1);
   ASSERT_TRUE(s.found);
   EXPECT_TRUE(s.truncated);
-  EXPECT_LE(s.nodes, kMaxQueryNodes);
+  EXPECT_LE(s.nodes, kMaxSearched);
   EXPECT_NEAR(s.signed_distance_m, -0.03, 1e-4);
   EXPECT_LE(s.lower_bound_m, -s.signed_distance_m);
 }

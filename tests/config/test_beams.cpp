@@ -14,6 +14,7 @@
 #include "rt_core/skeleton/beam_table.h"
 #include "rt_core/surface/closest_point.h"
 #include "sim_host/view/anchors.h"
+#include "tests/support/refusal.h"
 
 namespace palpate {
 namespace {
@@ -384,12 +385,7 @@ TEST(PressedRing, PaperLawSharesWhatItCan) {
 // --------------------------------------------------------------------------------------------------------
 
 std::string error_of(const std::string& text) {
-  try {
-    compile_scene(parse_scene(text, "s.toml"));
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "";
+  return test::refusal_by([&] { compile_scene(parse_scene(text, "s.toml")); });
 }
 
 TEST(BeamScenes, MistakesAreNamed) {

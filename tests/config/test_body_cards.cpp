@@ -8,6 +8,7 @@
 #include "config/body/body_card.h"
 #include "config/scene/config_error.h"
 #include "tests/support/baked_scene.h"
+#include "tests/support/refusal.h"
 
 namespace palpate {
 namespace {
@@ -24,6 +25,7 @@ std::string value_of(const std::string& key) {
   if (key == "width_mm") return "80";
   if (key == "wall_mm") return "8";
   if (key == "axis") return "\"y\"";
+  if (key == "pattern") return "\"rings\"";
   if (key == "profile_mm") return "[[0, 0], [20, 5], [25, 25], [0, 40]]";
   if (key == "triangles") return "800";
   if (key == "fix_orientation") return "true";
@@ -43,12 +45,7 @@ std::string example_toml(BodyShape shape) {
 const char* const kTool = "[[tool.piece]]\nshape = \"sphere\"\nradius_mm = 8\n";
 
 std::string refusal(const std::string& text) {
-  try {
-    parse_scene(text, "s.toml");
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return test::refusal_by([&] { parse_scene(text, "s.toml"); });
 }
 
 class BodyCards : public testing::TestWithParam<BodyShape> {};

@@ -14,6 +14,7 @@
 #include "config/scene/config_error.h"
 #include "rt_core/image.h"
 #include "tests/config/generated_docs.h"
+#include "tests/support/refusal.h"
 
 namespace palpate {
 namespace {
@@ -41,12 +42,7 @@ radius_mm = 8
 SceneDesc small(const std::string& more = "") { return parse_scene(kSmall + more, "s.toml"); }
 
 std::string error_of(const std::string& more) {
-  try {
-    compile_scene(small(more));
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "";
+  return test::refusal_by([&] { compile_scene(small(more)); });
 }
 
 TEST(Compile, ShippedScenesBakeOpenAndFit) {
@@ -199,7 +195,7 @@ TEST(Compile, CouplingIsBoundedByTheDevice) {
   const CompileResult baked = compile_scene(small());
   EXPECT_NEAR(baked.report.bound.value, 2500, 1e-9);
   EXPECT_NEAR(baked.report.coupling_N_per_m, 2000, 1e-9);
-  EXPECT_EQ(error_of("[device]\ncoupling_N_per_m = 2500\n"), "");
+  EXPECT_EQ(error_of("[device]\ncoupling_N_per_m = 2500\n"), "accepted");
   EXPECT_THAT(error_of("[device]\ncoupling_N_per_m = 2501\n"),
               AllOf(StartsWith("s.toml:9: device.coupling_N_per_m: 2501 N/m is above"), HasSubstr("2500"),
                     HasSubstr("2b / (T + 2 tau)")));
@@ -213,6 +209,10 @@ TEST(Compile, ImpossibleCombinationsAreRefused) {
       HasSubstr("needs 3 anchors"));
   EXPECT_THAT(error_of("[shape]\ntail = \"linear\"\n[skeleton]\nanchors_min = 0\nanchors_max = 2\n"),
               HasSubstr("singular"));
+  EXPECT_THAT(error_of("[coupling]\nlaw = \"mutual_paper\"\n[skeleton]\nanchors_min = 18\n"),
+              AllOf(HasSubstr("skeleton.anchors_max"), HasSubstr("at most 17")));
+  EXPECT_THAT(error_of("[coupling]\nlaw = \"mutual_paper\"\n[skeleton]\nlaw = \"circular\"\n"),
+              AllOf(HasSubstr("coupling.law"), HasSubstr("straight skeleton.law")));
   EXPECT_THAT(error_of("[contact.duffing]\nmass_kg = 1e6\nbeta0sq_eps = 10\n"), HasSubstr("soften the law"));
 }
 

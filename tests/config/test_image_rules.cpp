@@ -5,18 +5,14 @@
 #include "config/bake/image_rules.h"
 #include "config/scene/config_error.h"
 #include "rt_core/image_check.h"
+#include "tests/support/refusal.h"
 
 namespace palpate {
 namespace {
 
 template <class Scene>
 std::string refusal(Scene&& scene) {
-  try {
-    compile_scene(scene());
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return test::refusal_by([&] { compile_scene(scene()); });
 }
 
 void expect_words(const std::string& text, std::initializer_list<const char*> words) {
@@ -79,8 +75,10 @@ TEST(ImageRules, MethodsTakeTheirOwnFrictionAndPieces) {
   model.params.backend = Backend::kNodal;
   EXPECT_EQ(verdict(), "");
   piece.shape = PieceShape::kHull;
-  EXPECT_EQ(verdict(), "piece.nodal_shape");
+  EXPECT_EQ(verdict(), "piece.hull_faces");
   EXPECT_EQ(check_method(model).error, ImageError::kCombination);
+  piece.face_count = 4;
+  EXPECT_EQ(verdict(), "");
   model.params.backend = Backend::kResponse;
   model.params.response_law = ResponseLaw::kTip;
   model.params.friction_law = FrictionLaw::kReturnMap;

@@ -14,6 +14,7 @@
 #include "config/response/corner_normals.h"
 #include "config/scene/config_error.h"
 #include "tests/support/baked_scene.h"
+#include "tests/support/refusal.h"
 
 namespace palpate {
 namespace {
@@ -32,15 +33,12 @@ const char* const kLeft = "[[body.fixed]]\nregion = \"box\"\nfrom_mm = [-100, -1
 const char* const kRight = "[[body.fixed]]\nregion = \"box\"\nfrom_mm = [50, -1, -10]\nto_mm = [100, 11, 10]\n";
 
 std::string refusal(const std::string& text) {
-  try {
+  return test::refusal_by([&] {
     const SceneDesc scene = parse_scene(text, "s.toml");
     std::vector<std::string> warnings;
     const TetMesh mesh = make_tet_mesh(scene, warnings);
     check_supports(mesh, supports_of(scene, mesh), "s.toml: body");
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "accepted";
+  });
 }
 
 struct Pressed {

@@ -39,16 +39,28 @@ TEST(WithinStep, BoundsWhatTheToolDoesByItself) {
   Model model;
   model.params = tiny_params();
   const StatePtr state = roomy_state();
-  const double own_m = kToolStepShare * 8.5 / 1500;
+  state->safety.mode = Mode::kForce;
+  const double own_m = kCalmStepShare * 8.5 / 1500;
   std::uint32_t status = 0;
   EXPECT_EQ(within_step(model, *state, at({0.9 * own_m, 0, 0}), status).position_m.x, 0.9 * own_m);
   EXPECT_EQ(status, 0u);
   EXPECT_NEAR(within_step(model, *state, at({0.01, 0, 0}), status).position_m.x, own_m, 1e-15);
   EXPECT_EQ(status, Status::kToolHeldBack);
-  state->device_w = at({0, 0, 0.002});  // the hand moves by 2 mm: so may the tool
-  EXPECT_NEAR(within_step(model, *state, at({0.01, 0, 0}), status).position_m.x, own_m + 0.002, 1e-15);
+  state->device_w = at({0, 0, 1e-4});  // the hand moves by 0.1 mm: so may the tool
+  EXPECT_NEAR(within_step(model, *state, at({0.01, 0, 0}), status).position_m.x, own_m + 1e-4, 1e-15);
+  state->device_w = at({0, 0, 2.5e-4});  // by more: a quarter of it besides
+  EXPECT_NEAR(within_step(model, *state, at({0.01, 0, 0}), status).position_m.x, 1.25 * 2.5e-4, 1e-15);
+  state->device_w = at({0, 0, 0.002});  // but never eight times as far as by itself
+  EXPECT_NEAR(within_step(model, *state, at({0.01, 0, 0}), status).position_m.x, 8 * own_m + 0.002, 1e-15);
   state->safety.swings = 1;
-  EXPECT_NEAR(within_step(model, *state, at({0.01, 0, 0}), status).position_m.x, own_m / 5 + 0.002, 1e-15);
+  EXPECT_NEAR(within_step(model, *state, at({0.01, 0, 0}), status).position_m.x, 8 * own_m / 5 + 0.002, 1e-15);
+  state->safety.swings = 0;
+  state->device_w = {};
+  state->safety.mode = Mode::kIdle;  // renders nothing: no step is felt, and it is eight times as wide
+  EXPECT_NEAR(within_step(model, *state, at({0.01, 0, 0}), status).position_m.x, 8 * own_m, 1e-15);
+  state->safety.mode = Mode::kForce;
+  model.params.friction_law = FrictionLaw::kPaper;  // gives energy back: as wide
+  EXPECT_NEAR(within_step(model, *state, at({0.01, 0, 0}), status).position_m.x, 8 * own_m, 1e-15);
 }
 
 // Of a contact that pushes along one slanted direction: the springs in series along it, nothing across.
@@ -149,15 +161,60 @@ TEST_F(Damped, NeverPullsTheHandToTheSurfaceItLeaves) {
   EXPECT_LT(after(0.02, -0.2, 95).z, undamped_N_);
 }
 
-// A spring that a tick's delay turns into a source: what it returns more than it took is found, and braked.
-TEST(DrainEnergy, FindsWhatDelayMakes) {
+class DrainEnergy : public testing::TestWithParam<int> {
+ protected:
+  DrainEnergy() {
+    model.params = tiny_params();
+    state->safety.mode = Mode::kForce;
+    state->safety.ramp = 1;
+  }
   Model model;
-  model.params = tiny_params();
   const StatePtr state = roomy_state();
   const ScratchPtr scratch = roomy_scratch();
-  state->safety.mode = Mode::kForce;
-  state->safety.ramp = 1;
   Input input;
+};
+
+// Driven fingers fill the object: not the handle's energy, nor that of the coupling, so none of it is braked away. When
+// they open, they take it back.
+TEST_F(DrainEnergy, LeavesTheFingersWorkToTheFingers) {
+  state->articulation.moved = 1;
+  for (int i = 0; i < 200; ++i) {
+    const double closed = i < 100 ? i : 199 - i;
+    scratch->energy_J = 1e-6 * closed * closed;
+    scratch->contact_wrench_w.force_N.z = 0.02 * closed;
+    scratch->status = 0;
+    Vec3 force{};
+    state->hand_velocity_m_per_s = {0, 0, 0.1};
+    drain_energy(model, *state, *scratch, input, force);
+    EXPECT_EQ(scratch->status, 0u) << i;
+    EXPECT_NEAR(state->safety.surplus_J, 0, 1e-15) << i;
+  }
+}
+
+// The tool goes with the object it holds: what the object does on it is the fingers' work, the part of it that the
+// coupling does not get is not.
+TEST_F(DrainEnergy, CountsWhatFingersDoOnTheToolOnce) {
+  state->articulation.moved = 1;
+  for (int i = 0; i < 50; ++i) {  // pulled by 0.5 N over 2.5 mm, and the coupling not yet stretched: 1.25 mJ too few
+    state->tool_previous_w = state->tool_w;
+    state->tool_w.position_m.z = 5e-5 * i;
+    scratch->contact_wrench_w.force_N.z = 0.5;
+    scratch->status = 0;
+    Vec3 force{0, 0, 1e-3};
+    drain_energy(model, *state, *scratch, input, force);
+  }
+  EXPECT_NEAR(state->safety.surplus_J, -0.005 * 0.5 * 8.5 * 8.5 / 1500, 1e-12);  // the credit ends there
+  state->articulation.moved = 0;  // a force that nobody drives has stored its work before
+  const double before_J = state->safety.surplus_J;
+  Vec3 force{0, 0, 1e-3};
+  drain_energy(model, *state, *scratch, input, force);
+  EXPECT_NEAR(state->safety.surplus_J, before_J, 1e-12);
+}
+
+// A spring that a tick's delay turns into a source: what it returns more than it took is found, and braked; also while
+// fingers move.
+TEST_P(DrainEnergy, FindsWhatDelayMakes) {
+  state->articulation.moved = GetParam();
   double drained_N = 0;
   for (int i = 0; i < 40; ++i) {  // pressed at 0.1 m/s into nothing but the coupling, whose other end stands still
     state->device_previous_w = state->device_w;
@@ -178,6 +235,7 @@ TEST(DrainEnergy, FindsWhatDelayMakes) {
   EXPECT_GT(drained_N, 0);  // against the motion
   EXPECT_LE(drained_N, 1500 * 1e-3 * 0.1 + 1e-12);
 }
+INSTANTIATE_TEST_SUITE_P(WithFingersStillAndMoving, DrainEnergy, testing::Values(0, 1));
 
 TEST(IsUnstable, FiresOnForcesThatAlternate) {
   Model model;

@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 
+#include "rt_core/image_check.h"
 #include "tests/support/tiny_image.h"
 
 namespace palpate::test {
@@ -104,6 +105,11 @@ const Damage kDamages[] = {
     {"rbf not finite", ImageError::kNotFinite, "rbf_inverse",
      [](ImageBytes& i) { i.array<double>(kRbf)[3] = kInfinity; }},
     {"rbf tail", ImageError::kCrossReference, "n_rbf", [](ImageBytes& i) { i.params().rbf_tail = RbfTail::kLinear; }},
+    {"mutual beams on baked ones", ImageError::kCrossReference, "anchor.mutual",
+     [](ImageBytes& i) {
+       i.params().coupling_law = CouplingLaw::kMutualPaper;
+       i.params().skeleton_law = SkeletonLaw::kCircular;
+     }},
     {"patches missing", ImageError::kCrossReference, "n_patch",
      [](ImageBytes& i) { i.params().shape_law = ShapeLaw::kDisplacementAnglePaper; }},
     {"beams missing", ImageError::kCrossReference, "n_beam_stiffness",
@@ -114,6 +120,10 @@ const Damage kDamages[] = {
      [](ImageBytes& i) { i.array<ToolPiece>(kPiece)->shape = static_cast<PieceShape>(ChoiceOf<PieceShape>::kCount); }},
     {"hull without vertices", ImageError::kCrossReference, "piece.hull_count",
      [](ImageBytes& i) { i.array<ToolPiece>(kPiece)->shape = PieceShape::kHull; }},
+    {"faces that are not there", ImageError::kCrossReference, "piece.first_face",
+     [](ImageBytes& i) { i.array<ToolPiece>(kPiece)->face_count = 4; }},
+    {"planes without faces", ImageError::kCrossReference, "piece.plane_count",
+     [](ImageBytes& i) { i.array<ToolPiece>(kPiece)->plane_count = 1; }},
     {"piece orientation", ImageError::kNotFinite, "piece.pose_tool",
      [](ImageBytes& i) { i.array<ToolPiece>(kPiece)->pose_tool.orientation.w = 2; }},
     {"piece margin", ImageError::kNotFinite, "piece.margin_m",
@@ -177,6 +187,24 @@ TEST(Image, EachNodalRungNamesItsField) {
     const ImageResult result = open(image);
     EXPECT_EQ(result.error, damage.error) << damage.what << ": " << describe(result.error);
     EXPECT_STREQ(result.field, damage.field) << damage.what;
+  }
+}
+
+TEST(Image, FacesOfHullsAreLookedAt) {
+  ImageBytes image = tiny_image();
+  Model model;
+  ASSERT_EQ(open_image(image.bytes(), model).error, ImageError::kNone);
+  const HullFace whole{{0, 0, 1}, 0.01, {{0, 0, 0.01}, {0.01, 0, 0.01}, {0, 0.01, 0.01}}};
+  HullFace lying = whole, far = whole, folded = whole;
+  lying.normal = {};
+  far.offset_m = kNan;
+  folded.corner_m[1] = folded.corner_m[0];
+  model.hull_face = {&whole, 1};
+  EXPECT_EQ(check_arrays(model).error, ImageError::kNone);
+  for (const HullFace& face : {lying, far, folded}) {
+    model.hull_face = {&face, 1};
+    EXPECT_EQ(check_arrays(model).error, ImageError::kNotFinite);
+    EXPECT_STREQ(check_arrays(model).field, "hull_face");
   }
 }
 

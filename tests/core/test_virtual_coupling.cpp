@@ -209,6 +209,7 @@ TEST(Safety, NonFiniteContactRampsTheLastGoodForceOutAndLatches) {
 TEST(Safety, MagnitudeIsClampedWithItsDirectionKept) {
   Rig rig;
   rig.model.params.ramp_in_s = 0;
+  rig.model.params.friction_law = FrictionLaw::kPaper;  // under which a tool may step far by itself
   rig.input.pose_w.position_m = {0, 0, -0.05};
   const auto nothing = [](State&, Scratch&) {};
   rig.step(nothing);
@@ -227,6 +228,7 @@ TEST(Safety, MagnitudeIsClampedWithItsDirectionKept) {
 TEST(Safety, NoTorqueStepExceedsTheSameShareOfItsLimit) {
   Rig rig;
   rig.model.params.force_rate_max_N_per_s = 0.05 * rig.model.params.force_max_N / rig.model.params.period_s;
+  rig.model.params.friction_law = FrictionLaw::kPaper;  // under which a tool may step far by itself
   rig.arm(Wall{2000});
   const double step_Nm = 0.05 * rig.model.params.torque_max_Nm;
   Vec3 last = rig.output.device_w.torque_Nm;
@@ -241,8 +243,9 @@ TEST(Safety, NoTorqueStepExceedsTheSameShareOfItsLimit) {
   EXPECT_NEAR(largest_Nm, step_Nm, 1e-9);
 }
 
-// Whatever rate a scene states, no tick changes force or torque by more than a tenth of its limit.
-TEST(Safety, NoTickChangesTheForceByMoreThanATenth) {
+// Whatever rate a scene states, every tick changes force and torque by less than a tenth of its limit: with margin, not
+// by a rounding.
+TEST(Safety, EveryTickChangesTheForceByLessThanATenth) {
   Rig rig;
   rig.model.params.force_rate_max_N_per_s = 1e7;
   rig.model.params.speed_max_m_per_s = 10;
@@ -259,10 +262,11 @@ TEST(Safety, NoTickChangesTheForceByMoreThanATenth) {
     });
     const Wrench now = rig.output.device_w;
     largest_N = max_of(largest_N, norm(now.force_N - last.force_N));
-    EXPECT_LE(norm(now.torque_Nm - last.torque_Nm), 0.1 * rig.model.params.torque_max_Nm * (1 + 1e-9)) << i;
+    EXPECT_LE(norm(now.torque_Nm - last.torque_Nm), 0.099 * rig.model.params.torque_max_Nm) << i;
     last = now;
   }
-  EXPECT_NEAR(largest_N, 0.1 * rig.model.params.force_max_N, 1e-9);
+  EXPECT_LT(largest_N, 0.099 * rig.model.params.force_max_N);
+  EXPECT_GT(largest_N, 0.09 * rig.model.params.force_max_N);  // it was met
 }
 
 // A tool that begins inside would push at once: refused, and said, until it is outside.
@@ -308,7 +312,8 @@ TEST(Safety, ContactMemoryIsDroppedAfterANonFiniteForce) {
 
 TEST(Safety, NoForceStepExceedsTheRateLimit) {
   Rig rig;
-  rig.model.params.force_rate_max_N_per_s = 500;  // 0.5 N per tick
+  rig.model.params.force_rate_max_N_per_s = 500;        // 0.5 N per tick
+  rig.model.params.friction_law = FrictionLaw::kPaper;  // under which a tool may step far by itself
   rig.arm(Wall{2000});
   Vec3 last = rig.output.device_w.force_N;
   bool limited = false;

@@ -12,7 +12,7 @@ constexpr double kA = 3e-3, kR = 10e-3;
 constexpr NeighbourhoodLaw kLaws[] = {NeighbourhoodLaw::kLogPaper, NeighbourhoodLaw::kLogC1, NeighbourhoodLaw::kPunch};
 
 double blend(NeighbourhoodLaw law, double r, double a = kA) {
-  return neighbourhood_blend(make_neighbourhood(law, a, kR), r);
+  return neighbourhood_blend(make_neighbourhood(law, a, kR), {r, 0, 0});
 }
 
 TEST(Neighbourhood, WorkedExampleOfTheLogLaw) {
@@ -26,7 +26,7 @@ TEST(Neighbourhood, WorkedExampleOfTheLogLaw) {
 TEST(Neighbourhood, WorkedBlendsAtFiveMillimetres) {
   EXPECT_NEAR(blend(NeighbourhoodLaw::kLogPaper, 5e-3), .5757167, 6e-8);
   EXPECT_NEAR(blend(NeighbourhoodLaw::kLogC1, 5e-3), .4247780, 6e-8);
-  EXPECT_NEAR(blend(NeighbourhoodLaw::kPunch, 5e-3), .2675993, 6e-8);
+  EXPECT_NEAR(blend(NeighbourhoodLaw::kPunch, 5e-3), .4096655, 6e-8);  // 2/pi asin(0.6): half the reach
 }
 
 // The formulas in long double through the C library.
@@ -35,14 +35,16 @@ TEST(Neighbourhood, AgreesWithDefinitions) {
   for (int i = 1; i < 100; ++i) {
     const long double r = a + (big - a) * i / 100;
     const auto c1 = [&](long double x) { return std::log(big / x) - 0.5L * (1 - x * x / big / big); };
-    const long double q = std::asin(a / big);
     const double at = static_cast<double>(r);
     EXPECT_NEAR(blend(NeighbourhoodLaw::kLogPaper, at), static_cast<double>(std::log(big / r) / std::log(big / a)),
                 1e-14);
     EXPECT_NEAR(blend(NeighbourhoodLaw::kLogC1, at), static_cast<double>(c1(r) / c1(a)), 1e-14);
-    const long double half_pi = std::asin(1.0L);
-    EXPECT_NEAR(blend(NeighbourhoodLaw::kPunch, at), static_cast<double>((std::asin(a / r) - q) / (half_pi - q)),
-                1e-14);
+    // The half space's out to half of the reach.
+    const double punch = static_cast<double>(std::asin(a / r) / std::asin(1.0L));
+    if (2 * r <= big) {
+      EXPECT_NEAR(blend(NeighbourhoodLaw::kPunch, at), punch, 1e-14);
+    }
+    EXPECT_LE(blend(NeighbourhoodLaw::kPunch, at), punch + 1e-15);
   }
 }
 
@@ -78,8 +80,8 @@ TEST(Neighbourhood, DegenerateRadiiSwitchTheLawOff) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const NeighbourhoodLaw law : kLaws) {
     for (const double a : {0.0, -1e-3, 0.95 * kR, kR, nan}) EXPECT_EQ(blend(law, 1e-3, a), 0);
-    EXPECT_EQ(neighbourhood_blend(make_neighbourhood(law, kA, 0), 0), 0);
-    EXPECT_EQ(neighbourhood_blend(make_neighbourhood(law, kA, nan), 0), 0);
+    EXPECT_EQ(neighbourhood_blend(make_neighbourhood(law, kA, 0), {}), 0);
+    EXPECT_EQ(neighbourhood_blend(make_neighbourhood(law, kA, nan), {}), 0);
     EXPECT_EQ(blend(law, nan), 0);
   }
   EXPECT_EQ(blend(NeighbourhoodLaw::kNone, 0), 0);

@@ -19,6 +19,7 @@
 #include "rt_core/contact/contact.h"
 #include "rt_core/contact/elastic/elastic_layout.h"
 #include "tests/elastic/elastic_tick_scene.h"
+#include "tests/support/refusal.h"
 
 namespace palpate::test {
 namespace {
@@ -63,12 +64,7 @@ double sinks_m(const std::string& text) {
 }
 
 std::string refusal(const std::string& text) {
-  try {
-    sinks_m(text);
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return refusal_by([&] { sinks_m(text); });
 }
 
 // Strains in series: p (L1 / E1 + L2 / E2).

@@ -5,7 +5,10 @@
 #include <cmath>
 
 #include "config/elastic/fixed_random.h"
+#include "rt_core/contact/elastic/elastic_row.h"
 #include "rt_core/status.h"
+#include "rt_core/surface/closest_point.h"
+#include "rt_core/surface/ring.h"
 #include "tests/elastic/elastic_tick_scene.h"
 
 namespace palpate::test {
@@ -154,6 +157,26 @@ TEST_F(ArchInTick, ForceOfASlideHasNoSteps) {
   }
   RecordProperty("of_the_force", std::to_string(100 * largest) + " %");
   EXPECT_LT(largest, 0.01);
+}
+
+// A tip thrown from place to place asks for no more of the surface than the tick's share and what one look may go over
+// it, and where it then rests it is pressed as by a tool that came there slowly.
+TEST_F(ArchInTick, AThrownTipEndsAtTheForceOfASlowPress) {
+  constexpr std::int32_t kOneLook =
+      kMaxWarmWork + kMaxLandedWork + 4 * kMaxFan + kMaxTraversalStack + 2 * kMaxTipSearched + 16;
+  const Vec3 places[] = {{0, -2e-3, 0},         {5e-3, -3e-3, 6e-3}, {-9e-3, -3e-3, -4e-3},
+                         {2e-3, -1.5e-3, 9e-3}, {8e-3, -3e-3, 0},    {0, 0.05, 0.2}};
+  Bench thrown(scene().model());
+  for (int i = 0; i < 60; ++i) {
+    const Vec3 at = kTop + places[static_cast<std::size_t>(7 * i + i / 6) % std::size(places)];
+    for (int k = 0; k < 30; ++k) {
+      thrown.tick_at({at, {}}, {});
+      ASSERT_LE(thrown.scratch->surface_work, surface_work_share(scene().model().params) + kOneLook) << i;
+    }
+    Bench slow(scene().model());
+    const Vec3 force = move_to(slow, at + Vec3{0, 4e-3, 0}, at, 1e-4).contact_w.force_N;
+    EXPECT_LT(norm(thrown.output.contact_w.force_N - force), 1e-3 * norm(force) + 1e-12) << i;
+  }
 }
 
 TEST(ElasticTeleports, OnAnArchStayFinite) {

@@ -58,7 +58,7 @@ TEST(Condense, BodyTooLargeForItsTableIsRefusedWithTheNumbers) {
   const TetMesh mesh = make_box_tets({0.04, 0.04, 0.04}, {2, 2, 2});
   CondenseLimits limits;
   limits.surface_nodes = 37;
-  const std::string text = error_of([&] {
+  const std::string text = test::refusal_by([&] {
     condense(mesh, {1e6, 0.3}, hold_where(mesh, [](Vec3 p) { return p.y == 0; }), "block", {}, limits);
   });
   EXPECT_SAYS(text, "block: the mesh has 98 surface nodes");

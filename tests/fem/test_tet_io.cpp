@@ -94,7 +94,7 @@ std::string changed(std::string text, const std::string& from, const std::string
 }
 std::string read_error(const std::string& name, const std::string& text) {
   const TestFolder folder;
-  return error_of([&] { read_tet_mesh(folder.write(name, text), 1); });
+  return test::refusal_by([&] { read_tet_mesh(folder.write(name, text), 1); });
 }
 
 TEST(TetIo, Msh22QuadraticWithOurOrderOfEdges) {
@@ -214,7 +214,7 @@ TEST(Gmsh, OpenAndSelfIntersectingSurfacesAreRefused) {
         std::abs(crossed.vertex_m[i].z) < 0.015)
       top = i;
   crossed.vertex_m[top].y = -0.02;  // through the bottom
-  EXPECT_SAYS(error_of([&] { tetrahedralise(crossed, 0.01, "box"); }), "cut itself? It said: Error");
+  EXPECT_SAYS(test::refusal_by([&] { tetrahedralise(crossed, 0.01, "box"); }), "cut itself? It said: Error");
   EXPECT_THROW(tetrahedralise(make_box({0.04, 0.04, 0.04}, 100), 0, "box"), ConfigError);
 }
 

@@ -439,6 +439,27 @@ TEST(ComputeForce, TemporalCouplingAddsWhatLaterRegionsTransfer) {
   }
 }
 
+// Luo & Xiao 2006, section VI: every region adds what the others' beams bring it, whoever came first.
+TEST(ComputeForce, MutualCouplingAddsWhatAllOthersTransfer) {
+  TemporalScene s;
+  s.open_region(0, 1, 1);
+  s.open_region(1, 2, 8);
+  s.set_coupling(CouplingLaw::kNone);
+  s.run();
+  const Real own[2] = {s.state->region[0].normal_force_N, s.state->region[1].normal_force_N};
+  const std::int32_t order[2] = {0, 1};
+  Real sum[2] = {};
+  s.set_coupling(CouplingLaw::kMutualPaper);
+  EXPECT_TRUE(add_mutual_forces(s.model, *s.state, order, 2, sum));
+  s.run();
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_GT(sum[i], 1e-3);  // the scene does couple
+    EXPECT_NEAR(s.state->region[i].normal_force_N, own[i] + sum[i], 1e-9);
+    EXPECT_NEAR(s.scratch->contact[i].force_N, s.state->region[i].normal_force_N, 1e-12);
+  }
+  EXPECT_LT(norm(sum_of_regions(*s.state) - s.force()), 1e-12);
+}
+
 // A strong press from the other side presses a light one harder, through the body: it neither pulls nor unloads it.
 TEST(ComputeForce, TemporalCouplingNeverPulls) {
   TemporalScene s;

@@ -1,5 +1,5 @@
-// Plays the scripted hand in baked scenes, its last quarter with live settings, and prints one hash of all outputs per
-// scene: what effect.sh compares.
+// Plays the scripted hand in baked scenes, its second half with a device later than stated, its last quarter with live
+// settings, and prints one hash of all outputs per scene: what effect.sh compares.
 // Usage: output_hash IMAGE...
 #include <cstdint>
 #include <cstdio>
@@ -23,6 +23,7 @@ std::uint64_t play(const Model& model) {
   OutputHash hash;
   for (int i = 0; i < kScriptTicks; ++i) {
     Input input = hand.next(output);
+    if (i >= kScriptTicks / 2) input.command_lag = 2;  // a device later than it is stated to be
     if (i >= 3 * kScriptTicks / 4) input.live.stiffness = input.live.friction = 0.5F;
     tick(model, *state, *scratch, input, output);
     add(output, hash);

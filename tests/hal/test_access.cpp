@@ -10,6 +10,7 @@
 #include "hal/bus/device_address.h"
 #include "hal/bus/loopback.h"
 #include "hal/system/device_lock.h"
+#include "hal/system/local_socket.h"
 
 namespace palpate {
 namespace {

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "hal/system/duration.h"
 #include "sim_host/doctor/certify.h"
 
 namespace palpate {

@@ -12,6 +12,7 @@
 #include "sim_host/run/joint_script.h"
 #include "sim_host/run/process.h"
 #include "tests/support/ball_run.h"
+#include "tests/support/refusal.h"
 
 namespace palpate {
 namespace {
@@ -28,22 +29,12 @@ const Model& hand() {
 }
 
 std::string refusal(const JointOptions& options, const Model& model) {
-  try {
-    const JointScript script(options, model);
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
-  return "";
+  return test::refusal_by<std::runtime_error>([&] { const JointScript script(options, model); });
 }
 
 std::string table_refusal(const std::string& table) {
   std::istringstream text(table);
-  try {
-    read_joint_table(text, "t.csv", hand());
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
-  return "";
+  return test::refusal_by<std::runtime_error>([&] { read_joint_table(text, "t.csv", hand()); });
 }
 
 TEST(JointScript, ClosesAllFingersOrEachItsOwn) {

@@ -20,6 +20,7 @@
 #include "sim_host/view/apng_file.h"
 #include "sim_host/view/movie.h"
 #include "tests/host/tiny_run.h"
+#include "tests/support/refusal.h"
 #include "tests/support/tiny_image.h"
 
 namespace palpate {
@@ -186,12 +187,7 @@ class MovieOfARun : public testing::Test {
     return save_movie(movie_, file.bytes(), model_, options, {});
   }
   std::string refusal(const MovieOptions& options) {
-    try {
-      make(options);
-    } catch (const std::runtime_error& error) {
-      return error.what();
-    }
-    return "made";
+    return test::refusal_by<std::runtime_error>([&] { make(options); });
   }
 
   const std::string run_ = temporary("_movie.plr"), movie_ = temporary("_movie.png");

@@ -6,6 +6,7 @@
 #include "sim_host/latency/cyclictest_read.h"
 #include "sim_host/latency/latency.h"
 #include "tests/host/xml_check.h"
+#include "tests/support/refusal.h"
 
 namespace palpate {
 namespace {
@@ -30,12 +31,7 @@ constexpr char kTwoThreads[] =
     "# Thread 1: 00100 00200\n\n";
 
 std::string error_of(const std::string& text) {
-  try {
-    parse_cyclictest(text, "c.txt");
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
-  return "accepted";
+  return test::refusal_by<std::runtime_error>([&] { parse_cyclictest(text, "c.txt"); });
 }
 std::string with(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);

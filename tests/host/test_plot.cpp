@@ -94,6 +94,21 @@ TEST(LinePlot, LongNamesNarrowThePlot) {
     for (int x = canvas.width() - 10; x < canvas.width(); ++x) EXPECT_EQ(canvas.pixel(x, y), canvas.pixel(0, 0));
 }
 
+// Anchors have nothing between them: a bar for each value, as high as it says, and no line from one to the next.
+TEST(BarPlot, BarsAreAsHighAsTheirValues) {
+  const std::vector<PlotCurve> series{{"a", {1, 2, 3}, {2, 4, 1}}, {"b", {1, 2, 3}, {1, 1, 3}}};
+  const std::string svg = bar_plot(series, {"title", "x", "y"}).svg();
+  std::vector<double> height;
+  for (std::size_t at = svg.find("<rect"); at != std::string::npos; at = svg.find("<rect", at + 1)) {
+    const std::size_t value = svg.find("height=\"", at) + 8;
+    height.push_back(std::stod(svg.substr(value)));
+  }
+  ASSERT_GE(height.size(), 6u);
+  const std::vector<double> bar(height.end() - 6, height.end());
+  const double wanted[] = {2, 4, 1, 1, 1, 3};
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(bar[i] / bar[1], wanted[i] / 4, 0.01) << i;
+}
+
 TEST(Raster, LinesAndRectanglesCoverTheirArea) {
   Canvas canvas(200, 100, colour(0xffffff));
   canvas.rectangle(10.25, 20.5, 30.5, 9.75, colour(0));

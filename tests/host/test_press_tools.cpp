@@ -332,8 +332,11 @@ TEST(PressTools, RendersThePublishedForces) {
     const char* tool;
     double depth_mm, force_N, share;
   } rows[] = {{"flat_3_2", 0.5, 5.52, 1e-4},
-              {"sphere_12_7", 1, 11.409 * 0.9847, 2e-3},
-              {"sphere_3_2", 1, 5.818591 * 0.9960, 7e-2},  // a true sphere at 0.6 R is 6 % softer than Hertz
+              {"sphere_12_7", 1, 11.5916 * 0.9847, 2e-3},
+              {"sphere_3_2", 1, 5.818591 * 0.9960, 2e-3},
+              // Their largest force below which it fits, deeper than the radius.
+              {"sphere_3_2", 1.62, 11.997 * 0.9960, 2e-3},
+              {"sphere_3_2_true", 1, 5.818591 * 0.9960, 7e-2},  // a true sphere at 0.6 R is 6 % softer than Hertz
               {"cone_30", 1, 1.268056, 1e-3},
               {"cone_45", 1, 2.196338, 1e-3},
               {"cone_60", 1, 3.804169, 1e-3}};

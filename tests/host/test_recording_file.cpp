@@ -14,20 +14,12 @@
 #include "sim_host/record/recorded_image.h"
 #include "sim_host/record/recover.h"
 #include "sim_host/record/replay.h"
+#include "tests/support/refusal.h"
 #include "tests/support/roomy.h"
 #include "tests/support/tiny_image.h"
 
 namespace palpate {
 namespace {
-
-std::string error_of(auto action) {
-  try {
-    action();
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
-  return "";
-}
 
 std::string text_of(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -106,13 +98,13 @@ TEST_F(RecordingFile, TheSecondOfTwoWritersIsRefusedAndNothingIsLost) {
   const std::vector<TickRecord> run = records(20);
   const auto first = writer();
   first->add(run[0]);
-  const std::string error = error_of([&] { writer(); });
+  const std::string error = test::refusal_by<std::runtime_error>([&] { writer(); });
   EXPECT_NE(error.find("process " + std::to_string(getpid())), std::string::npos) << error;
   for (std::size_t i = 1; i < run.size(); ++i) first->add(run[i]);
   first->finish();
   EXPECT_EQ(replay_inside(path_).ticks, 20u);
   // And a finished one is not replaced either, unless that is what the user asked for.
-  EXPECT_NE(error_of([&] { writer(); }).find("--overwrite"), std::string::npos);
+  EXPECT_NE(test::refusal_by<std::runtime_error>([&] { writer(); }).find("--overwrite"), std::string::npos);
   const std::string before = text_of(path_);
   {
     RecordingWriter over(PartFile(path_, WhenItExists::kReplace), header_, block_of(*state_));
@@ -127,7 +119,7 @@ TEST_F(RecordingFile, ANameTakenMeanwhileIsNotReplaced) {
   const auto file = writer();
   file->add(records(1)[0]);
   std::ofstream(path_) << "somebody else's";
-  EXPECT_NE(error_of([&] { file->finish(); }).find("cannot be renamed"), std::string::npos);
+  EXPECT_NE(test::refusal_by<std::runtime_error>([&] { file->finish(); }).find("cannot be renamed"), std::string::npos);
   EXPECT_EQ(text_of(path_), "somebody else's");
   EXPECT_TRUE(std::filesystem::exists(part_));
 }
@@ -136,13 +128,14 @@ TEST_F(RecordingFile, LinksAreNotFollowed) {
   const std::filesystem::path victim = folder_ / "victim";
   std::ofstream(victim) << "precious";
   std::filesystem::create_symlink(victim, part_);
-  EXPECT_NE(error_of([&] { writer(); }).find("link"), std::string::npos);
+  EXPECT_NE(test::refusal_by<std::runtime_error>([&] { writer(); }).find("link"), std::string::npos);
   std::filesystem::remove(part_);
   std::filesystem::create_symlink(victim, path_);
-  EXPECT_NE(error_of([&] { writer(); }).find("exists already"), std::string::npos);
+  EXPECT_NE(test::refusal_by<std::runtime_error>([&] { writer(); }).find("exists already"), std::string::npos);
   std::filesystem::remove(path_);
   std::filesystem::create_symlink(folder_ / "nowhere", path_);
-  EXPECT_NE(error_of([&] { writer(); }).find("exists already"), std::string::npos) << "a dangling link is a name too";
+  EXPECT_NE(test::refusal_by<std::runtime_error>([&] { writer(); }).find("exists already"), std::string::npos)
+      << "a dangling link is a name too";
   EXPECT_EQ(text_of(victim), "precious");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "nowhere"));
 }
@@ -161,8 +154,8 @@ TEST_F(RecordingFile, FreeNamesCountUpPastWhatIsThere) {
 }
 
 TEST_F(RecordingFile, ADiskThatIsTooSmallIsRefusedBeforeTheStart) {
-  EXPECT_EQ(error_of([&] { require_space(path_, 1000); }), "");
-  const std::string error = error_of([&] { require_space(path_, 1e18); });
+  EXPECT_EQ(test::refusal_by<std::runtime_error>([&] { require_space(path_, 1000); }), "accepted");
+  const std::string error = test::refusal_by<std::runtime_error>([&] { require_space(path_, 1e18); });
   EXPECT_NE(error.find("1000000000000 MB"), std::string::npos) << error;
   EXPECT_NE(error.find("--no-record"), std::string::npos) << error;
 }
@@ -185,7 +178,7 @@ TEST_F(RecordingFile, WithoutAnyImageTheUserIsTold) {
     file.add(records(1)[0]);
     file.finish();
   }
-  const std::string error = error_of([&] { replay_inside(path_); });
+  const std::string error = test::refusal_by<std::runtime_error>([&] { replay_inside(path_); });
   EXPECT_NE(error.find("--image"), std::string::npos) << error;
 }
 
@@ -195,13 +188,13 @@ TEST_F(RecordingFile, AnImageInsideThatLiesIsRefused) {
     RecordingWriter file(PartFile(path_, WhenItExists::kRefuse), header_, block_of(*state_), pieces);
     file.add(records(1)[0]);
     file.finish();
-    return error_of([&] { replay_inside(path_); });
+    return test::refusal_by<std::runtime_error>([&] { replay_inside(path_); });
   };
   std::vector<PackedPiece> pieces = pack_image(image_.bytes());
-  EXPECT_EQ(error_with(pieces), "");
+  EXPECT_EQ(error_with(pieces), "accepted");
   auto spoilt = pieces;
   spoilt[0].bytes[spoilt[0].bytes.size() / 2] ^= std::byte{1};
-  EXPECT_NE(error_with(spoilt), "");
+  EXPECT_NE(error_with(spoilt), "accepted");
   spoilt = pieces;
   spoilt[0].unpacked_bytes = ~0u;
   EXPECT_NE(error_with(spoilt).find("too large"), std::string::npos);
@@ -287,7 +280,8 @@ TEST_F(RecordingFile, WhatIsStillWrittenIsNotRecovered) {
   const auto file = writer();
   file->add(records(1)[0]);
   file->flush();
-  const std::string error = error_of([&] { recover_recording(part_, (folder_ / "other.plr").string()); });
+  const std::string error =
+      test::refusal_by<std::runtime_error>([&] { recover_recording(part_, (folder_ / "other.plr").string()); });
   EXPECT_NE(error.find("still writing"), std::string::npos) << error;
   EXPECT_FALSE(std::filesystem::exists(folder_ / "other.plr"));
 }

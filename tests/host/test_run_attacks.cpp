@@ -190,9 +190,12 @@ TEST_F(EvilMailbox, EndsTheRunWithZeroForceWhateverItHolds) {
     return [=](MailboxRegion& region, MailboxWriter&, int) { region.word[index].store(value); };
   };
   constexpr std::size_t kCommandsWord = offsetof(HostCommand, commands) / 8, kGeneration = 0,
-                        kJoints = offsetof(HostCommand, joints) / 8, kReserved = offsetof(HostCommand, reserved) / 8;
+                        kJoints = offsetof(HostCommand, joints) / 8,
+                        kDirect = (offsetof(HostCommand, joints) + offsetof(JointCommand, direct)) / 8;
+  static_assert(offsetof(JointCommand, reserved) == offsetof(JointCommand, direct) + 4 &&
+                offsetof(JointCommand, direct) % 8 == 0);
   expect_fault(end_of(word(kCommandsWord, ~0ull), false), Fault::kCommandInvalid, "unknown commands");
-  expect_fault(end_of(word(kReserved, 1), false), Fault::kCommandInvalid, "reserved set");
+  expect_fault(end_of(word(kDirect, 1ull << 32), false), Fault::kCommandInvalid, "reserved set");
   expect_fault(end_of(word(kJoints, 0x7fc000007fc00000ull), false), Fault::kCommandInvalid,
                "joints that are no number");
   expect_fault(end_of([](MailboxRegion& region, MailboxWriter&,

@@ -143,6 +143,12 @@ TEST(ViewScales, ANewtonHasOneLength) {
   EXPECT_GT(force_scale(0, 0.1).m_per_N, 0) << "a run without force";
 }
 
+TEST(ViewScales, TheFirstLineSaysWhatItsNumberIs) {
+  EXPECT_EQ(force_words({}), "no contact");
+  EXPECT_EQ(force_words({{0, 4.618, 0}, 4.618, 0.001, 1}), "|F| = 4.62 N");
+  EXPECT_EQ(force_words({{0, 1.66, 0}, 6.5, 0.001, 2}), "|sum of 2 forces| = 1.66 N, largest 6.50 N");
+}
+
 TEST(Player, PlaysToTheEndAndFromTheStartAgain) {
   Player player;
   player.seek(0.5, 0, 2);
@@ -312,24 +318,7 @@ TEST(FrameMaker, ShowsTheSurfaceOfPicturesAndExports) {
   EXPECT_GT(maker.body().source.size(), surface.rest_m.size());
 }
 
-TEST(Steering, TheDeviceReadsWhereTheMousePulls) {
-  Steering steering;
-  std::string error;
-  const SharedMemory device = SharedMemory::open_peer(dup(steering.fd()), sizeof(HandTargetRegion), error);
-  ASSERT_TRUE(device) << error;
-  const auto& region = *static_cast<const HandTargetRegion*>(device.data());
-  HandWish wish;
-  EXPECT_FALSE(read_hand_target(region, wish)) << "nothing was pulled yet";
-  steering.pull({{0.01, 0.02, 0.03}, {}});
-  ASSERT_TRUE(read_hand_target(region, wish));
-  EXPECT_EQ(wish.kind, HandWish::kPull);
-  EXPECT_EQ(wish.pose.position_m, (Vec3{0.01, 0.02, 0.03}));
-  steering.pull({{std::nan(""), 0, 0}, {}});
-  wish.pose.position_m = {1, 2, 3};
-  EXPECT_FALSE(read_hand_target(region, wish)) << "no place to go to";
-  EXPECT_EQ(wish.pose.position_m, (Vec3{1, 2, 3}));
-}
-
+// Keys move one finger or all, and never beyond their ways; nobody commands joints before the first key.
 // --- A run that somebody takes part in ----------------------------------------------------------------------------
 
 RunOptions live_options(const std::filesystem::path& folder) {

@@ -11,7 +11,7 @@ jobs=${PALPATE_JOBS:-$(nproc)}
 every='faults usb kvaser vcan vcan_classic:21 determinism cyclictest'
 standard="$every scene_grasp_cylinder_5 scene_ring"
 scenes=$(cd "$root/config/scenes" && printf 'scene_%s ' *.toml | sed 's/\.toml//g')
-thorough="$every scenes buses vcan_classic vcan_odrive vcan_cia402 vcan_two_hands usb_unplug host_chaos vcan:60 kvaser:60 usb:60 vcan_classic:600"
+thorough="$every scenes buses vcan_classic vcan_odrive vcan_cia402 vcan_two_hands usb_unplug host_chaos viewer vcan:60 kvaser:60 usb:60 vcan_classic:600"
 
 usage() {
   cat << TEXT
@@ -68,7 +68,7 @@ judge() { # SCENARIO FOLDER: problems found in the numbers, one a line
   [ "$faults" = 0 ] || echo "$faults page faults in the loop"
   [ "$heap" = 0 ] || echo "${heap:-uncounted} heap calls in the loop"
   # Interrupt threads and the writer of USB reports run above the loop on purpose; on vcan nothing does.
-  case $name in vcan* | host_chaos | faults | scene_*) [ "$forced" = 0 ] || echo "the loop was preempted $forced times" ;; esac
+  case $name in vcan* | host_chaos | viewer | faults | scene_*) [ "$forced" = 0 ] || echo "the loop was preempted $forced times" ;; esac
   [ -n "$wake" ] && [ -n "$kernel" ] || { echo "no latency measured"; return; }
   [ "$name" != usb_unplug ] || late_us=$unplug_allowance_us
   ! above "$wake" $((kernel + late_us)) || echo "wake-up $wake us, cyclictest $kernel us"
@@ -237,7 +237,7 @@ done
 for tool in qemu-system-x86_64 cpio busybox; do
   command -v $tool > /dev/null || die "$tool is missing: apt-get install qemu-system-x86 cpio busybox-static iproute2 kmod"
 done
-for program in palpate palpate-rt palpate-device lab_host lab_check lab_scene lab_idle; do
+for program in palpate palpate-rt palpate-device lab_host lab_check lab_scene lab_readers lab_idle; do
   [ -x "$programs/$program" ] || die "$programs/$program is missing: build first, or give --programs DIR"
 done
 
@@ -256,7 +256,7 @@ case " ${scenarios[*]} " in
     "$programs/palpate" bake "$root/config/scenes/ellipsoid_mallet.toml" --set device.holds=both --set 'device.grip_mm=[0, 0, 0]' \
       -o "$out/scenes/two_hands.pal" > "$out/bake.log" 2>&1 || { cat "$out/bake.log"; die "two hands cannot be baked"; } ;;
 esac
-bash "$here/guest.sh" "$cache" "$out" "$programs"/{palpate,palpate-rt,palpate-device,lab_host,lab_check,lab_idle} -- \
+bash "$here/guest.sh" "$cache" "$out" "$programs"/{palpate,palpate-rt,palpate-device,lab_host,lab_check,lab_readers,lab_idle} -- \
   "$here"/{scenarios,faults,hand.csv,press.csv} "$root/config/devices" "$out/scenes" || die "cannot build the guest"
 echo "lab: booting the guest" >&2
 bash "$here/boot.sh" save "$out" || die "the guest does not boot"

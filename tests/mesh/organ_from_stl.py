@@ -77,4 +77,5 @@ def main():
         sys.exit("the organ does not press back as such a body does")
 
 
-main()
+if __name__ == "__main__":
+    main()

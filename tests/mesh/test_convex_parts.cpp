@@ -13,6 +13,7 @@
 #include "config/scene/config_error.h"
 #include "sim_host/mesh/convex_parts.h"
 #include "tests/support/baked_scene.h"
+#include "tests/support/refusal.h"
 
 namespace palpate::test {
 namespace {
@@ -67,12 +68,7 @@ std::string mesh_piece(const std::string& path, const std::string& keys = "margi
   return "[[tool.piece]]\nshape = \"mesh\"\nmesh = \"" + path + "\"\n" + keys;
 }
 std::string refusal(const std::string& text) {
-  try {
-    parse_scene(text, "s.toml");
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return refusal_by([&] { parse_scene(text, "s.toml"); });
 }
 
 TEST(ConvexParts, AnLIsTwo) {

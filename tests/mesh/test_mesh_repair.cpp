@@ -11,6 +11,7 @@
 #include "config/scene/config_error.h"
 #include "sim_host/mesh/mesh_picture.h"
 #include "sim_host/mesh/surface_repair.h"
+#include "tests/support/refusal.h"
 
 namespace palpate {
 namespace {
@@ -21,12 +22,7 @@ RepairedSurface repaired(const SurfaceMesh& mesh, const RepairOptions& options =
   return repair_surface(mesh, options, "ball.stl");
 }
 std::string refusal(const SurfaceMesh& mesh, const RepairOptions& options = {}) {
-  try {
-    repaired(mesh, options);
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return test::refusal_by([&] { repaired(mesh, options); });
 }
 bool tells(const RepairedSurface& result, const std::string& what) {
   return std::ranges::any_of(result.repair, [&](const Repair& r) { return r.what.find(what) != std::string::npos; });

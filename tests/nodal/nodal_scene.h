@@ -59,10 +59,7 @@ class NodalScene {
     p.ramp_in_s = 0;
     p.speed_max_m_per_s = 100;
     p.turn_max_rad_per_s = 30;
-    Tool tool = make_tool(pieces);
-    image.piece = tool.piece;
-    image.tool_point = tool.point;
-    image.hull_vertex_m = tool.hull_vertex_m;
+    put_tool(make_tool(pieces), image);
     reopen();
     state_ = make_state(model_);
     scratch_ = make_scratch(model_);

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "sim_host/view/hand_mesh.h"
+#include "config/hand/hand_mesh.h"
 #include "tests/peers/bullet_peer.h"
 #include "tests/peers/fcl_peer.h"
 #include "tests/peers/gauss_seidel_peer.h"

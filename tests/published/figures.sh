@@ -45,7 +45,14 @@ claim "Fig. 8: nearer anchors carry more: $f1 $f2 $f3 $f4 $f5 N" "$f1 > $f2 && $
 inner=$(for a in 6 7 8 9 10; do largest "$out/2009_fig8.csv" a${a}_F_N; done | sort -gr | tr '\n' ' ')
 read -r f1 f2 f3 f4 f5 <<<"$inner"
 claim "Fig. 8: so do the inner ones: ${inner}N" "$f1 > $f2 && $f2 > $f3 && $f3 >= $f4 && $f4 > $f5 && $f5 > 0"
-press ring_paper --out "$out/2009_fig9.csv" --png "$out/2009_fig9.png"
+press half_shell_paper --with laws/circular_beams_2009.toml --path "$root/docs/pictures/half_shell_press.csv" --resample \
+  --out "$out/2009_fig8_printed.csv" --anchors "$out/2009_fig8_printed_anchors.csv"
+for rim in "outer 1 2 3 4 5" "inner 6 7 8 9 10"; do
+  forces=$(for a in ${rim#* }; do largest "$out/2009_fig8_printed_anchors.csv" a${a}_F_N; done | sort -gr | tr '\n' ' ')
+  read -r f1 f2 f3 f4 f5 <<<"$forces"
+  claim "Fig. 8 by the printed sharing, ${rim%% *}: ${forces}N" "$f1 > $f2 && $f2 > $f3 && $f3 >= $f4 && $f4 > $f5 && $f5 > 0"
+done
+press ring_paper --with laws/circular_beams_2009.toml --out "$out/2009_fig9.csv" --png "$out/2009_fig9.png"
 press grasp_cylinder_5 --with bodies/hollow_cylinder.toml --out "$out/2009_fig10.csv" --png "$out/2009_fig10.png"
 regions=$(largest "$out/2009_fig10.csv" regions)
 claim "Fig. 10: the hand holds the hollow cylinder by $regions regions" "$regions == 15"
@@ -62,28 +69,92 @@ done
 at() { awk -F, -v row=$(($2 + 2)) -v name=f_N 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == name) c = i } NR == row { print $c + 0 }' "$out/2002_$1.csv"; }
 a=$(at global_sphere_12_7 6000) b=$(at global_flat_3_2 6000) c=$(at global_sphere_3_2 6000)
 claim "Fig. 5: the body gives as a whole: at 6 mm $a, $b, $c N whatever the tool" "$b / $c < 1.06 && $a < $b && $a > $c"
+awk 'BEGIN { print "time_s,x_mm,y_mm,z_mm"; for (i = 0; i <= 8000; i++) printf "%g,0,%g,0\n", i / 1000, 220 - (i < 4000 ? i : 8000 - i) / 1000 }' >"$out/2002_loop_path.csv"
+press tools_on_cylinder --with tools/sphere_12_7.toml --with responses/global_give.toml --set body.material.lost_share=0.03 \
+  --path "$out/2002_loop_path.csv" --out "$out/2002_fig5_loop.csv"
+a=$(at fig5_loop 2000) b=$(at fig5_loop 6000)
+claim "Fig. 5: a little less on the way back: $a and $b N at 2 mm" "$b < $a && $b > 0.9 * $a"
 a=$(at local_sphere_12_7 1500) b=$(at local_flat_3_2 1500) c=$(at local_sphere_3_2 1500)
 claim "Fig. 6: it is held: at 1.5 mm $a, $b, $c N" "$a > 1.2 * $b && $b > 1.5 * $c"
-for tool in sphere_12_7 sphere_3_2; do press tools_on_layer --with "tools/$tool.toml" --out "$out/2002_fig7_$tool.csv"; done
-a=$(largest "$out/2002_fig7_sphere_12_7.csv" f_N) c=$(largest "$out/2002_fig7_sphere_3_2.csv" f_N)
+# Table 1 with their E*, where they found it to fit: below 12 N. The body is a cylinder of 100 mm, not a half space.
+for tool in sphere_12_7 sphere_3_2; do
+  press tools_on_cylinder --with "tools/$tool.toml" --path "$out/2002_press_path.csv" \
+    --out "$out/2002_table1_$tool.csv"
+done
+off=$(for tool in "sphere_12_7 6.35" "sphere_3_2 1.6"; do
+  awk -F, -v r="${tool#* }" 'NR > 101 && $13 < 12 { d = 220 - $4; f = 4 / 3 * sqrt(r) * 3.45 * d ^ 1.5; e = ($13 - f) / f; print e < 0 ? -e : e }' "$out/2002_table1_${tool% *}.csv"
+done | sort -g | tail -1)
+press tools_on_cylinder --with tools/sphere_3_2_true.toml --path "$out/2002_press_path.csv" --out "$out/2002_true_sphere.csv"
+a=$(at true_sphere 1500) b=$(at table1_sphere_3_2 1500)
+claim "a true sphere of 3.2 mm is softer than what they measured: $a against $b N at 1.5 mm" "$a < 0.95 * $b && $a > 0.88 * $b"
+claim "Fig. 6: below 12 N the spheres are Table 1's to $off of themselves" "$off < 0.02"
+for tool in sphere_12_7 sphere_3_2_true; do press tools_on_layer --with "tools/$tool.toml" --out "$out/2002_fig7_$tool.csv"; done
+a=$(largest "$out/2002_fig7_sphere_12_7.csv" f_N) c=$(largest "$out/2002_fig7_sphere_3_2_true.csv" f_N)
 claim "Fig. 7: on liver the tools differ: $a and $c N" "$a > 1.2 * $c"
 press tools_on_cylinder --out "$out/2002_fig8.csv" --plot "$out/2002_fig8.svg"
 spread=$(awk -F, 'NR > 4501 && NR < 5800 { if (low == "" || $11 < low) low = $11; if ($11 > high) high = $11 } END { print (high - low) / high }' "$out/2002_fig8.csv")
 claim "Fig. 8: sliding along the body changes the normal force by $spread of itself" "$spread < 0.02"
 
+# Their sphere of 3.2 mm: down to around 14 N, then three times to and fro over 10 mm.
+awk 'BEGIN { print "time_s,x_mm,y_mm,z_mm"; for (i = 0; i <= 15000; i++) { k = (i - 3000) % 4000; x = i < 3000 ? 0 : (k < 2000 ? k : 4000 - k) / 200
+  printf "%g,%g,%g,0\n", i / 1000, x, 220 - 1.8 * (i < 3000 ? i / 3000 : 1) } }' >"$out/2002_slide_path.csv"
+press tools_on_cylinder --with tools/sphere_3_2.toml --path "$out/2002_slide_path.csv" \
+  --out "$out/2002_fig8_sphere_3_2.csv" --plot "$out/2002_fig8_sphere_3_2.svg"
+a=$(column "$out/2002_fig8_sphere_3_2.csv" fx_N | sort -g | head -1) b=$(largest "$out/2002_fig8_sphere_3_2.csv" fx_N) c=$(largest "$out/2002_fig8_sphere_3_2.csv" fy_N)
+claim "Fig. 8: around 14 N ($c), friction from -7 to 7 N ($a to $b)" "$c > 13.5 && $c < 14.5 && $a < -6.7 && $a > -7.3 && $b > 6.7 && $b < 7.3"
+
 echo "== Duriez, Andriot & Kheddar 2003"
 press snap_in --out "$out/2003_snap.csv" --plot "$out/2003_snap.svg" --png "$out/2003_snap.png"
 low=$(column "$out/2003_snap.csv" fy_N | sort -g | head -1) high=$(largest "$out/2003_snap.csv" fy_N)
 claim "the snap: pushes with up to $high N, then pulls with up to $low N" "$high > 2 && $low < -2"
+# Drawn at the largest force of the path, which is one place.
+for y in 13 11 6 0; do
+  awk -v y="$y" 'BEGIN { print "x_mm,y_mm,z_mm"; for (i = 0; i < 100; i++) printf "0,%g,0\n", y }' >"$out/2003_frame_path.csv"
+  press snap_in --path "$out/2003_frame_path.csv" --out "$out/2003_fig5_$y.csv" --png "$out/2003_fig5_$y.png"
+done
+arms() { tail -1 "$out/2003_fig5_$1.csv" | cut -d, -f21; }
+a=$(arms 13) b=$(arms 11) c=$(arms 6)
+claim "Fig. 5: two arms touch the tube as they open and close: $a, $b, $c regions" "$a == 2 && $b == 2 && $c == 2"
+# Between its flats the prism is 2 % slimmer than the tube and spreads the arms by 7 % less: 0.86 of the energy, or more.
+awk 'BEGIN { print "x_mm,y_mm,z_mm"; for (i = 0; i <= 2800; i++) printf "0,%g,0\n", 14.5 - 0.005 * i; }' >"$out/2003_in_path.csv"
+press snap_in --with tubes/prism_16.toml --set friction.law=none --path "$out/2003_in_path.csv" --out "$out/2003_prism.csv"
+press snap_in --set friction.law=none --path "$out/2003_in_path.csv" --out "$out/2003_tube.csv"
+far=$(largest "$out/2003_tube.csv" residual_m)
+claim "Fig. 1: no node inside the tool, none pushed that does not touch, to $far m" "$far < 1e-7"
+a=$(largest "$out/2003_prism.csv" energy_J) b=$(largest "$out/2003_tube.csv" energy_J)
+claim "a tube or any other shape: a prism of 16 sides stores $a J on its way in, the tube $b J" "$a > 0.86 * $b && $a < $b"
 
 echo "== Cui & Xiao 2008"
 "$palpate" grasp grasp_cylinder_2.toml grasp_cylinder_3.toml grasp_cylinder_5.toml --out "$out/2008_fig6_to_8" >"$out/2008_cylinder.txt" 2>>"$log"
 "$palpate" grasp grasp_sphere_2.toml grasp_sphere_3.toml grasp_sphere_5.toml --out "$out/2008_fig9" >"$out/2008_sphere.txt" 2>>"$log"
-# Sum of the anchors' stresses at the hold, 3 s.
-stress() { awk -F, '$1 == 3 { for (i = 2; i <= NF; i++) sum += $i } END { print sum + 0 }' "$out/2008_fig6_to_8/grasp_cylinder_$1.stress.csv"; }
-a=$(stress 2) b=$(stress 3) c=$(stress 5)
+"$palpate" grasp grasp_cylinder_2.toml grasp_cylinder_3.toml grasp_cylinder_5.toml --with laws/cui_xiao_2008.toml \
+  --out "$out/2008_fig7_printed" >"$out/2008_cylinder_printed.txt" 2>>"$log"
+"$palpate" grasp grasp_sphere_2.toml grasp_sphere_3.toml grasp_sphere_5.toml --with bodies/sphere_rings.toml \
+  --out "$out/2008_fig9_rings" >"$out/2008_sphere_rings.txt" 2>>"$log"
+"$palpate" grasp grasp_cylinder_5.toml --with hands/mesh_contact.toml --out "$out/2008_mesh_contact" >"$out/2008_mesh_contact.txt" 2>>"$log"
+# stress FOLDER FINGERS FIRST LAST: sum over anchors FIRST to LAST at the hold, 3 s.
+stress() { awk -F, -v first="$3" -v last="$4" '$1 == 3 { for (i = first; i <= last; i++) sum += $(i + 1) } END { print sum + 0 }' "$out/$1/grasp_cylinder_$2.stress.csv"; }
+a=$(stress 2008_fig6_to_8 2 1 8) b=$(stress 2008_fig6_to_8 3 1 8) c=$(stress 2008_fig6_to_8 5 1 8)
 claim "Fig. 7: more fingers, more stress at the anchors: $a, $b, $c Pa in all" "$a > 0 && $b > $a && $c > $b"
-stable=$(cat "$out"/2008_cylinder.txt "$out"/2008_sphere.txt | grep -c '^  stable:')
-claim "the $stable grasps of Figs. 6 and 9 hold their weight within the friction cones" "$stable == 6"
+steep=""
+for fingers in 2 3 5; do
+  # Anchors 1, 2 and 5, 6 are on the side of the contacts' middle, 5 to 8 on the rim next to the hand.
+  near=$(stress 2008_fig7_printed $fingers 1 2) beyond=$(stress 2008_fig7_printed $fingers 3 4)
+  near_top=$(stress 2008_fig7_printed $fingers 5 6) beyond_top=$(stress 2008_fig7_printed $fingers 7 8)
+  claim "Fig. 7 by the printed laws, $fingers fingers: within a rim $near_top falls to $beyond_top Pa, and $near to $beyond" \
+    "$near_top > 1.05 * $beyond_top && $near > 1.05 * $beyond"
+  steep+=" $(awk "BEGIN { print ($near_top + $beyond_top) / ($near + $beyond) }")"
+done
+read -r a b c <<<"$steep"
+claim "Fig. 7 by the printed laws: the drop between the rims is $a, $b, $c, least steep for five fingers" "$a > $b && $b > $c && $c > 1"
+rise=$(awk -F, 'NR == 2 { for (i = 2; i <= NF; i++) if ($i != 0) bad = 1 } NR > 1 { for (i = 2; i <= NF; i++) { if ($i > top[i]) top[i] = $i; if ($1 == 3) held[i] = $i } }
+  END { for (i in top) if (held[i] < 0.9 * top[i]) bad = 1; print bad + 0 }' "$out/2008_fig7_printed/grasp_cylinder_5.stress.csv")
+claim "Fig. 8: every stress starts at zero and is largest while held" "$rise == 0"
+regions=$(awk '/regions/ { printf "%d ", $2 }' "$out/2008_sphere_rings.txt")
+claim "Fig. 9: the sphere of 3,480 triangles is held by ${regions}regions" "$(tr ' ' '+' <<<"${regions% }") == 30 && ${regions##*9 } == 15"
+regions=$(awk '/regions/ { printf "%d", $2 }' "$out/2008_mesh_contact.txt")
+claim "the parts touch with the surface of the hand's mesh: $regions regions" "$regions == 15"
+stable=$(cat "$out"/2008_cylinder.txt "$out"/2008_sphere.txt "$out"/2008_sphere_rings.txt | grep -c '^  stable:')
+claim "the $stable grasps of Figs. 6 and 9 hold their weight within the friction cones" "$stable == 9"
 echo "figures: $out"
 exit $status

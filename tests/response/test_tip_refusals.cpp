@@ -6,6 +6,7 @@
 
 #include "config/bake/compile.h"
 #include "config/scene/config_error.h"
+#include "tests/support/refusal.h"
 
 namespace palpate {
 namespace {
@@ -21,12 +22,7 @@ struct Parts {
 std::string refusal(const Parts& p) {
   const std::string text = "name = \"s\"\n[body]\n" + p.body + "[skeleton]\nlaw = \"none\"\n[friction]\n" + p.friction +
                            "[[tool.piece]]\n" + p.piece + "[contact]\n" + p.contact + p.rest;
-  try {
-    compile_scene(parse_scene(text, "s.toml"));
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return test::refusal_by([&] { compile_scene(parse_scene(text, "s.toml")); });
 }
 
 struct Case {

@@ -151,7 +151,7 @@ TEST(SharedMemory, StoppedAndKilledReaderDisturbsNobody) {
   const auto write_some = [&] {
     for (int i = 0; i < 3000; ++i) {
       writer.write(record);
-      received += reader.next(record) ? 1 : 0;
+      received += reader.next(record) ? 1U : 0U;
     }
   };
   write_some();

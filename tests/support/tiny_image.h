@@ -133,7 +133,7 @@ inline ImageBytes tiny_image(bool nodal = false) {
   *image.array<Anchor>(kAnchor) = {{a, a, a}, unit_or({1, 1, 1}, {}), 1e-4, 1e-9, 5e-3, 6e-3, 0, 0};
   const double rbf[4] = {0, 1, 1, 0};
   std::memcpy(image.array<double>(kRbf), rbf, sizeof(rbf));
-  *image.array<ToolPiece>(kPiece) = {{}, {0, 0, 0}, 0.01, 0.01, PieceShape::kSphere, 0, 1, 0, 0, 0};
+  *image.array<ToolPiece>(kPiece) = {{}, {0, 0, 0}, 0.01, 0.01, PieceShape::kSphere, 0, 1, 0, 0, 0, 0, 0, 0};
   *image.array<ToolPoint>(kToolPoint) = {{}, 0.01, 1e-4, 1, 0, 0};
   if (nodal) {
     ModelParams& p = image.params();

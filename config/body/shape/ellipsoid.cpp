@@ -5,15 +5,17 @@ namespace palpate {
 
 namespace {
 
-constexpr CardKey kEllipsoidKeys[] = {{"half_axes_mm", "half axes along x, y, z"}, {"triangles", "about this many"}};
-constexpr CardKey kSphereKeys[] = {{"radius_mm", "radius"}, {"triangles", "about this many"}};
+constexpr CardKey kEllipsoidKeys[] = {
+    {"half_axes_mm", "half axes along x, y, z"}, {"triangles", "about this many"}, {"pattern", "of the triangles"}};
+constexpr CardKey kSphereKeys[] = {
+    {"radius_mm", "radius"}, {"triangles", "about this many"}, {"pattern", "of the triangles"}};
 
 Vec3 axes_of(const BodyDesc& b) {
   return b.shape == BodyShape::kSphere ? Vec3{b.radius_m, b.radius_m, b.radius_m} : b.half_axes_m;
 }
 
 SurfaceMesh make(const SceneDesc& scene, std::string&, std::vector<std::string>&) {
-  return make_ellipsoid(axes_of(scene.body), scene.body.triangles);
+  return make_ellipsoid(axes_of(scene.body), scene.body.triangles, scene.body.pattern);
 }
 
 std::vector<AnchorPoint> anchors(const BodyDesc& body) { return axis_end_anchors(axes_of(body)); }

@@ -1,94 +1,11 @@
-#include "rt_core/contact/elastic/elastic_row.h"
-#include "rt_core/contact/elastic/mode_count.h"
+#include "rt_core/contact/elastic/carried_edge.h"
 #include "rt_core/surface/closest_point.h"
-#include "rt_core/surface/foot_search.h"
 
 namespace palpate {
 
 namespace {
 
 using namespace elastic_layout;
-
-struct CarriedVertex {
-  Vec3 position_w;
-  Vec3 row[3];  // of the deformation gradient
-
-  // The surface normal carried along, not unit: cofactor times normal.
-  Vec3 carried(Vec3 normal) const PALPATE_RT {
-    return {dot(cross(row[1], row[2]), normal), dot(cross(row[2], row[0]), normal), dot(cross(row[0], row[1]), normal)};
-  }
-};
-
-template <class Count>
-CarriedVertex carry(const Model& model, Count soft, const Real* y, std::int32_t vertex) PALPATE_RT {
-  const float* block = vertex_block(model, vertex);
-  const std::int32_t count = terms(soft);
-  Double4 a{}, b{}, c{};
-  for (std::int32_t t = 0; t < count; ++t) {  // bound: terms
-    const Double4 factor = splat4(y[t]);
-    a += factor * widen4(block + kTermFloats * t);
-    b += factor * widen4(block + kTermFloats * t + 4);
-    c += factor * widen4(block + kTermFloats * t + 8);
-  }
-  CarriedVertex out;
-  out.position_w = model.vertex_m[static_cast<std::size_t>(vertex)] + Vec3{a[0], a[1], a[2]};
-  out.row[0] = {1 + a[3], b[0], b[1]};
-  out.row[1] = {b[2], 1 + b[3], c[0]};
-  out.row[2] = {c[1], c[2], 1 + c[3]};
-  return out;
-}
-
-CarriedVertex carry(const Model& model, const Real* y, std::int32_t vertex) PALPATE_RT {
-  CarriedVertex out;
-  with_mode_count(model.params.elastic_soft, [&](auto n) PALPATE_RT { out = carry(model, n, y, vertex); });
-  return out;
-}
-
-// The last Newton step to a foot: its square over a radius of a centimetre is beyond rounding.
-constexpr Real kStillCarried_m = 1e-9;
-
-// A triangle with its corners carried along; a neighbour takes over the two corners they share.
-struct CarriedTriangle {
-  const Model& model;
-  const Real* y;
-  std::int32_t* shown;
-  std::int32_t triangle = -1;
-  CarriedVertex vertex[3];
-  foot::Corners corners;
-
-  void move_to(std::int32_t next) PALPATE_RT {
-    if (next == triangle) return;
-    const Triangle& t = model.triangle[static_cast<std::size_t>(next)];
-    CarriedVertex old[3] = {vertex[0], vertex[1], vertex[2]};
-    for (int k = 0; k < 3; ++k) {  // bound: 3 x 3
-      const CarriedVertex* known = nullptr;
-      for (int i = 0; triangle >= 0 && i < 3; ++i)
-        if (model.triangle[static_cast<std::size_t>(triangle)].vertex[i] == t.vertex[k]) known = old + i;
-      vertex[k] = known != nullptr ? *known : carry(model, y, t.vertex[k]);
-      *shown += known != nullptr ? 0 : terms(model.params.elastic_soft);
-      corners.v[k] = vertex[k].position_w;
-    }
-    triangle = next;
-  }
-  void turn_normals() PALPATE_RT {
-    for (int k = 0; k < 3; ++k) {  // bound: 3
-      const Vec3 normal = model.corner_normal[static_cast<std::size_t>(triangle)].normal[k];
-      corners.u[k] = unit_or(vertex[k].carried(normal), normal);
-    }
-  }
-  // Over the facets to the one that the centre is above, as flat ones tell: a triangle so left behind costs a fifth of
-  // one left by Newton's steps. Above a convex edge the facets on both sides send it across.
-  void walk_below(Vec3 centre_w) PALPATE_RT {
-    std::int32_t left = -1;
-    for (std::int32_t i = 0; i < kFootWalk; ++i) {  // bound: kFootWalk
-      const int edge = foot::edge_to_cross(foot::place_on(corners, centre_w, 0.0));
-      const std::int32_t next = edge < 0 ? -1 : foot::across(model, triangle, edge);
-      if (next < 0 || next == left) return;
-      left = triangle;
-      move_to(next);
-    }
-  }
-};
 
 // What a change of each corner's 12 numbers (displacement, deformation gradient) does to the travel.
 struct TravelSlope {
@@ -226,6 +143,22 @@ void turn_with_foot(Count soft, ElasticRow& row, const Double4 (&corner)[3][kMax
   }
 }
 
+// On an edge the nearest place slides along it alone, at an end not at all: f_ab = s_a.s_b / d - n.u_ab, s_a what u_a
+// has across.
+template <class Count>
+void turn_on_edge(Count soft, const EdgePlace& on, ElasticRow& row) PALPATE_RT {
+  const Vec3 n = row.foot.normal_w;
+  const Real square = squared_norm(on.along_w), bend = 1.0 / row.foot.height_m;
+  Vec3 across[kMaxSoftModes];
+  for (std::int32_t a = 0; a < soft; ++a) {  // bound: soft
+    across[a] = tangential_part(row.sweep_w[a], n);
+    if (square > 0) across[a] -= (dot(across[a], on.along_w) / square) * on.along_w;
+  }
+  std::int32_t pair = 0;
+  for (std::int32_t a = 0; a < soft; ++a)  // bound: pairs
+    for (std::int32_t b = a; b < soft; ++b, ++pair) row.turn[pair] -= bend * dot(across[a], across[b]);
+}
+
 // A number between the vertices that hold it and its gradient g: the cubic that has both there, in Bezier form, its
 // middle coefficient the one that keeps parabolas. Along an edge it is the same from both sides, and at the vertices
 // the gradient has no kink. Straight between the vertices, c1's kink on the crest of a ring threw the tip aside by 0.5
@@ -341,16 +274,14 @@ void CarriedSurface::place(const RoundTip& tip, std::int32_t triangle, Vec3 near
   const Vec3 centre_w = row.placed_w = tip.centre_w();
   last.move_to(triangle);
   last.walk_below(near_w);
-  row.foot = foot::search(
-      model,
-      [&last](std::int32_t t) PALPATE_RT {
-        last.move_to(t);
-        last.turn_normals();
-        return last.corners;
-      },
-      centre_w, last.triangle, near_w, kStillCarried_m);
-  const bool found = row.foot.state == FootState::kFound;
-  if (!found && !place_on_facet(centre_w, triangle, row)) return;
+  find_carried_foot(centre_w, near_w, last, row);
+  bool found = row.foot.state == FootState::kFound;
+  EdgePlace on;
+  if (row.foot.state == FootState::kEdge) {
+    on = place_on_edge(centre_w, last, row);
+    found = row.foot.state == FootState::kFound;
+  }
+  if (!found && on.edge < 0 && !place_on_facet(centre_w, triangle, row)) return;
   row.travel_m = tip.margin_m - row.foot.height_m;
   if (!(row.travel_m + nearer_m > 0)) {
     // Newton's steps to a foot that is too far; with the terms below they count themselves (24,962 instructions against
@@ -364,6 +295,7 @@ void CarriedSurface::place(const RoundTip& tip, std::int32_t triangle, Vec3 near
   with_mode_count(model.params.elastic_soft, [&](auto n) PALPATE_RT {
     Double4 corner[3][kMaxSoftModes];
     show_modes(model, n, y, slope, row, corner);
+    if (on.edge >= 0) turn_on_edge(n, on, row);
     if (!found) return;
     if (!tip.is_ball()) slide_along(last.corners, row);
     turn_with_foot(n, row, corner);
@@ -375,7 +307,7 @@ bool CarriedSurface::place_on_facet(Vec3 centre_w, std::int32_t triangle, Elasti
   row.foot = {};
   if (*looked >= surface_work_share(model.params)) return false;
   const Vec3 moved = displacement(model.triangle[static_cast<std::size_t>(triangle)].vertex[0]);
-  const SurfacePoint facet = closest_surface_point(model, centre_w - moved, kHuge, triangle);
+  const SurfacePoint facet = closest_surface_point(model, centre_w - moved, kHuge, triangle, kMaxTipSearched);
   *looked += facet.looked;
   *shown += terms(model.params.elastic_soft);
   if (!facet.found) return false;

@@ -56,7 +56,10 @@ struct ElasticLoad : TipLaws {
         f * (stands.rise - stands.foot.normal_w + pair_aside[r]) + far_aside(r, stands, f) - law_aside(i, e, energy);
     // Never steeper than 45 degrees: far beyond the range the second power of the force is no physics.
     const Real length = norm(aside), share = length > f ? f / length : 1.0;
-    return {point, energy, stands.tip.centre_w(), share * aside, e > tip[i].local.tip->depth_max_m};
+    // Where the second order goes on by its tangent, and off the smooth surface, no press of the bake has been.
+    const bool is_beyond =
+        e > tip[i].local.tip->depth_max_m || f > own[r].force_max_N || stands.foot.state != FootState::kFound;
+    return {point, energy, stands.tip.centre_w(), share * aside, is_beyond};
   }
   // How the energy of the far field and, the other way, that of the tip's law change along the surface.
   Vec3 far_aside(std::int32_t r, const ElasticRow& stands, Real force_N) const PALPATE_RT {

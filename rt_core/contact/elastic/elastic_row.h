@@ -7,6 +7,11 @@
 
 namespace palpate {
 
+// What one tip's look for the surface may open of its hierarchy: a place it comes near to needs less, and one in the
+// middle of the body, where every face is as near, has no face of its own. What is found counts, and the next tick goes
+// on from there; how far the surface is at least stays true.
+inline constexpr std::int32_t kMaxTipSearched = 32;
+
 // A rounded tip: a ball, or a capsule whose side touches where it is nearest.
 struct RoundTip {
   Vec3 middle_w;
@@ -52,10 +57,10 @@ struct CarriedSurface {
   // Displacement of a vertex.
   Vec3 displacement(std::int32_t vertex) const PALPATE_RT;
   // Puts the tip on the surface, starting at `triangle`, where `near_w` is above it. A capsule moves along its axis by
-  // one step to where it is deepest, and the travel is that of there, to second order. Beyond a sharp edge, and below
-  // the focal surface, on the facet nearest to the centre as it was before the body moved; with foot.triangle -1 where
-  // the tick's share of surface work is used up. A tip that is still apart when the surface comes `nearer_m` towards it
-  // gets its foot and travel alone.
+  // one step to where it is deepest, and the travel is that of there, to second order. Beyond a sharp edge on that
+  // (carried_edge.h); below the focal surface on the facet nearest to the centre as it was before the body moved, with
+  // foot.triangle -1 where the tick's share of surface work is used up. A tip that is still apart when the surface
+  // comes `nearer_m` towards it gets its foot and travel alone.
   void place(const RoundTip& tip, std::int32_t triangle, Vec3 near_w, Real nearer_m, ElasticRow& row) const PALPATE_RT;
 
  private:

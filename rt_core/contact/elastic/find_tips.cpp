@@ -10,6 +10,8 @@ namespace {
 
 using namespace elastic_layout;
 
+// A tip that went farther in one tick, 4 m/s at 1 kHz, has left the facets that its foot is followed over.
+constexpr Real kFollowed_m = 4e-3;
 // Of half a capsule's axis.
 constexpr Real kThird = 1.0 / 3;
 
@@ -61,13 +63,14 @@ class Finder {
     RoundTip tip = round_tip(model_, index, carrier_w(model_, state_, piece_of(index)));
     if (!touched && is_far(index, tip)) return;
     ElasticRow& row = work_.row[piece_of(index)];
-    if (touched) {
-      tip.come_near(point.closest_w);
+    if (touched) tip.come_near(point.closest_w);
+    const bool followed = touched && has_stayed(point, tip);
+    if (followed) {
       surface_.place(tip, point.triangle, point.closest_w, nearer_m_, row);
       // Lifted off: looked for from the next tick on.
       if (row.foot.triangle >= 0) return free_depth(row) > 0 ? keep(index, row) : let_lift(point, row, 0);
     }
-    if (!search(tip, point)) return;
+    if (!search(tip, point, touched && !followed ? -1 : point.triangle)) return;
     surface_.place(tip, point.triangle, point.closest_w, nearer_m_, row);
     if (row.foot.triangle < 0) {
       hold(point);
@@ -87,6 +90,12 @@ class Finder {
     return row.travel_m + max_of(dot(row.pull, let_go_, model_.params.elastic_soft), 0.0);
   }
 
+  // About where its foot was.
+  static bool has_stayed(const PointState& point, const RoundTip& tip) PALPATE_RT {
+    const Real reach = abs_of(point.gap_m + tip.margin_m) + kFollowed_m;
+    return squared_norm(tip.centre_w() - point.closest_w) < reach * reach;
+  }
+
   // As far as it was less what tool and body have moved, or as far as the body's box less what the body may stand out
   // of it.
   bool is_far(std::int32_t index, const RoundTip& tip) PALPATE_RT {
@@ -103,8 +112,9 @@ class Finder {
 
   // The facet nearest to the centre on the body at rest, as the surface about the last place has moved. A capsule: from
   // the nearest of three places on its axis, no point of which is farther than a third from one of them; first that
-  // where it was last, beside which the others need to look no farther. False: no part of the body is in reach.
-  bool search(RoundTip& tip, PointState& point) PALPATE_RT {
+  // where it was last, beside which the others need to look no farther. `warm`: a triangle to begin with, or -1. False:
+  // no part of the body is in reach.
+  bool search(RoundTip& tip, PointState& point, std::int32_t warm) PALPATE_RT {
     Vec3 moved;
     if (point.triangle >= 0)
       moved = surface_.displacement(model_.triangle[static_cast<std::size_t>(point.triangle)].vertex[0]);
@@ -114,9 +124,11 @@ class Finder {
     Real along = tip.along, bound = kHuge;
     for (std::int32_t i = 0; i < places; ++i) {  // bound: 3
       if (places > 1) tip.along = ((i == 0 ? last : i <= last ? i - 1 : i) - 1) * (2 * kThird);
-      if (scratch_.surface_work >= surface_work_share(model_.params)) return hold(point);
+      const std::int32_t left = surface_work_share(model_.params) - scratch_.surface_work;
+      if (left <= 0) return hold(point);
       const Real radius = best.found && best.signed_distance_m > 0 ? best.signed_distance_m : kHuge;
-      const SurfacePoint here = closest_surface_point(model_, tip.centre_w() - moved, radius, point.triangle);
+      const SurfacePoint here = closest_surface_point(model_, tip.centre_w() - moved, radius, warm,
+                                                      left < kMaxTipSearched ? left : kMaxTipSearched);
       scratch_.surface_work += here.looked;
       scratch_.work.queries += 1;
       if (here.truncated) scratch_.status |= Status::kTraversalTruncated;

@@ -125,7 +125,7 @@ namespace {
 template <int lanes>
 void add_to_lanes(ContactProblem& p, const std::int32_t* row, const float* force, std::int32_t count,
                   std::int32_t i) PALPATE_RT {
-  Float8 u[3][lanes];
+  Float8 u[3][std::size_t{lanes}];
   for (int b = 0; b < 3; ++b) {  // bound: 3 x 2
     for (int l = 0; l < lanes; ++l) u[b][l] = load8(p.motion_m[b] + i + 8 * l);
   }

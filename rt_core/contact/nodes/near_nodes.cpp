@@ -41,16 +41,18 @@ class NodeSearch {
   void visit(std::int32_t piece) PALPATE_RT {
     piece_ = piece;
     const ToolPiece& shape = model_.piece[static_cast<std::size_t>(piece)];
+    face_ = faces_of(model_, shape);
     const RigidFrame frame(carrier_w(model_, state_, piece) * shape.pose_tool);
     work_.pieces += 1;
     if (!body_within_reach(shape, frame)) return;
     const auto vertices = static_cast<std::int32_t>(model_.sizes.n_vertex);
     work_.fours += vertices / 4 + 1;
+    work_.planes += shape.plane_count * (vertices / 4 + 5);
     for (std::int32_t first = 0; first < vertices; first += 4) {  // bound: kMaxNodalVertices / 4
       const Vec3x4 rest = four_of(model_.vertex_m.data(), first, vertices);
-      const PieceGapOf<Vec3x4> gap = piece_gap(shape, into(frame, rest));
+      const Double4 gap_m = least_gap(shape, into(frame, rest), face_);
       const Double4 bulge = bulge_of(first, vertices);
-      if (bits_of(gap.gap_m - bulge > reach_m_) != 15) visit_four(shape, frame, first, rest, bulge);
+      if (bits_of(gap_m - bulge > reach_m_) != 15) visit_four(shape, frame, first, rest, bulge);
     }
   }
 
@@ -83,7 +85,7 @@ class NodeSearch {
       };
       const Real radius = norm({half(0), half(1), half(2)});
       const Vec3 centre{middle(0), middle(1), middle(2)};
-      if (!(piece_gap(shape, into(frame, centre)).gap_m - radius > reach_m_)) return true;
+      if (!(least_gap(shape, into(frame, centre), face_) - radius > reach_m_)) return true;
     }
     return false;
   }
@@ -129,8 +131,14 @@ class NodeSearch {
       rotation = where(taken, splat4(motion.rotation_rad), rotation);
     }
     const Vec3x4 carried = rest + carry + bend;
-    const PieceGapOf<Vec3x4> gap = piece_gap(shape, into(frame, carried));
+    const Vec3x4 at = into(frame, carried);
     const Double4 margin = margin_m_ + kCarryShare * square_root(dot(carry, carry));
+    if (!face_.empty()) {  // most are far from its planes
+      work_.planes += shape.plane_count;
+      if (bits_of(least_gap(shape, at, face_) - bulge < margin) == 0) return;
+      work_.faces += static_cast<std::int32_t>(face_.size());
+    }
+    const PieceGapOf<Vec3x4> gap = piece_gap(shape, at, face_);
     if (bits_of(gap.gap_m - bulge < margin) == 0) return;
     NearFour& near = near_[problem_.near_count];
     near.carry_w = carry;
@@ -159,9 +167,10 @@ class NodeSearch {
       const NodalVertex& node = model_.nodal_vertex[static_cast<std::size_t>(vertex)];
       if (!(node.round_m > 0)) continue;
       work_.rounded += 1;
+      work_.faces += static_cast<std::int32_t>(face_.size());
       const Vec3 outward = unit_or(node.round_normal + cross(rotation[k], node.round_normal), node.round_normal);
       const Vec3 position = near.position_w[k], centre = position - node.round_m * outward;
-      const PieceGap ball = piece_gap(shape, into(frame, centre));
+      const PieceGap ball = piece_gap(shape, into(frame, centre), face_);
       const Vec3 normal = direction_out(frame, ball.normal);
       const Real turn = 1 + dot(outward, normal), share = 1 - node.round_cosine;  // 1 - cosines
       const Real weight = clamp_to((kFades * share - turn) / ((kFades - 1) * share), 0, 1);
@@ -202,6 +211,7 @@ class NodeSearch {
   RegionMotion region_[kMaxRegions];
   std::int32_t regions_ = 0;
   std::int32_t piece_ = 0;
+  std::span<const HullFace> face_;  // of the piece
   Real margin_m_ = 0, carry_max_m_ = 0, reach_m_ = 0;
 };
 

@@ -57,7 +57,8 @@ void remember(const Model& model, State& state, const Scratch& scratch) PALPATE_
       continue;
     }
     const Pose carrier = carrier_at(model, state, scratch.tool_corrected_w, node.piece);
-    contact.anchor_tool_m = inverse_transform(carrier, node.rest_w + node.bend_w + motion_of(p, i));
+    const Vec3 bend = contact.friction == FrictionMode::kSlip ? Vec3{} : node.bend_w;
+    contact.anchor_tool_m = inverse_transform(carrier, node.rest_w + bend + motion_of(p, i));
   }
 }
 
@@ -236,10 +237,11 @@ void account(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   find_nodal_regions(model, state, scratch);
 }
 
-// Pieces whose gap has a closed form.
+// A hull's gap needs faces.
 ImageResult check_tool(const Model& model) noexcept {
   for (std::size_t i = 0; i < model.piece.size(); ++i)
-    if (!has_gap(model.piece[i].shape)) return not_together("piece.nodal_shape", i);
+    if (model.piece[i].shape == PieceShape::kHull && model.piece[i].face_count < 4)
+      return not_together("piece.hull_faces", i);
   return {};
 }
 
@@ -278,8 +280,11 @@ ImageResult check_data(const Model& model) noexcept {
 // Every node near every piece and carried by every region; all pivots, then all sweeps, twice.
 void add_most_work(const Model& model, const SceneSizes& n, Work& work) noexcept {
   const std::int32_t fours = n.nodes / 4 + 1, c = n.contacts, eights = (c + 7) / 8, visits = kMaxFrictionVisits;
-  std::int32_t round = 0;
+  std::int32_t round = 0, planes = 0, faces = 0;
   for (const NodalVertex& vertex : model.nodal_vertex) round += vertex.round_m > 0 ? 1 : 0;
+  for (const ToolPiece& piece : model.piece) planes += piece.plane_count, faces += piece.face_count;
+  work.planes += planes * (2 * fours + 5);
+  work.faces += faces * (fours + round);
   work.fours += n.pieces * fours;
   work.near += n.pieces * fours;
   work.near_regions += n.pieces * fours * n.regions;

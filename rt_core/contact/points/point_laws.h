@@ -81,7 +81,7 @@ struct PointLaws {
 // Weights that are not positive and finite become zero. Bound: the number of points.
 void weigh_contacts(ContactWeight law, const RegionRows& rows) PALPATE_RT;
 
-// The paper's mutual contribution between contact regions (Luo & Xiao 2006, section VI), for kTemporalPaper.
+// The papers' contributions of contact regions to one another, for kTemporalPaper (Cui & Xiao 2008, section IV.C).
 // For the regions slot[0..count), first born first: adds to added_N[i] the component along normal_w of slot[i] of what
 // every later slot[j] carries over to it through its skeleton: sum_a w_a(p_i) K_a K^-1 F_j, where K_a are the beams
 // from the centre of j to the anchors, w_a the surface interpolation's weights at the centre of i, and
@@ -98,6 +98,13 @@ void weigh_contacts(ContactWeight law, const RegionRows& rows) PALPATE_RT;
 // carries nothing over. Bound: kMaxRegions skeletons and kMaxRegions^2 / 2 sums over the anchors.
 bool add_transferred_forces(const Model& model, const State& state, const std::int32_t* slot, std::int32_t count,
                             Real* added_N) PALPATE_RT;
+
+// The same for kMutualPaper, "the stress contributions from every other contact region" (Luo & Xiao 2006, section VI):
+// each skeleton has beams to the other regions, too, and what is added to slot[i] is the size of the component along
+// its normal of the shares of all other forces in the beams that end at it. No order, no interpolation. Bound:
+// kMaxRegions skeletons of kMaxAnchors beams.
+bool add_mutual_forces(const Model& model, const State& state, const std::int32_t* slot, std::int32_t count,
+                       Real* added_N) PALPATE_RT;
 
 // The other half of the temporal order: the depth of a region is measured "on top of the deformed shape due to contacts
 // occurred before" it (Cui & Xiao 2008, section IV.C). First born first: the regions before it displace the anchors

@@ -91,13 +91,18 @@ void solve(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   press_regions(laws, state, scratch);
 }
 
-// The paper's mutual contributions (Luo & Xiao 2006): every region born later adds, along the normal, what its skeleton
-// carries over. All are taken from the regions' own normal forces (and last tick's friction) before any is added.
+// The papers' contributions: what other regions' skeletons carry over is added along the normal. All are taken from the
+// regions' own normal forces (and last tick's friction) before any is added.
 void add_transferred(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   const RowsByRegion& rows = scratch.rows;
+  const std::int32_t n = rows.regions, ends = static_cast<std::int32_t>(model.anchor.size());
+  const bool mutual = model.params.coupling_law == CouplingLaw::kMutualPaper;
+  scratch.work.beams += (mutual ? ends + n : ends) * n;
+  scratch.work.carried += (mutual ? n : ends * n) * n;
   Real added[kMaxRegions] = {};
-  if (!add_transferred_forces(model, state, rows.slot, rows.regions, added))
-    scratch.status |= Status::kSkeletonDegenerate;
+  const bool carried = mutual ? add_mutual_forces(model, state, rows.slot, n, added)
+                              : add_transferred_forces(model, state, rows.slot, n, added);
+  if (!carried) scratch.status |= Status::kSkeletonDegenerate;
   for (std::int32_t i = 0; i < rows.regions; ++i) {  // bound: kMaxContacts points
     Region& region = state.region[rows.slot[i]];
     const Real own = region.normal_force_N;
@@ -125,13 +130,7 @@ void slide_on_points(const Model& model, const State& state, Scratch& scratch, s
 }
 
 void account(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
-  const bool temporal = model.params.coupling_law == CouplingLaw::kTemporalPaper;
-  if (temporal) {
-    const std::int32_t n = scratch.rows.regions, beams = static_cast<std::int32_t>(model.anchor.size()) * n;
-    scratch.work.beams += beams;
-    scratch.work.carried += beams * n;
-    add_transferred(model, state, scratch);
-  }
+  if (carries_over(model.params.coupling_law)) add_transferred(model, state, scratch);
   for (std::int32_t r = 0; r < scratch.rows.regions; ++r) {  // bound: kMaxRegions
     slide_on_points(model, state, scratch, r, state.region[scratch.rows.slot[r]]);
   }
@@ -145,8 +144,9 @@ void add_most_work(const Model& model, const SceneSizes& n, Work& work) noexcept
   add_most_points(model, n, work);
   add_most_regions(n, PointLaws::kIterations, work);
   work.spring_laws += (1 + PointLaws::kIterations * (kStepHalvings + 1)) * n.contacts;
-  work.beams += n.anchors * n.regions;
-  work.carried += n.anchors * n.regions * n.regions;
+  const bool mutual = model.params.coupling_law == CouplingLaw::kMutualPaper;
+  work.beams += (mutual ? n.anchors + n.regions : n.anchors) * n.regions;
+  work.carried += (mutual ? 1 : n.anchors) * n.regions * n.regions;
   if (model.params.coupling_law == CouplingLaw::kTemporalPaper) work.standing += n.anchors * n.regions;
 }
 

@@ -1,5 +1,6 @@
 #include "rt_core/contact/points/point_laws.h"
 #include "rt_core/skeleton/beam_table.h"
+#include "rt_core/skeleton/mutual_skeleton.h"
 #include "rt_core/skeleton/rbf.h"
 #include "rt_core/skeleton/skeleton.h"
 
@@ -36,6 +37,10 @@ Vec3 carried_over(const Skeleton& skeleton, const RbfVector& weight) PALPATE_RT 
   return sum;
 }
 
+Vec3 force_on_tool(const Region& region) PALPATE_RT {
+  return region.normal_force_N * region.normal_w + region.friction_force_w;
+}
+
 }  // namespace
 
 bool add_transferred_forces(const Model& model, const State& state, const std::int32_t* slot, std::int32_t count,
@@ -50,8 +55,7 @@ bool add_transferred_forces(const Model& model, const State& state, const std::i
   for (std::int32_t j = 0; j < count; ++j) {  // bound: kMaxRegions^2 / 2
     Skeleton skeleton;
     const Region& from = state.region[slot[j]];
-    const Vec3 on_tool_w = from.normal_force_N * from.normal_w + from.friction_force_w;
-    if (!share_force(model, state, slot[j], on_tool_w, moved_w, skeleton)) {
+    if (!share_force(model, state, slot[j], force_on_tool(from), moved_w, skeleton)) {
       all_carried = false;
       continue;
     }
@@ -60,6 +64,25 @@ bool add_transferred_forces(const Model& model, const State& state, const std::i
       if (!is_finite(to.centre_w)) continue;
       const Vec3 force_w = carried_over(skeleton, weight[i]);
       if (is_finite(force_w)) added_N[i] += abs_of(dot(force_w, to.normal_w));
+    }
+  }
+  return all_carried;
+}
+
+bool add_mutual_forces(const Model& model, const State& state, const std::int32_t* slot, std::int32_t count,
+                       Real* added_N) PALPATE_RT {
+  const std::span<const std::int32_t> all(slot, static_cast<std::size_t>(count));
+  bool all_carried = true;
+  for (std::int32_t j = 0; count > 1 && j < count; ++j) {  // bound: kMaxRegions^2
+    Skeleton skeleton;
+    if (!solve_mutual_skeleton(model, state, all, j, force_on_tool(state.region[slot[j]]), skeleton)) {
+      all_carried = false;
+      continue;
+    }
+    for (std::int32_t i = 0; i < count; ++i) {
+      if (i == j) continue;
+      const Real along_N = dot(skeleton.force_w[mutual_beam(model, j, i)], state.region[slot[i]].normal_w);
+      if (is_finite(along_N)) added_N[i] += abs_of(along_N);
     }
   }
   return all_carried;

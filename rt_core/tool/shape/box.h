@@ -6,8 +6,6 @@
 namespace palpate {
 
 struct BoxShape {
-  static constexpr bool kHasGap = true;
-
   static Vec3 support(const ToolPiece& piece, std::span<const Vec3>, Vec3 direction) PALPATE_RT {
     using namespace piece_gap_forms;
     const Real* half = piece.half_extent_m;
@@ -15,7 +13,8 @@ struct BoxShape {
   }
 
   template <class Vector>
-  [[gnu::always_inline]] static PieceGapOf<Vector> gap(const ToolPiece& piece, const Vector& p) PALPATE_RT {
+  [[gnu::always_inline]] static PieceGapOf<Vector> gap(const ToolPiece& piece, std::span<const HullFace>,
+                                                       const Vector& p) PALPATE_RT {
     using namespace piece_gap_forms;
     const Real(&half)[3] = piece.half_extent_m;
     const Real margin = piece.margin_m;

@@ -6,8 +6,6 @@
 namespace palpate {
 
 struct ConeShape {
-  static constexpr bool kHasGap = true;
-
   // Base (radius half_extent_m[0]) at z = -half_extent_m[2], tip at +half_extent_m[2].
   static Vec3 support(const ToolPiece& piece, std::span<const Vec3>, Vec3 direction) PALPATE_RT {
     const Vec3 tip{0, 0, piece.half_extent_m[2]};
@@ -16,7 +14,8 @@ struct ConeShape {
   }
 
   template <class Vector>
-  [[gnu::always_inline]] static PieceGapOf<Vector> gap(const ToolPiece& piece, const Vector& p) PALPATE_RT {
+  [[gnu::always_inline]] static PieceGapOf<Vector> gap(const ToolPiece& piece, std::span<const HullFace>,
+                                                       const Vector& p) PALPATE_RT {
     const auto rho = square_root(p.x * p.x + p.y * p.y);
     return piece_gap_forms::revolved(flat(piece.half_extent_m[0], piece.half_extent_m[2], rho, p.z), p, rho,
                                      piece.margin_m);

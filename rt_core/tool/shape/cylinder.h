@@ -6,15 +6,14 @@
 namespace palpate {
 
 struct CylinderShape {
-  static constexpr bool kHasGap = true;
-
   static Vec3 support(const ToolPiece& piece, std::span<const Vec3>, Vec3 direction) PALPATE_RT {
     using namespace piece_gap_forms;
     return rim(piece.half_extent_m[0], with_sign(piece.half_extent_m[2], direction.z), direction);
   }
 
   template <class Vector>
-  [[gnu::always_inline]] static PieceGapOf<Vector> gap(const ToolPiece& piece, const Vector& p) PALPATE_RT {
+  [[gnu::always_inline]] static PieceGapOf<Vector> gap(const ToolPiece& piece, std::span<const HullFace>,
+                                                       const Vector& p) PALPATE_RT {
     const auto rho = square_root(p.x * p.x + p.y * p.y);
     return piece_gap_forms::revolved(flat(piece.half_extent_m[0], piece.half_extent_m[2], rho, p.z), p, rho,
                                      piece.margin_m);

@@ -32,6 +32,8 @@ template <class Number>
 inline Number smaller(const Number& a, const Number& b) PALPATE_RT {
   return a < b ? a : b;
 }
+inline bool any_of(int mask) PALPATE_RT { return mask != 0; }
+inline bool any_of(const Mask4& mask) PALPATE_RT { return bits_of(mask) != 0; }
 inline Real one_like(Real) PALPATE_RT { return 1; }
 inline Double4 one_like(const Double4&) PALPATE_RT { return splat4(1.0); }
 

@@ -6,12 +6,11 @@
 namespace palpate {
 
 struct SphereShape {
-  static constexpr bool kHasGap = true;
-
   static Vec3 support(const ToolPiece&, std::span<const Vec3>, Vec3) PALPATE_RT { return {}; }
 
   template <class Vector>
-  [[gnu::always_inline]] static PieceGapOf<Vector> gap(const ToolPiece& piece, const Vector& p) PALPATE_RT {
+  [[gnu::always_inline]] static PieceGapOf<Vector> gap(const ToolPiece& piece, std::span<const HullFace>,
+                                                       const Vector& p) PALPATE_RT {
     return piece_gap_forms::outside(p, piece.margin_m);
   }
 };

@@ -8,8 +8,6 @@
 namespace palpate {
 
 struct TorusShape {
-  static constexpr bool kHasGap = true;
-
   // Of the disc that the circle bounds, its convex hull: the overlap test, which decides whether a region that lost its
   // contacts lives on, takes the hole for the piece. It measures no contact and makes no force.
   static Vec3 support(const ToolPiece& piece, std::span<const Vec3>, Vec3 direction) PALPATE_RT {
@@ -17,7 +15,8 @@ struct TorusShape {
   }
 
   template <class Vector>
-  [[gnu::always_inline]] static PieceGapOf<Vector> gap(const ToolPiece& piece, const Vector& p) PALPATE_RT {
+  [[gnu::always_inline]] static PieceGapOf<Vector> gap(const ToolPiece& piece, std::span<const HullFace>,
+                                                       const Vector& p) PALPATE_RT {
     const auto rho = square_root(p.x * p.x + p.y * p.y);
     const auto one = piece_gap_forms::one_like(rho), zero = 0 * one;
     const auto out = rho - piece.half_extent_m[0], distance = square_root(out * out + p.z * p.z);

@@ -1,4 +1,4 @@
-#include "sim_host/view/hand_mesh.h"
+#include "config/hand/hand_mesh.h"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // The hand as people draw it: a closed surface for each finger part and for the palm, carried rigidly by its piece.
-// Contact uses the pieces' capsules; these meshes are for pictures only.
+// Contact uses the pieces' capsules, or points on these surfaces (config/hand/hand_surface.h).
 #pragma once
 
 #include "config/body/mesh.h"

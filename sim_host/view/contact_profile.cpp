@@ -1,0 +1,51 @@
+#include "sim_host/view/contact_profile.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+
+namespace {
+
+constexpr Real kLeastBend = 0.25;  // of the ball's: a tight fit has no edge
+
+}  // namespace
+
+Real contact_profile(TipShape shape, Real rho) {
+  const bool inside = !(rho > 1);
+  // Where rho^2 swallows what is left: the first term of the series in 1/rho, good to 1e-7 of itself from 1e3 on.
+  const bool far = rho > 1e3;
+  const Real angle = inside ? 0.5 * kPi : std::asin(1 / rho), root = inside ? 0.0 : std::sqrt((rho - 1) * (rho + 1));
+  switch (shape) {
+    case TipShape::kBall:
+      if (far) return 4 / (3 * kPi * rho);
+      return inside ? 1 - 0.5 * rho * rho : ((2 - rho * rho) * angle + root) / kPi;
+    case TipShape::kCone:
+      if (far) return 1 / (kPi * rho);
+      return inside ? 1 - 2 * rho / kPi : 2 / kPi * (angle - rho + root);
+    case TipShape::kFlat:
+      return 2 / kPi * angle;
+  }
+  return 0;
+}
+
+Real fade_out(Real distance_m, Real from_m, Real to_m) {
+  if (!(distance_m < to_m)) return 0;
+  if (distance_m <= from_m) return 1;
+  const Real s = (distance_m - from_m) / (to_m - from_m);
+  return (1 - s) * (1 - s) * (1 + 2 * s);
+}
+
+Real ContactEllipse::radii(Vec3 from_middle) const {
+  const Real x = dot(from_middle, along);
+  return std::hypot(x / along_m, norm(from_middle - x * along) / across_m);
+}
+
+ContactEllipse ball_contact(Real depth_m, Real ball_radius_m, const SurfaceBend& surface) {
+  const auto half_axis = [&](Real bend) {
+    return std::sqrt(depth_m * ball_radius_m / std::max(1 + bend * ball_radius_m, kLeastBend));
+  };
+  return {surface.along, half_axis(surface.most_1_per_m), half_axis(surface.least_1_per_m)};
+}
+
+}  // namespace palpate

@@ -1,0 +1,43 @@
+// The surface of an elastic half space under and around a tip that presses it, for everything that draws a dent.
+#pragma once
+
+#include "rt_core/vec.h"
+
+namespace palpate {
+
+// Frictionless, axisymmetric (Sneddon 1965). kBall: a paraboloid (Hertz; Johnson 1985, eqs. 3.42).
+enum class TipShape { kBall, kCone, kFlat };
+
+// Displacement over its value at the centre, at `rho` >= 0 contact radii from it. Inside (rho <= 1) it is the tip:
+//   ball 1 - rho^2/2, cone 1 - 2 rho/pi, flat 1;
+// outside, as far as the half space goes:
+//   ball ((2 - rho^2) asin(1/rho) + sqrt(rho^2 - 1))/pi, cone 2/pi (asin(1/rho) - rho + sqrt(rho^2 - 1)),
+//   flat 2/pi asin(1/rho).
+// All fall like 1/rho from far away. Continuous; for ball and cone the slope is, too.
+Real contact_profile(TipShape shape, Real rho);
+
+// Half spaces end: 1 up to `from_m`, 0 from `to_m` on, between them falling without a kink.
+Real fade_out(Real distance_m, Real from_m, Real to_m);
+
+// The edge of a contact: an ellipse on the surface about a place, its longer axis along `along` (unit).
+struct ContactEllipse {
+  Vec3 along;
+  Real across_m = 0, along_m = 0;  // half axes, > 0
+
+  // Distance from its middle in contact radii. The whole distance counts, not that on the surface: what lies far below
+  // the tip, as a ring's other side, is far from it.
+  Real radii(Vec3 from_middle) const;
+};
+
+// How a surface bends at a place: principal curvatures (1/m, positive where it bulges), the smaller one along `along`.
+struct SurfaceBend {
+  Vec3 along{1, 0, 0};
+  Real most_1_per_m = 0, least_1_per_m = 0;
+};
+
+// The edge of a ball's contact `depth_m` deep (> 0): where the surface leaves the ball, at half the depth. In each
+// principal direction the square of the half axis is depth over relative curvature, 1/ball_radius_m + that of the
+// surface, or a quarter of the ball's where a hollow surface fits it.
+ContactEllipse ball_contact(Real depth_m, Real ball_radius_m, const SurfaceBend& surface);
+
+}  // namespace palpate
