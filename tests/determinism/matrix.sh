@@ -27,7 +27,7 @@ build() { # NAME COMPILER LEVEL
   ! command -v ccache >/dev/null || options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
   cmake -S "$root" -B "$base/determinism-$1" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER="$2" \
     -DCMAKE_CXX_FLAGS_RELEASE="$3 -DNDEBUG" "${options[@]}"
-  cmake --build "$base/determinism-$1" -j "$jobs" --target state_hash palpate
+  cmake --build "$base/determinism-$1" -j "$jobs" --target state_hash replay_bits
 }
 build gcc-O1 g++ -O1
 build clang-O1 clang++-22 -O1
@@ -54,10 +54,10 @@ record() { # IMAGE: three seconds of its scene
 
 replay() { # RECORDING
   local said
-  if said=$("${builds[$name]}/bin/palpate" replay "$1" 2>&1); then
-    echo "$name replays $(basename "$1")"
+  if said=$("${builds[$name]}/tests/determinism/replay_bits" "$1" 2>&1); then
+    echo "$name: $said"
   else
-    echo "$name does not replay $(basename "$1"): $said"
+    echo "$name: $(basename "$1"): $said"
     return 1
   fi
 }

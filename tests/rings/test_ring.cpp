@@ -291,7 +291,7 @@ TEST(Mailbox, TwoThreadsNeverMixTwoCommands) {
     if (result != MailboxResult::kAccepted) return;
     const bool stops = command.commands == Command::kStop;
     const bool beats = command.heartbeat == command.generation || command.heartbeat + 1 == command.generation;
-    mixed += stops == (command.generation % 2 != 0) && beats ? 0 : 1;
+    if (stops != (command.generation % 2 != 0) || !beats) ++mixed;
   };
   while (!done.load()) check();
   producer.join();
