@@ -228,7 +228,13 @@ ImageResult check_joint(const Joint& joint, std::size_t i) noexcept {
 }
 
 ImageResult check_articulation(const Model& model) noexcept {
-  if ((model.params.articulation != Articulation::kRigid) != (model.sizes.n_joint > 0)) return broken("n_joint", 0);
+  const Articulation articulation = model.params.articulation;
+  const bool two_tools = articulation == Articulation::kTwoTools;
+  if ((articulation != Articulation::kRigid && !two_tools) != (model.sizes.n_joint > 0)) return broken("n_joint", 0);
+  if (two_tools != (model.params.held_part == HeldPart::kTwoTools)) return broken("held_part", 0);
+  if (two_tools && method_of(model) == Method::kNodes) return broken("articulation", 0);
+  for (std::size_t i = 0; i < model.piece.size(); ++i)
+    if (two_tools && model.piece[i].group != 0 && model.piece[i].group != 1) return broken("piece.group", i);
   for (std::size_t i = 0; i < model.joint.size(); ++i)
     if (const ImageResult result = check_joint(model.joint[i], i); result.error != ImageError::kNone) return result;
   for (std::size_t i = 0; i < model.grasp_w.size(); ++i)

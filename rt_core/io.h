@@ -49,7 +49,9 @@ struct Input {
   Drive drive = Drive::kDevice;
   JointCommand joints;
   LiveSettings live;  // what is wanted; the tick follows in bounded steps
-  Pose second_w;      // handle of the second device, which holds the body (HeldPart::kBoth); `pose_w` holds the tool
+  // Handle of the second device, which holds the body (HeldPart::kBoth) or a tool of its own (kTwoTools); that of the
+  // first is `pose_w`.
+  Pose second_w;
   // Commands sent since the newest one that the device of this sample says it obeys; 0 where it does not say.
   std::uint32_t command_lag = 0;
   std::uint32_t reserved = 0;
@@ -82,7 +84,10 @@ struct Input {
     "hand only: what the palm must exert on the body to balance fingers and weight, about "                          \
     "the tool's origin")                                                                                             \
   X(Wrench, second_w, "safety", "what the second device must render, about its handle's origin; zero without one")   \
-  X(Vec3, second_handle_w_m, "safety", "where that handle was taken to be")
+  X(Vec3, second_handle_w_m, "safety", "where that handle was taken to be")                                          \
+  X(Vec3, second_felt_along_N_per_m, "safety", "stiffness it feels there, as felt_along_N_per_m")                    \
+  X(Vec3, second_felt_across_N_per_m, "safety", "its yz, xz, xy")                                                    \
+  X(Pose, second_tool_w, "safety", "where the tool of the second hand is, if it has one; else where it is not moved")
 
 struct Output {
 #define PALPATE_FIELD(type, name, stage, meaning) type name{};

@@ -89,12 +89,16 @@ constexpr bool carries_over(CouplingLaw law) PALPATE_RT {
   return law == CouplingLaw::kTemporalPaper || law == CouplingLaw::kMutualPaper;
 }
 
-// What hands move by devices: the tool; the body, against a tool that is fixed in the world; or one hand the tool by
-// one device and the other the body by a second.
-#define PALPATE_HELD_PARTS(X) X(kTool, tool) X(kBody, body) X(kBoth, both)
+// What hands move by devices: the tool; the body, against a tool that is fixed in the world; one hand the tool by one
+// device and the other the body by a second; or each hand a tool of its own, both on one body.
+#define PALPATE_HELD_PARTS(X) X(kTool, tool) X(kBody, body) X(kBoth, both) X(kTwoTools, two_tools)
 PALPATE_CHOICE(HeldPart, PALPATE_HELD_PARTS);
+constexpr bool has_two_devices(HeldPart part) PALPATE_RT {
+  return part == HeldPart::kBoth || part == HeldPart::kTwoTools;
+}
 
-#define PALPATE_ARTICULATIONS(X) X(kRigid, rigid) X(kGripper, gripper) X(kHand, hand)
+// Two tools: pieces of the second hand's, which its own device moves against those of the first.
+#define PALPATE_ARTICULATIONS(X) X(kRigid, rigid) X(kGripper, gripper) X(kHand, hand) X(kTwoTools, two_tools)
 PALPATE_CHOICE(Articulation, PALPATE_ARTICULATIONS);
 
 // Who measures contact and makes force. Response: tool points on the rest surface, one law per region. Nodal: surface

@@ -71,7 +71,7 @@ void apply_in_units_of_stiffness(const SettingsState& live, ModelParams& params)
 
 void to_newtons(const SettingsState& live, Scratch& scratch) PALPATE_RT {
   const double unit_N = live.stiffness;
-  for (Wrench* wrench : {&scratch.contact_wrench_w, &scratch.palm_w}) {  // bound: 2
+  for (Wrench* wrench : {&scratch.contact_wrench_w, &scratch.other.contact_wrench_w, &scratch.palm_w}) {  // bound: 3
     wrench->force_N = unit_N * wrench->force_N;
     wrench->torque_Nm = unit_N * wrench->torque_Nm;
   }

@@ -17,12 +17,13 @@ namespace palpate {
 // choice is its table (rt_core/choice.h).
 #define PALPATE_CHOICE_PARAM(X, Enum, name, meaning) X(Enum, name, "-", Enum{}, last_choice<Enum>(), meaning)
 // The tick, and which method finds contact.
-#define PALPATE_METHOD_PARAMS(X)                                                                   \
-  X(double, period_s, "s", 1e-5, 1e-1, "tick period")                                              \
-  PALPATE_CHOICE_PARAM(X, Backend, backend, "who measures contact and makes force")                \
-  PALPATE_CHOICE_PARAM(X, ResponseLaw, response_law, "what carries the normal force")              \
-  PALPATE_CHOICE_PARAM(X, Articulation, articulation, "whether pieces of the tool move by joints") \
-  X(std::int32_t, surface_work_max, "-", 0, kMaxSurfaceWork,                                       \
+#define PALPATE_METHOD_PARAMS(X)                                                           \
+  X(double, period_s, "s", 1e-5, 1e-1, "tick period")                                      \
+  PALPATE_CHOICE_PARAM(X, Backend, backend, "who measures contact and makes force")        \
+  PALPATE_CHOICE_PARAM(X, ResponseLaw, response_law, "what carries the normal force")      \
+  PALPATE_CHOICE_PARAM(X, Articulation, articulation,                                      \
+                       "whether pieces of the tool move against one another, and by what") \
+  X(std::int32_t, surface_work_max, "-", 0, kMaxSurfaceWork,                               \
     "boxes and triangles a tick looks at, at most; 0: kMaxSurfaceWork")
 // The body.
 #define PALPATE_BODY_PARAMS(X)                                                                 \
@@ -98,32 +99,32 @@ namespace palpate {
   X(double, palm_radius_m, "m", 0, 1, "of the largest disc on the palm's face: where it can push")   \
   X(double, palm_face_m, "m", 0, 1, "from the tool's origin to that face")
 // Coupling to the device, and safety.
-#define PALPATE_DEVICE_PARAMS(X)                                                                              \
-  PALPATE_CHOICE_PARAM(X, HeldPart, held_part, "what the device moves")                                       \
-  X(double, grip_x_m, "m", -10, 10, "held body: where the hand holds it, in the body's frame")                \
-  X(double, grip_y_m, "m", -10, 10, "the same, y")                                                            \
-  X(double, grip_z_m, "m", -10, 10, "the same, z")                                                            \
-  X(double, coupling_N_per_m, "N/m", 1, 1e6, "translational stiffness of the virtual coupling")               \
-  X(double, coupling_Nm_per_rad, "N*m/rad", 1e-6, 1e4, "rotational stiffness of the virtual coupling")        \
-  X(double, coupling_Ns_per_m, "N*s/m", 0, 1e4, "damping of the virtual coupling")                            \
-  X(double, delay_s, "s", 0, 0.1, "of the device, from sample to force, beyond the tick")                     \
-  X(double, local_period_s, "s", 0, 0.1,                                                                      \
-    "of the device's own evaluation of the local contact model; 0: it has none, forces are held")             \
-  X(double, encoder_step_m, "m", 0, 0.1, "of the device: within it the handle's position is observed")        \
-  X(double, encoder_step_rad, "rad", 0, 1, "and its orientation")                                             \
-  X(double, force_max_N, "N", 0, kWireForceMax_N, "magnitude limit of the rendered force")                    \
-  X(double, torque_max_Nm, "N*m", 0, kWireTorqueMax_Nm, "magnitude limit of the rendered torque")             \
-  X(double, force_rate_max_N_per_s, "N/s", 1, 1e7, "fault limiter of the force change")                       \
-  X(double, ramp_in_s, "s", 0, 10, "force ramp after arming")                                                 \
-  X(double, ramp_out_s, "s", 1e-3, 1, "force ramp to zero after a fault")                                     \
-  X(double, speed_max_m_per_s, "m/s", 0.01, 100, "a device sample that implies a faster motion is rejected")  \
-  X(double, acceleration_max_m_per_s2, "m/s2", 0, 1e6,                                                        \
-    "a sample that implies a larger acceleration is rejected; 0: not asked")                                  \
-  X(double, turn_max_rad_per_s, "rad/s", 0.1, 1000, "a device sample that implies a faster turn is rejected") \
-  X(std::int32_t, silence_hold_ticks, "ticks", 1, 5, "ticks the last sample is held")                         \
-  X(std::int32_t, silence_passive_ticks, "ticks", 1, 20, "ticks after which force ramps to zero")             \
-  X(std::int32_t, silence_fault_ticks, "ticks", 2, 1000, "ticks of silence that latch a fault")               \
-  X(std::int32_t, late_ticks_max, "ticks", 2, 1000, "ticks in a row that each missed deadlines: a fault")     \
+#define PALPATE_DEVICE_PARAMS(X)                                                                                      \
+  PALPATE_CHOICE_PARAM(X, HeldPart, held_part, "what the device moves")                                               \
+  X(double, grip_x_m, "m", -10, 10, "held body: where the hand holds it, in its frame; or where a second tool rests") \
+  X(double, grip_y_m, "m", -10, 10, "the same, y")                                                                    \
+  X(double, grip_z_m, "m", -10, 10, "the same, z")                                                                    \
+  X(double, coupling_N_per_m, "N/m", 1, 1e6, "translational stiffness of the virtual coupling")                       \
+  X(double, coupling_Nm_per_rad, "N*m/rad", 1e-6, 1e4, "rotational stiffness of the virtual coupling")                \
+  X(double, coupling_Ns_per_m, "N*s/m", 0, 1e4, "damping of the virtual coupling")                                    \
+  X(double, delay_s, "s", 0, 0.1, "of the device, from sample to force, beyond the tick")                             \
+  X(double, local_period_s, "s", 0, 0.1,                                                                              \
+    "of the device's own evaluation of the local contact model; 0: it has none, forces are held")                     \
+  X(double, encoder_step_m, "m", 0, 0.1, "of the device: within it the handle's position is observed")                \
+  X(double, encoder_step_rad, "rad", 0, 1, "and its orientation")                                                     \
+  X(double, force_max_N, "N", 0, kWireForceMax_N, "magnitude limit of the rendered force")                            \
+  X(double, torque_max_Nm, "N*m", 0, kWireTorqueMax_Nm, "magnitude limit of the rendered torque")                     \
+  X(double, force_rate_max_N_per_s, "N/s", 1, 1e7, "fault limiter of the force change")                               \
+  X(double, ramp_in_s, "s", 0, 10, "force ramp after arming")                                                         \
+  X(double, ramp_out_s, "s", 1e-3, 1, "force ramp to zero after a fault")                                             \
+  X(double, speed_max_m_per_s, "m/s", 0.01, 100, "a device sample that implies a faster motion is rejected")          \
+  X(double, acceleration_max_m_per_s2, "m/s2", 0, 1e6,                                                                \
+    "a sample that implies a larger acceleration is rejected; 0: not asked")                                          \
+  X(double, turn_max_rad_per_s, "rad/s", 0.1, 1000, "a device sample that implies a faster turn is rejected")         \
+  X(std::int32_t, silence_hold_ticks, "ticks", 1, 5, "ticks the last sample is held")                                 \
+  X(std::int32_t, silence_passive_ticks, "ticks", 1, 20, "ticks after which force ramps to zero")                     \
+  X(std::int32_t, silence_fault_ticks, "ticks", 2, 1000, "ticks of silence that latch a fault")                       \
+  X(std::int32_t, late_ticks_max, "ticks", 2, 1000, "ticks in a row that each missed deadlines: a fault")             \
   X(double, stall_max_s, "s", 1e-3, 1, "deadlines missed at one go for so long: a fault")
 
 // G(title, parameters, methods that read them): the groups, for dumps and documents.
@@ -205,7 +206,8 @@ struct ToolPiece {
   std::int32_t plane_count;               // the first of them, one in each plane
   std::int32_t part;                      // label for telemetry: finger part, mallet head...
   std::int32_t joint = -1;                // that carries it; -1: fixed to the tool frame
-  std::int32_t group = 0;      // articulated tools: contacts of different groups (fingers, jaws) never share a region
+  std::int32_t group =
+      0;  // articulated tools: contacts of different groups (fingers, jaws, tools) never share a region
   std::int32_t curve_set = 0;  // tables: which of the sets of curves is its own
   double neighbourhood_m = 0;  // radius of the dent it makes; 0: the scene's
 };

@@ -2,6 +2,7 @@
 
 #include "rt_core/contact/contact.h"
 #include "rt_core/surface/closest_point.h"
+#include "rt_core/tool/two_tools.h"
 
 namespace palpate {
 
@@ -68,6 +69,7 @@ double most_stage_cost(const Model& model, Stage stage) noexcept {
   work.joints = n.joints + (n.joints > 0 ? n.pieces : 0);
   work.joint_loads = n.pieces * n.joints;
   work.pieces = 2 * n.pieces;
+  if (has_two_tools(model)) work.joints = n.pieces, work.other_samples = work.other_balances = work.other_outputs = 1;
   contact_method(method_of(model)).add_most_work(model, n, work);
   return counted_instructions(work, stage);
 }
@@ -76,6 +78,7 @@ double least_stage_cost(const Model& model, Stage stage) noexcept {
   Work work;
   work.pieces = static_cast<std::int32_t>(model.sizes.n_piece);
   work.joints = static_cast<std::int32_t>(model.sizes.n_joint);
+  if (has_two_tools(model)) work.other_samples = work.other_balances = work.other_outputs = 1;
   work.found = work.rows = work.regions = work.slid = work.rubbed = 1;
   return counted_instructions(work, stage);
 }

@@ -100,7 +100,7 @@ struct PointState {
   X(double, tangential_k_N_per_m, 0, "Mindlin variant: stiffness of the last tick")                                 \
   X(double, reversal_N_per_m, 0, "while it slips: its stiffness against motion back, along -stretch_w; else 0")     \
   X(FrictionMode, friction, FrictionMode::kFree, "stick, slip or free")                                             \
-  X(std::int32_t, reserved, 0, "-")
+  X(std::int32_t, hand, 0, "1: of the second of two tools")
 
 // A contact region: a cluster of contacts with an identity that lasts.
 struct Region {
@@ -169,7 +169,7 @@ using ByFinger = double[kMaxFingers];
   X(Vec3, piece_torque_tool_Nm, moving_pieces(model), piece_torque_tool_Nm.size(), "about the tool's origin")
 
 inline std::int64_t moving_pieces(const Model& model) noexcept {
-  return model.sizes.n_joint > 0 ? model.sizes.n_piece : 0;
+  return model.sizes.n_joint > 0 || model.params.articulation == Articulation::kTwoTools ? model.sizes.n_piece : 0;
 }
 
 // Joints of an articulated tool. Written by articulate, the loads by contact; a rigid tool has none.
@@ -238,31 +238,47 @@ struct LateDevice {
   PALPATE_STATE_FIELDS_OF(PALPATE_LATE_DEVICE)
 };
 
+// The tool that a hand moves by its device: of one hand the fields of State itself.
+#define PALPATE_TOOL_STATE(X)                                                                          \
+  X(Pose, device_w, {}, "of the handle: the last accepted sample, smoothed within the encoder's step") \
+  X(Pose, device_previous_w, {}, "of the one before")                                                  \
+  X(Pose, tool_w, {}, "at which this tick's contact was evaluated")                                    \
+  X(Pose, tool_previous_w, {}, "and the last tick's")                                                  \
+  X(Matrix6, contact_stiffness, {}, "tangent (force, torque about the tool's origin), row-major")      \
+  X(std::int32_t, started, 0, "0: the next sample is the first")                                       \
+  X(std::int32_t, rejected_ticks, 0, "consecutive samples found implausible")                          \
+  X(Pose, told_w, {}, "of the last accepted sample, as it came")                                       \
+  X(Vec3, observed_m_per_s, {}, "velocity with which device_w goes on between the encoder's steps")    \
+  X(Vec3, observed_rad_per_s, {}, "and turns")                                                         \
+  X(Vec3, hand_velocity_m_per_s, {}, "of the handle, smoothed: bridges lost samples")                  \
+  X(SafetyState, safety, {}, "memory of the last gate")
+
+// The other one of two tools. Its pieces' contacts have Contact::hand and Region::hand as it has.
+#define PALPATE_OTHER_TOOL(X)                                                    \
+  PALPATE_TOOL_STATE(X)                                                          \
+  X(std::int32_t, hand, 1, "0: State's own fields are those of the second tool") \
+  X(std::int32_t, reserved, 0, "-")
+
+struct OtherTool {
+  PALPATE_STATE_FIELDS_OF(PALPATE_OTHER_TOOL)
+};
+
 #define PALPATE_STATE_FIELDS(X)                                                                                 \
   X(std::uint64_t, tick, 0, "ticks since reset")                                                                \
-  X(Pose, device_w, {}, "of the handle: the last accepted sample, smoothed within the encoder's step")          \
-  X(Pose, device_previous_w, {}, "of the one before")                                                           \
-  X(Pose, tool_w, {}, "at which this tick's contact was evaluated")                                             \
-  X(Pose, tool_previous_w, {}, "and the last tick's")                                                           \
-  X(Matrix6, contact_stiffness, {}, "tangent (force, torque about the tool's origin), row-major")               \
-  X(std::int32_t, started, 0, "0: the next sample is the first")                                                \
-  X(std::int32_t, rejected_ticks, 0, "consecutive samples found implausible")                                   \
-  X(Pose, told_w, {}, "of the last accepted sample, as it came")                                                \
-  X(Pose, second_w, {}, "of the second device's handle at that sample")                                         \
-  X(Vec3, observed_m_per_s, {}, "velocity with which device_w goes on between the encoder's steps")             \
-  X(Vec3, observed_rad_per_s, {}, "and turns")                                                                  \
+  PALPATE_TOOL_STATE(X)                                                                                         \
+  X(Pose, second_w, {}, "of the second device's handle at that sample, where it holds the body")                \
   X(Vec3, relaxed_rootJ, {}, "how far each relaxation term has yielded: root of twice an energy")               \
   X(double, followed_rootJ, 0, "how far what rubs inside the body has followed")                                \
-  X(Vec3, hand_velocity_m_per_s, {}, "of the handle, smoothed: bridges lost samples")                           \
   X(double, stale_share, 0, "part of the ticks, lately, that had no fresh sample")                              \
   X(std::uint32_t, next_region_id, 1, "of the next region to be born")                                          \
   X(std::int32_t, first_point, 0, "tool point with which the search begins: where the last tick's share ended") \
   X(SettingsState, live, {}, "settings that may change during a run")                                           \
-  X(LateDevice, late, {}, "delay of the device beyond the stated")                                              \
-  X(SafetyState, safety, {}, "memory of the last gate")
-#define PALPATE_STATE_POOLS(X)                                                            \
-  X(PointState, point, model.sizes.n_tool_point, point.size(), "one for each tool point") \
-  X(Region, region, kMaxRegions, region.size(), "by slot")
+  X(LateDevice, late, {}, "delay of the device beyond the stated")
+#define PALPATE_STATE_POOLS(X)                                                                              \
+  X(PointState, point, model.sizes.n_tool_point, point.size(), "one for each tool point")                   \
+  X(Region, region, kMaxRegions, region.size(), "by slot")                                                  \
+  X(OtherTool, other_tool, model.params.articulation == Articulation::kTwoTools ? 1 : 0, other_tool.size(), \
+    "of two hands")
 
 #define PALPATE_ELASTIC_STATE(X)                             \
   X(std::int32_t, moved, 0, "1: some amplitude is not zero") \
@@ -319,6 +335,13 @@ struct SurfaceFoot {
   Vec3 gradient_per_m[3];  // of the area coordinates when the centre moves; zero where the foot is held
 };
 
+// What a tick finds of the other one of two tools, as Scratch has it of a hand's only one.
+struct OtherFound {
+  Wrench contact_wrench_w;
+  ContactStiffness stiffness;
+  Pose tool_corrected_w, grip_w;
+};
+
 struct Scratch {
   std::uint32_t status = 0;
   std::int32_t contact_count = 0;
@@ -338,6 +361,7 @@ struct Scratch {
   Pose tool_corrected_w;          // where the tool balances
   Pose grip_w;                    // where the coupling is held: the handle, or as far towards it as the device can pull
   std::int32_t held_by_hand = 0;  // Drive::kDevice: forces and steps are bounded
+  OtherFound other;               // of the second of two tools
   Pool<std::byte> own;            // of the scene's method, as it lays it out (contact/contact.h)
   std::uint64_t bytes = 0;        // of the block that this begins
 };

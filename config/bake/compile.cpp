@@ -226,6 +226,7 @@ class Compiler {
     image_.params.body_centre_z_m = centre.z;
     if (scene_.articulation == Articulation::kGripper) add_gripper();
     if (is_hand()) add_hand();
+    set_hands(scene_, image_);
     report_.joints = static_cast<std::int32_t>(image_.joint.size());
   }
 
@@ -311,13 +312,7 @@ class Compiler {
   }
 
   // Tips are regions of their own: regions split at 1.5 times the distance within which they join.
-  double tip_distance_m() const {
-    double nearest = 0.020;
-    for (std::size_t a = 0; a < image_.tool_point.size(); ++a)
-      for (std::size_t b = 0; b < a; ++b)
-        nearest = std::min(nearest, norm(image_.tool_point[a].position_tool_m - image_.tool_point[b].position_tool_m));
-    return clamp_to(0.5 * nearest, 1e-6, 1.0);
-  }
+  double tip_distance_m() const { return clamp_to(0.5 * std::min(0.020, nearest_points_m(image_)), 1e-6, 1.0); }
 
   void add_distances() {
     ModelParams& p = image_.params;
@@ -363,8 +358,6 @@ class Compiler {
         coupling(d.coupling_Nm_per_rad, report_.rotational_bound, 1e-6, "device.coupling_Nm_per_rad", "N m/rad"), 1e4);
     report_.coupling_N_per_m = p.coupling_N_per_m;
     report_.coupling_Nm_per_rad = p.coupling_Nm_per_rad;
-    p.held_part = d.holds;
-    p.grip_x_m = d.grip_m.x, p.grip_y_m = d.grip_m.y, p.grip_z_m = d.grip_m.z;
     p.period_s = d.period_s;
     p.delay_s = d.delay_s;
     set_times(scene_, p);

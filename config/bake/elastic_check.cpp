@@ -179,6 +179,7 @@ int press_elements(const SceneDesc& scene, const ImageContents& image, const Tet
 ImageContents with_ball(const SceneDesc& scene, const ImageContents& image, double radius_m) {
   SceneDesc ball = scene;
   ball.articulation = Articulation::kRigid;
+  ball.device.holds = HeldPart::kTool;
   ball.piece = {PieceDesc{}};
   ball.piece[0].radius_m = radius_m;
   ball.tip = {};
@@ -189,6 +190,7 @@ ImageContents with_ball(const SceneDesc& scene, const ImageContents& image, doub
   out.factor.clear();
   out.joint.clear();
   out.params.articulation = Articulation::kRigid;
+  out.params.held_part = HeldPart::kTool;
   out.params.friction_law = FrictionLaw::kNone;
   ResponseReport ignored;
   std::vector<std::string> unheard;

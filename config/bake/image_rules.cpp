@@ -73,6 +73,20 @@ void refuse(const SceneDesc& scene, const ImageResult& result) {
                     "; change what the scene says of it, see docs/image_format.md");
 }
 
+void set_hands(const SceneDesc& scene, ImageContents& image) {
+  ModelParams& p = image.params;
+  p.held_part = scene.device.holds;
+  const bool two_tools = p.held_part == HeldPart::kTwoTools;
+  const Vec3 grip_m = two_tools ? scene.path.second.front().position_m : scene.device.grip_m;
+  p.grip_x_m = grip_m.x, p.grip_y_m = grip_m.y, p.grip_z_m = grip_m.z;
+  if (!two_tools) return;
+  p.articulation = Articulation::kTwoTools;
+  for (std::size_t i = 0; i < image.piece.size(); ++i) {
+    image.piece[i].joint = -1;
+    image.piece[i].group = scene.piece[i].hand - 1;
+  }
+}
+
 void check_bytes(const SceneDesc& scene, std::span<const std::byte> bytes) {
   refuse(scene, OpenedImage(bytes).result());
 }

@@ -19,6 +19,9 @@ ImageContents contents_of(const Model& model);
 // Throws the ConfigError of the scene's key that stands behind what the loader refuses; nothing for kNone.
 void refuse(const SceneDesc& scene, const ImageResult& result);
 
+// Which hands hold what: params.held_part with its grip, and for two tools whose the pieces are.
+void set_hands(const SceneDesc& scene, ImageContents& image);
+
 // Opens the bytes as `run` would.
 void check_bytes(const SceneDesc& scene, std::span<const std::byte> bytes);
 

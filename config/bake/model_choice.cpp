@@ -49,6 +49,7 @@ std::string per_cent(double share) { return number_text(std::round(1e3 * share) 
 SceneDesc with_ball_alone(const SceneDesc& scene, double radius_m) {
   SceneDesc ball = scene;
   ball.articulation = Articulation::kRigid;
+  ball.device.holds = HeldPart::kTool;
   ball.friction = {};
   ball.friction.law = FrictionLaw::kNone;
   ball.pair.clear();

@@ -127,6 +127,20 @@ Tool make_tool(const std::vector<PieceDesc>& pieces) {
   return tool;
 }
 
+double nearest_points_m(const ImageContents& image) {
+  const bool two_tools = image.params.articulation == Articulation::kTwoTools;
+  const auto hand = [&](const ToolPoint& p) {
+    return two_tools ? image.piece[static_cast<std::size_t>(p.piece)].group : 0;
+  };
+  double nearest_m = kHuge;
+  for (std::size_t a = 0; a < image.tool_point.size(); ++a)
+    for (std::size_t b = 0; b < a; ++b) {
+      const ToolPoint &p = image.tool_point[a], &q = image.tool_point[b];
+      if (hand(p) == hand(q)) nearest_m = std::min(nearest_m, norm(p.position_tool_m - q.position_tool_m));
+    }
+  return nearest_m;
+}
+
 void put_tool(Tool tool, ImageContents& image) {
   image.piece = std::move(tool.piece);
   image.tool_point = std::move(tool.point);

@@ -24,6 +24,8 @@ Tool make_tool(const std::vector<PieceDesc>& pieces);
 
 struct ImageContents;
 void put_tool(Tool tool, ImageContents& image);
+// Smallest distance between two tool points of one hand's; kHuge where there is one point alone.
+double nearest_points_m(const ImageContents& image);
 
 // Core points of one piece, piece frame.
 std::vector<Vec3> core_points(const PieceCore& core, std::int32_t count);

@@ -201,6 +201,7 @@ struct PieceDesc {
   double margin_m = kAuto;
   std::int32_t points = 1;
   std::int32_t part = 0;
+  std::int32_t hand = 1;   // 2: of the tool in the second hand, device.holds = "two_tools"
   std::string table_file;  // contact.law = "table": the presses made with this tip; empty: the scene's
   Vec3 slide_m;            // gripper: how far it has moved when the gripper is open; described where it is when closed
 };
@@ -268,6 +269,7 @@ struct PathDesc {
   double hand_stiffness_Nm_per_rad = 0.5;
   double hand_damping_Nms_per_rad = 0.01;
   std::vector<PathPoint> point;
+  std::vector<PathPoint> second;  // of the second of two hands that hold a tool each
 };
 
 // Where the scene came from, so that later checks can still name file and line.

@@ -6,6 +6,7 @@
 #include "config/body/body_card.h"
 #include "config/fem/material.h"
 #include "config/scene/config_error.h"
+#include "config/scene/hand_check.h"
 #include "config/scene/scene.h"
 #include "config/scene/schema.h"
 #include "config/tool/piece_card.h"
@@ -434,32 +435,6 @@ void check_articulation(const SceneDesc& scene) {
     fail(scene, "gripper", "a tool is a hand or a gripper; remove [hand] or [gripper]");
   if (scene.articulation == Articulation::kGripper && slides.empty())
     fail(scene, "gripper", "no piece moves; give the pieces of at least one jaw a slide_mm");
-  for (std::size_t i = 0; i < scene.path.point.size(); ++i)
-    if (scene.articulation == Articulation::kRigid && !scene.path.point[i].closing.empty())
-      fail(scene, "path.point[" + std::to_string(i) + "].closing", "has no effect with a rigid tool; remove it");
-}
-
-void check_device_and_path(const SceneDesc& scene) {
-  const DeviceDesc& d = scene.device;
-  if (!(d.silence_hold_ticks <= d.silence_passive_ticks && d.silence_passive_ticks < d.silence_fault_ticks))
-    fail(scene, "device.silence_fault_ticks",
-         "must be above silence_passive_ticks, and that not below "
-         "silence_hold_ticks");
-  if (d.holds != HeldPart::kTool) {
-    if (scene.articulation != Articulation::kRigid)
-      fail(scene, "device.holds",
-           "a held body goes with a rigid tool only; leave it out or take a tool without joints");
-    if (d.smooth_encoder)
-      fail(scene, "device.smooth_encoder",
-           "works on the handle's own steps, which are not those of the tool as seen from a held body; remove it");
-  }
-  for (std::size_t i = 0; i < scene.path.point.size(); ++i) {
-    const std::string key = "path.point[" + std::to_string(i) + "].time_s";
-    const double time = scene.path.point[i].time_s;
-    if (i == 0 && time != 0) fail(scene, key, "the first point must be at time 0");
-    if (i > 0 && !(time > scene.path.point[i - 1].time_s))
-      fail(scene, key, number_text(time) + " is not later than the point before; times must increase");
-  }
 }
 
 }  // namespace
@@ -483,7 +458,8 @@ void check_scene(const SceneDesc& scene) {
   check_tips(scene);
   check_tool(scene);
   check_articulation(scene);
-  check_device_and_path(scene);
+  check_hands(scene);
+  check_paths(scene);
 }
 
 }  // namespace palpate

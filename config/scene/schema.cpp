@@ -233,6 +233,7 @@ const KeySpec kPiece[] = {
         "most tool points to spread; each costs about 800 instructions a tick; sphere: 1; box: 8 or more; "
         "0: never touches"),
     text<&PieceDesc::table_file>("table_file", 4096, "its own presses, instead of contact.table.file"),
+    integer<&PieceDesc::hand>("hand", 1, 2, "with device.holds = \"two_tools\": the hand that holds the piece"),
     integer<&PieceDesc::part>("part", 0, 1 << 20, "label in recordings"),
     list<&PieceDesc::slide_m>(kVec3, "slide_mm", -1000, 1000, kMilli,
                               "gripper: how far the piece moves away when the gripper opens; it is described where it "
@@ -274,7 +275,10 @@ const KeySpec kGripper[] = {
 };
 const KeySpec kDevice[] = {
     text<&DeviceDesc::name>("name", 63, "name of the device"),
-    choice<&DeviceDesc::holds>("holds", "what hands move: tool; body, past a fixed tool; both, by two devices"),
+    choice<&DeviceDesc::holds>(
+        "holds",
+        "what hands move: tool; body, past a fixed tool; both, by two devices; two_tools, by two devices on "
+        "one body"),
     list<&DeviceDesc::grip_m>(kVec3, "grip_mm", -1e4, 1e4, kMilli, "where the hand holds the body, in its own frame"),
     number<&DeviceDesc::period_s>("period_ms", 0.01, 100, kMilli, "tick period T"),
 #define PALPATE_KEY(member, key, value, lowest, highest, scale, meaning) \
@@ -338,6 +342,7 @@ void* open_region(SceneDesc& scene) { return &scene.material_region.emplace_back
 void* open_piece(SceneDesc& scene) { return &scene.piece.emplace_back(); }
 void* open_pair(SceneDesc& scene) { return &scene.pair.emplace_back(); }
 void* open_point(SceneDesc& scene) { return &scene.path.point.emplace_back(); }
+void* open_second_point(SceneDesc& scene) { return &scene.path.second.emplace_back(); }
 void* open_hand(SceneDesc& scene) {
   scene.articulation = Articulation::kHand;
   return &scene.hand;
@@ -386,6 +391,9 @@ const TableSpec kTables[] = {
     {"path", kOne, "What the simulated hand does in the demonstration. Not stored in the image.", kPath,
      open<&SceneDesc::path>},
     {"path.point", TableCount::kList, "Points of the path, joined smoothly in time.", kPathPoint, open_point},
+    {"path.second", TableCount::kList,
+     "Points of the second hand's path, with device.holds = \"two_tools\"; it is as firm as the first.", kPathPoint,
+     open_second_point},
 };
 
 }  // namespace

@@ -1,9 +1,9 @@
 // The control loop, one template for the real device and the simulated one, the real clock and the scripted one:
 // wait -> receive -> tick -> transmit -> publish, at most once per slot. Allocation-free; every step is bounded.
 //
-// Two hands (HeldPart::kBoth) are two devices in one loop and one tick: each has its own sample, frame and link watch.
-// A tick without a fresh sample of both is a tick without a sample; what either finds wrong is a fault of the run, and
-// lets both go.
+// Two hands (HeldPart::kBoth, kTwoTools) are two devices in one loop and one tick: each has its own sample, frame and
+// link watch. A tick without a fresh sample of both is a tick without a sample; what either finds wrong is a fault of
+// the run, and lets both go.
 //
 // Before the first sample the controller is not ticked (there is no pose to render): zero-force commands go out so that
 // the device sees a living controller. After that each slot is one tick, with a sample or without. Stopping asks the
@@ -260,6 +260,8 @@ class Loop {
   static Output of_second(Output output) noexcept {
     output.device_w = output.second_w;
     output.handle_w_m = output.second_handle_w_m;
+    output.felt_along_N_per_m = output.second_felt_along_N_per_m;
+    output.felt_across_N_per_m = output.second_felt_across_N_per_m;
     return output;
   }
   void push(Hand& hand, const Output& output, bool armed) noexcept {

@@ -17,12 +17,14 @@ const ContactMethod& contact_method(Method method) PALPATE_RT {
 }
 
 void clear_contact(State& state, Scratch& scratch) PALPATE_RT {
-  scratch.contact_wrench_w = {};
+  scratch.contact_wrench_w = scratch.other.contact_wrench_w = {};
   scratch.palm_w = {};
   scratch.energy_J = 0;
   scratch.residual_m = 0;
   scratch.strain = 0;
   for (Real& entry : state.contact_stiffness) entry = 0;  // bound: 36
+  for (OtherTool& other : state.other_tool)               // bound: 1
+    for (Real& entry : other.contact_stiffness) entry = 0;
 }
 
 void contact(const Model& model, State& state, Scratch& scratch, const StageProbe& probe) PALPATE_RT {

@@ -28,8 +28,8 @@ struct Contact {
   std::int32_t piece = 0;      // of the tool
   std::int32_t region = -1;    // slot in State::region; -1: none yet
   std::int32_t previous = -1;  // region of the last tick, or -1
-  std::int32_t reserved = 0;
-  Vec3 position_w;  // where the force acts: the surface point
+  std::int32_t hand = 0;       // 1: of the second of two tools
+  Vec3 position_w;             // where the force acts: the surface point
   Vec3 normal_w;
   double depth_m = 0;  // on the rest surface, > 0
   double weight = 0;   // of the contact law

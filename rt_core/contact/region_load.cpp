@@ -149,7 +149,8 @@ void press(Scratch& scratch, Region& region, const RegionRows& rows, const Regio
   region.wrench_w = {load.resultant_w + load.aside_w, load.torque_w};
   region.energy_J = load.energy_J + coupling_J;
   region.tangent_N_per_m = stiffness_along_N_per_m(load.stiffness, centre.normal_w);
-  add_to(scratch.stiffness, load.stiffness);
+  region.hand = rows[0].hand;
+  add_to(stiffness_of(scratch, region.hand), load.stiffness);
   if (load.is_beyond) scratch.status |= Status::kDepthBeyondRange;
 }
 
@@ -184,14 +185,14 @@ void slide(const Model& model, const State& state, Scratch& scratch, const Frict
   region.tangential_k_N_per_m = memory.stiffness_N_per_m;
   region.friction = memory.mode;
   region.reversal_N_per_m = friction.reversal_N_per_m;
-  const Vec3 arm = region.centre_w - state.tool_w.position_m;
+  const Vec3 arm = region.centre_w - pivot_w(state, rows);
   const Vec3 force = friction.force_w + friction.normal_gain_N * region.normal_w;
   region.normal_force_N += friction.normal_gain_N;
   region.friction_force_w = friction.force_w;
   region.wrench_w.force_N += force;
   region.wrench_w.torque_Nm += cross(arm, force);
   region.energy_J += friction.energy_J;
-  add_tangential_stiffness(scratch.stiffness, friction, region.normal_w, arm);
+  add_tangential_stiffness(stiffness_of(scratch, region.hand), friction, region.normal_w, arm);
 }
 
 void rub_tips(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
@@ -210,12 +211,18 @@ void sum_up(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   scratch.work.slid += scratch.contact_count;
   for (std::int32_t r = 0; r < scratch.rows.regions; ++r) {  // bound: kMaxRegions
     const Region& region = state.region[scratch.rows.slot[r]];
-    scratch.contact_wrench_w.force_N += region.wrench_w.force_N;
-    scratch.contact_wrench_w.torque_Nm += region.wrench_w.torque_Nm;
+    Wrench& sum = region.hand == 0 ? scratch.contact_wrench_w : scratch.other.contact_wrench_w;
+    sum.force_N += region.wrench_w.force_N;
+    sum.torque_Nm += region.wrench_w.torque_Nm;
     scratch.energy_J += region.energy_J;
   }
   if (scratch.rows.regions > 0) store(scratch.stiffness, state.contact_stiffness);
   relax(model, state, scratch);
+  balance_tool(model, state, scratch);
+  if (!has_two_tools(model)) return;
+  scratch.work.other_balances += 1;
+  const OthersTurn turn(state, scratch);
+  if (scratch.rows.regions > 0) store(scratch.stiffness, state.contact_stiffness);
   balance_tool(model, state, scratch);
 }
 

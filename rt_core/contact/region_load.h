@@ -8,6 +8,7 @@
 #include "rt_core/contact/region_solve.h"
 #include "rt_core/state.h"
 #include "rt_core/tool/articulate.h"
+#include "rt_core/tool/two_tools.h"
 
 namespace palpate {
 
@@ -98,6 +99,14 @@ RegionLoad region_load(const Laws& laws, std::int32_t r, const RegionRows& rows,
   return load;
 }
 
+// The tool's origin about which the rows of a region turn it: of its hand's tool.
+inline Vec3 pivot_w(const State& state, const RegionRows& rows) PALPATE_RT {
+  return tool_of(state, rows[0].hand).position_m;
+}
+inline ContactStiffness& stiffness_of(Scratch& scratch, std::int32_t hand) PALPATE_RT {
+  return hand == 0 ? scratch.stiffness : scratch.other.stiffness;
+}
+
 // Normal load of one region into State: centre, normal, wrench, energy and stiffness; the stretch follows the turn of
 // the normal, while a centre that wanders over the surface (rolling) does not change it.
 void press(Scratch& scratch, Region& region, const RegionRows& rows, const RegionLoad& load,
@@ -106,11 +115,11 @@ void press(Scratch& scratch, Region& region, const RegionRows& rows, const Regio
 // surface holds on account of region r. Status: kDepthBeyondRange.
 template <class Laws>
 void press_regions(const Laws& laws, State& state, Scratch& scratch) PALPATE_RT {
-  scratch.stiffness = {};
+  scratch.stiffness = scratch.other.stiffness = {};
   for (std::int32_t r = 0; r < scratch.rows.regions; ++r) {  // bound: kMaxContacts rows
     const RegionRows rows = rows_of(scratch, r);
     const Real shift_m = scratch.system.shift_m[r];
-    const RegionLoad load = region_load(laws, r, rows, shift_m, state.tool_w.position_m);
+    const RegionLoad load = region_load(laws, r, rows, shift_m, pivot_w(state, rows));
     press(scratch, state.region[scratch.rows.slot[r]], rows, load, laws.coupling_J(r, load.force_N, shift_m));
   }
 }

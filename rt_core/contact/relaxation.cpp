@@ -9,7 +9,8 @@ constexpr Real kFollows = 0.2;
 
 // Takes the wrenches' part that is left.
 void keep_part(State& state, Scratch& scratch, Real part) PALPATE_RT {
-  scratch.contact_wrench_w = {part * scratch.contact_wrench_w.force_N, part * scratch.contact_wrench_w.torque_Nm};
+  for (Wrench* wrench : {&scratch.contact_wrench_w, &scratch.other.contact_wrench_w})  // bound: 2
+    *wrench = {part * wrench->force_N, part * wrench->torque_Nm};
   for (Region& region : state.region)  // bound: kMaxRegions
     region.wrench_w = {part * region.wrench_w.force_N, part * region.wrench_w.torque_Nm};
 }

@@ -5,6 +5,7 @@
 #include "rt_core/surface/overlap.h"
 #include "rt_core/surface/smooth_foot.h"
 #include "rt_core/tool/articulate.h"
+#include "rt_core/tool/two_tools.h"
 
 namespace palpate {
 
@@ -228,6 +229,7 @@ class Collider {
     contact = Contact{};
     contact.row = contact.point = index;
     contact.piece = tool_point.piece;
+    contact.hand = hand_of(model_, contact.piece);
     contact.previous = point.region;
     contact.position_w = point.closest_w;
     contact.normal_w = point.normal_w;

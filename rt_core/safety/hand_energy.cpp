@@ -84,7 +84,8 @@ void add_coupling_damping(const Model& model, SafetyState& safety, Vec3& force_N
   add_brake((p.coupling_Ns_per_m * (1 - kDampingDead_m_per_s / speed)) * rate, force_N);
 }
 
-void drain_energy(const Model& model, State& state, Scratch& scratch, const Input& input, Vec3& force_N) PALPATE_RT {
+void drain_energy(const Model& model, State& state, Scratch& scratch, const Input& input, double given_J,
+                  Vec3& force_N) PALPATE_RT {
   const ModelParams& p = model.params;
   SafetyState& safety = state.safety;
   const Twist stretch = twist_between(safety.tool_corrected_w, state.device_w);
@@ -97,7 +98,7 @@ void drain_energy(const Model& model, State& state, Scratch& scratch, const Inpu
                       input.overrun_ticks == 0 && (scratch.status & Status::kInputRejected) == 0 &&
                       state.live.moves == 0 && state.late.moves == 0;
   const double made_J = dot(on_handle.force_N, way.translation_m) + dot(on_handle.torque_Nm, way.rotation_rad) +
-                        stored_J - safety.stored_J - joint_work_J(state, scratch);
+                        stored_J - safety.stored_J - joint_work_J(state, scratch) - given_J;
   const double most_J = 0.5 * p.force_max_N * p.force_max_N / p.coupling_N_per_m;
   safety.stored_J = stored_J;
   safety.object_J = scratch.energy_J;

@@ -22,7 +22,9 @@ void add_coupling_damping(const Model& model, SafetyState& safety, Vec3& force_N
 // et al. 2005). What friction took is no credit. Joints that are driven may give their work to the hand, and no more:
 // the account begins at the tool. Status: kEnergyDrained. Settings that move of themselves, samples that jumped and a
 // force that ramps are left out of the account.
-void drain_energy(const Model& model, State& state, Scratch& scratch, const Input& input, Vec3& force_N) PALPATE_RT;
+// So may the other one of two tools, which did `given_J` on the body since the last tick.
+void drain_energy(const Model& model, State& state, Scratch& scratch, const Input& input, double given_J,
+                  Vec3& force_N) PALPATE_RT;
 
 // True when the coupling's force has changed its sense of change in most of the last ticks, or when the surplus is more
 // than the coupling holds at the largest force: Fault::kUnstable.

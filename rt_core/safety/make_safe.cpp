@@ -4,6 +4,7 @@
 #include "rt_core/safety/mode_machine.h"
 #include "rt_core/tick.h"
 #include "rt_core/tool/held_body.h"
+#include "rt_core/tool/two_tools.h"
 #include "rt_core/tool/virtual_coupling.h"
 
 namespace palpate {
@@ -84,9 +85,22 @@ Findings findings(const State& state, const Input& input, std::uint32_t faults) 
   return found;
 }
 
-}  // namespace
+// Of two hands: both are let go for what either's sample or wrench shows.
+Findings together(Findings a, const Findings& b) PALPATE_RT {
+  a.faults |= b.faults;
+  if (b.late_ticks > a.late_ticks) a.late_ticks = b.late_ticks, a.late_fault = b.late_fault;
+  a.pressed = a.pressed || b.pressed;
+  return a;
+}
 
-void make_safe(const Model& model, State& state, Scratch& scratch, const Input& input, Output& output) PALPATE_RT {
+// What one hand's tool asks for.
+struct Asked {
+  FeltStiffness felt;
+  Findings found;
+};
+
+// A hand's wrench before mode and rate, into state.safety.last_good_w; `given_J`: what another tool did on the body.
+Asked judge(const Model& model, State& state, Scratch& scratch, const Input& input, double given_J) PALPATE_RT {
   SafetyState& safety = state.safety;
   const bool driven = input.drive == Drive::kTool;
   Wrench wrench = scratch.contact_wrench_w;
@@ -97,7 +111,7 @@ void make_safe(const Model& model, State& state, Scratch& scratch, const Input& 
   if (input.drive == Drive::kDevice && is_finite_wrench(wrench)) {
     if (is_unstable(model, safety, wrench.force_N)) faults |= Fault::kUnstable;
     add_coupling_damping(model, safety, wrench.force_N);
-    drain_energy(model, state, scratch, input, wrench.force_N);
+    drain_energy(model, state, scratch, input, given_J, wrench.force_N);
   }
   if (!is_finite_wrench(wrench)) faults |= Fault::kNotFinite;
   if (!is_finite(safety.tool_corrected_w)) faults |= Fault::kStateCorrupt;
@@ -108,38 +122,88 @@ void make_safe(const Model& model, State& state, Scratch& scratch, const Input& 
     wrench = safety.last_good_w;  // ramped out below
   }
   safety.last_good_w = limited(model, wrench, scratch);
-  const FeltStiffness felt = felt_stiffness(model, state, scratch);
+  return {felt_stiffness(model, state, scratch), findings(state, input, faults)};
+}
 
+void find_mode(const Model& model, State& state, Scratch& scratch, const Input& input,
+               const Findings& found) PALPATE_RT {
+  SafetyState& safety = state.safety;
   if (input.drive != Drive::kDevice) {  // no device, no hand: nothing to ramp
-    safety.fault |= faults;
+    safety.fault |= found.faults & (Fault::kNotFinite | Fault::kStateCorrupt);
     safety.mode = safety.fault == 0 ? Mode::kForce : Mode::kFault;
     safety.ramp = safety.fault == 0 ? 1 : 0;
-    safety.last_device_w = {safety.ramp * safety.last_good_w.force_N, safety.ramp * safety.last_good_w.torque_Nm};
-  } else {
-    const Findings found = findings(state, input, faults);
-    advance_mode(model, input, found, safety);
-    if (safety.mode == Mode::kIdle && found.pressed && (input.commands & Command::kArm) != 0)
-      scratch.status |= Status::kStartsInside;
-    if (state.late.ticks > 0) scratch.status |= Status::kDeviceLate;
-    if ((input.commands & Command::kUnheard) != 0) scratch.status |= Status::kCommandsUnheard;
-    const Wrench scaled{safety.ramp * safety.last_good_w.force_N, safety.ramp * safety.last_good_w.torque_Nm};
-    const Wrench now = within_limits(model, followed(state, felt, safety.last_device_w));
-    safety.last_device_w = rate_limited(model, now, scaled, scratch);
-    if (safety.ramp < 1 && safety.mode != Mode::kIdle) scratch.status |= Status::kRamping;
-    remember_output(safety);
+    return;
   }
+  advance_mode(model, input, found, safety);
+  if (safety.mode == Mode::kIdle && found.pressed && (input.commands & Command::kArm) != 0)
+    scratch.status |= Status::kStartsInside;
+  if (state.late.ticks > 0) scratch.status |= Status::kDeviceLate;
+  if ((input.commands & Command::kUnheard) != 0) scratch.status |= Status::kCommandsUnheard;
+  if (safety.ramp < 1 && safety.mode != Mode::kIdle) scratch.status |= Status::kRamping;
+}
 
+// What one hand's device is sent, into state.safety.last_device_w.
+void put_out(const Model& model, State& state, Scratch& scratch, const Input& input,
+             const FeltStiffness& felt) PALPATE_RT {
+  SafetyState& safety = state.safety;
+  const Wrench scaled{safety.ramp * safety.last_good_w.force_N, safety.ramp * safety.last_good_w.torque_Nm};
+  if (input.drive != Drive::kDevice) {
+    safety.last_device_w = scaled;
+    return;
+  }
+  const Wrench now = within_limits(model, followed(state, felt, safety.last_device_w));
+  safety.last_device_w = rate_limited(model, now, scaled, scratch);
+  remember_output(safety);
+}
+
+void put_out_second(const Model& model, State& state, Scratch& scratch, const Input& input, const FeltStiffness& felt,
+                    Output& output) PALPATE_RT {
+  const SafetyState first = state.safety;
+  const OthersTurn turn(state, scratch);
+  SafetyState& safety = state.safety;
+  safety.mode = first.mode;
+  safety.fault = first.fault;
+  safety.ramp = first.ramp;
+  safety.stopping = first.stopping;
+  safety.last_commands = first.last_commands;
+  put_out(model, state, scratch, input, felt);
+  output.second_w = safety.last_device_w;
+  output.second_handle_w_m = state.device_w.position_m;
+  output.second_felt_along_N_per_m = safety.ramp * felt.along;
+  output.second_felt_across_N_per_m = safety.ramp * felt.across;
+  output.second_tool_w = state.tool_w;
+}
+
+}  // namespace
+
+void make_safe(const Model& model, State& state, Scratch& scratch, const Input& input, Output& output) PALPATE_RT {
+  const bool two_tools = has_two_tools(model);
+  Asked second;
+  double given_J = 0;
+  if (two_tools) {
+    given_J = work_of_other_J(state, scratch);
+    scratch.work.other_outputs += 1;
+    const OthersTurn turn(state, scratch);
+    second = judge(model, state, scratch, input, work_of_other_J(state, scratch));
+  }
+  const Asked asked = judge(model, state, scratch, input, given_J);
+  find_mode(model, state, scratch, input, two_tools ? together(asked.found, second.found) : asked.found);
+  put_out(model, state, scratch, input, asked.felt);
+
+  const SafetyState& safety = state.safety;
   output.device_w = safety.last_device_w;
   output.handle_w_m = state.device_w.position_m;
-  output.felt_along_N_per_m = safety.ramp * felt.along;
-  output.felt_across_N_per_m = safety.ramp * felt.across;
+  output.felt_along_N_per_m = safety.ramp * asked.felt.along;
+  output.felt_across_N_per_m = safety.ramp * asked.felt.across;
   output.ramp = safety.ramp;
   output.fault = safety.fault;
   output.mode = safety.mode;
   output.late_ticks = state.late.ticks;
   output.second_w = {};
-  output.second_handle_w_m = {};
+  output.second_handle_w_m = output.second_felt_along_N_per_m = output.second_felt_across_N_per_m = {};
+  output.second_tool_w = {};
   if (holds_body(model) && input.drive == Drive::kDevice) render_on_body(model, state, scratch, output);
+  if (two_tools) put_out_second(model, state, scratch, input, second.felt, output);
 }
 
 }  // namespace palpate

@@ -1,5 +1,6 @@
 #include "rt_core/safety/encoder_observer.h"
 #include "rt_core/tick.h"
+#include "rt_core/tool/two_tools.h"
 #include "rt_core/tool/virtual_coupling.h"
 
 namespace palpate {
@@ -128,27 +129,34 @@ void predict_tool(const Model& model, State& state, Scratch& scratch) PALPATE_RT
   if (scratch.held_by_hand != 0) scratch.grip_w = held_end(model, state.device_w, state.tool_w, scratch.status);
 }
 
+// One hand's sample, and where its tool is taken to be.
+void sense_tool(const Model& model, State& state, Scratch& scratch, const Input& input) PALPATE_RT {
+  take_sample(model, state, scratch, input);
+  state.tool_previous_w = state.tool_w;
+  scratch.grip_w = state.device_w;
+  if (scratch.driven != 0) {
+    state.tool_w = state.device_w;
+    return;
+  }
+  predict_tool(model, state, scratch);
+}
+
 }  // namespace
 
 void sense(const Model& model, State& state, Scratch& scratch, const Input& input) PALPATE_RT {
   scratch.status = 0;
   scratch.work = {};
-  const bool driven = input.drive == Drive::kTool;
-  scratch.driven = driven ? 1 : 0;
+  scratch.driven = input.drive == Drive::kTool ? 1 : 0;
   scratch.held_by_hand = input.drive == Drive::kDevice ? 1 : 0;
-  take_sample(model, state, scratch, input);
   if (input.stale_ticks > 0) scratch.status |= Status::kInputHeld;
   // What lasts longer is silence, which has a limit of its own.
   if (input.stale_ticks <= static_cast<std::uint32_t>(model.params.silence_hold_ticks))
     state.stale_share += ((input.stale_ticks > 0 ? 1 : 0) - state.stale_share) / kStaleWindow_ticks;
-
-  state.tool_previous_w = state.tool_w;
-  scratch.grip_w = state.device_w;
-  if (driven) {
-    state.tool_w = state.device_w;
-    return;
-  }
-  predict_tool(model, state, scratch);
+  sense_tool(model, state, scratch, input);
+  if (!has_two_tools(model)) return;
+  scratch.work.other_samples += 1;
+  const OthersTurn turn(state, scratch);
+  sense_tool(model, state, scratch, input_of_second(model, input));
 }
 
 }  // namespace palpate

@@ -2,6 +2,7 @@
 
 #include "rt_core/math.h"
 #include "rt_core/tick.h"
+#include "rt_core/tool/two_tools.h"
 
 namespace palpate {
 
@@ -135,6 +136,7 @@ void place_links(const Model& model, const double* joint, Pose* link_tool, Vec3*
 
 void articulate(const Model& model, State& state, Scratch& scratch, const Input& input) PALPATE_RT {
   if (!is_articulated(model)) return;
+  if (has_two_tools(model)) return carry_second_tool(model, state, scratch);
   ArticulationState& a = state.articulation;
   scratch.work.joints += joint_count(model) + a.motion_tool.size();
   const bool first = a.started == 0;
@@ -150,7 +152,7 @@ void articulate(const Model& model, State& state, Scratch& scratch, const Input&
 }
 
 void load_pieces(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
-  if (!is_articulated(model)) return;
+  if (!is_articulated(model) || has_two_tools(model)) return;
   ArticulationState& a = state.articulation;
   a.piece_force_tool_N.fill({});
   a.piece_torque_tool_Nm.fill({});

@@ -51,6 +51,9 @@ void render_on_body(const Model& model, const State& state, Scratch& scratch, Ou
     output.second_handle_w_m = body_w.position_m;
   }
   turn_stiffness(out, output.felt_along_N_per_m, output.felt_across_N_per_m);
+  if (alone) return;
+  output.second_felt_along_N_per_m = output.felt_along_N_per_m;
+  output.second_felt_across_N_per_m = output.felt_across_N_per_m;
 }
 
 }  // namespace palpate

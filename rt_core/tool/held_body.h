@@ -11,7 +11,9 @@
 namespace palpate {
 
 // Whether some hand holds the body.
-inline bool holds_body(const Model& model) PALPATE_RT { return model.params.held_part != HeldPart::kTool; }
+inline bool holds_body(const Model& model) PALPATE_RT {
+  return model.params.held_part == HeldPart::kBody || model.params.held_part == HeldPart::kBoth;
+}
 inline Vec3 grip_of(const Model& model) PALPATE_RT {
   return {model.params.grip_x_m, model.params.grip_y_m, model.params.grip_z_m};
 }

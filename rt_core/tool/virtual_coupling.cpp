@@ -2,6 +2,7 @@
 
 #include "rt_core/cholesky.h"
 #include "rt_core/contact/contact_stiffness.h"
+#include "rt_core/tool/two_tools.h"
 
 namespace palpate {
 
@@ -50,6 +51,7 @@ bool add_reversals(const State& state, const Twist& motion, ContactStiffness& st
   bool any = false;
   for (const Region& region : state.region) {  // bound: kMaxRegions
     if (region.id == 0 || region.lost_ticks > 0 || !(region.reversal_N_per_m > 0)) continue;
+    if (region.hand != hand_of(state)) continue;
     const Vec3 arm = region.centre_w - state.tool_w.position_m;
     const Vec3 forward = unit_or(region.stretch_w, {});
     if (!(dot(motion.translation_m + cross(motion.rotation_rad, arm), forward) < 0)) continue;

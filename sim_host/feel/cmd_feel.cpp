@@ -68,8 +68,8 @@ void feel_scene(const FeelCommand& command, const std::string& path, std::vector
   SceneDesc scene = *compiled.scene();
   add_default_path(scene, compiled.model());
   if (scene.device.holds != HeldPart::kTool)
-    throw std::runtime_error(path +
-                             ": feel moves the tool by hand, and here a hand holds the body; leave out device.holds");
+    throw std::runtime_error(path + ": feel moves one tool by one hand, and here device.holds is \"" +
+                             std::string(word_of(scene.device.holds)) + "\"; leave it out");
   const TouchPlace place = touch_place_of(compiled.model(), scene);
   if (!command.grid.empty()) {
     feel_grid(command, compiled.model(), scene, place, table);

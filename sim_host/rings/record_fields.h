@@ -153,7 +153,7 @@ constexpr void add_input_fields(FieldTable& table, std::size_t base) {
                    "wanted factor: " meaning);
   PALPATE_LIVE_SETTINGS(PALPATE_FIELD)
 #undef PALPATE_FIELD
-  PALPATE_NAMED(Input, second_w, "input_second_w", "of the handle of the hand that holds the body");
+  PALPATE_NAMED(Input, second_w, "input_second_w", "of the second device's handle");
   PALPATE_MEMBER(Input, command_lag, "commands sent since the newest one that the device says it obeys");
   PALPATE_MEMBER(Input, reserved, "0");
 }

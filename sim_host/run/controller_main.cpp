@@ -218,10 +218,11 @@ Connection connect_device(const Arguments& arguments, const std::string& device,
 // The device of the hand at the body, where two hands hold the scene.
 std::optional<Connection> connect_second(const Arguments& arguments, const ModelParams& scene,
                                          const Connection& first) {
-  const bool both = scene.held_part == HeldPart::kBoth;
+  const bool both = has_two_devices(scene.held_part);
   if (both == arguments.second_device.empty())
-    throw Failure{kUsage, both ? "two hands hold this scene's tool and body: name the second --second-device, too"
-                               : "--second-device: one hand moves this scene; it needs device.holds = \"both\""};
+    throw Failure{
+        kUsage, both ? "two hands hold this scene: name the second --second-device, too"
+                     : "--second-device: one hand moves this scene; it needs device.holds = \"both\" or \"two_tools\""};
   if (!both) return std::nullopt;
   Connection second = connect_device(arguments, arguments.second_device, arguments.second_fd, scene);
   const bool can = second.address.kind == TransportKind::kCan && second.address.name == first.address.name;

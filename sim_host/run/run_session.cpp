@@ -128,15 +128,15 @@ DeviceProfile check_profile(const RunOptions& options, const DeviceAddress& addr
 }
 
 // The motion over and over, with a second to return to its first pose, until `duration_s` is over.
-void repeat_path(PathDesc& path, double duration_s) {
+void repeat_path(std::vector<PathPoint>& points, double duration_s) {
   constexpr double kReturn_s = 1;
-  const std::vector<PathPoint> once = path.point;
+  const std::vector<PathPoint> once = points;
   if (once.empty()) return;
   const double period_s = once.back().time_s - once.front().time_s + kReturn_s;
   for (double start_s = period_s; start_s < duration_s; start_s += period_s) {
     for (const PathPoint& point : once) {
-      path.point.push_back(point);
-      path.point.back().time_s += start_s;
+      points.push_back(point);
+      points.back().time_s += start_s;
     }
   }
 }
@@ -420,7 +420,9 @@ RunResult run_session(const RunOptions& options) {
   // The commands go through the mailbox; the closing button, which closes every finger, is left alone then.
   if (!joints.empty() && scene.scene)
     for (PathPoint& point : scene.scene->path.point) point.closing.clear();
-  if (options.repeat_path && scene.scene) repeat_path(scene.scene->path, options.duration_s);
+  if (options.repeat_path && scene.scene)
+    for (std::vector<PathPoint>* points : {&scene.scene->path.point, &scene.scene->path.second})
+      repeat_path(*points, options.duration_s);
   const std::string& folder = options.program_folder;
   const auto program = [&](const char* name) { return folder.empty() ? sibling_program(name) : folder + "/" + name; };
 

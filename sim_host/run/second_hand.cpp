@@ -9,14 +9,16 @@ namespace palpate {
 
 namespace {
 
-// A hand that holds the body where the scene has it, by the same device and as firmly as the first.
-SceneImage holding_still(const SceneImage& scene) {
-  SceneImage still = scene;
-  if (!still.scene) return still;
-  PathPoint point;
-  point.position_m = still.scene->device.grip_m;
-  still.scene->path.point = {point};
-  return still;
+// The scene as the second hand has it, by the same device and as firmly as the first: it moves a tool of its own, or
+// holds the body where the scene has it.
+SceneImage of_second_hand(const SceneImage& scene) {
+  SceneImage second = scene;
+  if (!second.scene) return second;
+  PathPoint still;
+  still.position_m = second.scene->device.grip_m;
+  const bool two_tools = second.scene->device.holds == HeldPart::kTwoTools;
+  second.scene->path.point = two_tools ? scene.scene->path.second : std::vector{still};
+  return second;
 }
 
 }  // namespace
@@ -24,10 +26,11 @@ SceneImage holding_still(const SceneImage& scene) {
 SecondHand::SecondHand(const RunOptions& options, const ModelParams& params, const SceneImage& scene,
                        const std::string& program, bool virtual_time) {
   const bool asked = !options.second_device.empty() || !options.second_path.empty();
-  if (params.held_part != HeldPart::kBoth) {
+  if (!has_two_devices(params.held_part)) {
     if (asked)
       throw std::runtime_error(
-          "--second-device, --second-path: one hand moves this scene; bake it with device.holds = \"both\"");
+          "--second-device, --second-path: one hand moves this scene; bake it with device.holds = \"both\" or "
+          "\"two_tools\"");
     return;
   }
   address_ = options.second_device.empty() ? "loopback" : options.second_device;
@@ -39,7 +42,7 @@ SecondHand::SecondHand(const RunOptions& options, const ModelParams& params, con
   }
   if (virtual_time) turns_.emplace();
   const int priority = virtual_time ? 0 : std::max(0, options.priority - kDevicePriorityBelow);
-  device_.emplace(program, holding_still(scene), options.second_path, address_, priority,
+  device_.emplace(program, of_second_hand(scene), options.second_path, address_, priority,
                   virtual_time ? turns_->end(1) : -1);
 }
 

@@ -1,4 +1,5 @@
-// The second device of a run with two hands (device.holds = "both"): simulated beside the first one, or named.
+// The second device of a run with two hands (device.holds = "both" or "two_tools"): simulated beside the first one, or
+// named.
 #pragma once
 
 #include <optional>

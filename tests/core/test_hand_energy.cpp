@@ -185,7 +185,7 @@ TEST_F(DrainEnergy, LeavesTheFingersWorkToTheFingers) {
     scratch->status = 0;
     Vec3 force{};
     state->hand_velocity_m_per_s = {0, 0, 0.1};
-    drain_energy(model, *state, *scratch, input, force);
+    drain_energy(model, *state, *scratch, input, 0, force);
     EXPECT_EQ(scratch->status, 0u) << i;
     EXPECT_NEAR(state->safety.surplus_J, 0, 1e-15) << i;
   }
@@ -201,13 +201,13 @@ TEST_F(DrainEnergy, CountsWhatFingersDoOnTheToolOnce) {
     scratch->contact_wrench_w.force_N.z = 0.5;
     scratch->status = 0;
     Vec3 force{0, 0, 1e-3};
-    drain_energy(model, *state, *scratch, input, force);
+    drain_energy(model, *state, *scratch, input, 0, force);
   }
   EXPECT_NEAR(state->safety.surplus_J, -0.005 * 0.5 * 8.5 * 8.5 / 1500, 1e-12);  // the credit ends there
   state->articulation.moved = 0;  // a force that nobody drives has stored its work before
   const double before_J = state->safety.surplus_J;
   Vec3 force{0, 0, 1e-3};
-  drain_energy(model, *state, *scratch, input, force);
+  drain_energy(model, *state, *scratch, input, 0, force);
   EXPECT_NEAR(state->safety.surplus_J, before_J, 1e-12);
 }
 
@@ -223,7 +223,7 @@ TEST_P(DrainEnergy, FindsWhatDelayMakes) {
     scratch->grip_w = state->device_w;
     scratch->status = 0;
     Vec3 force{0, 0, 0.15 * i};
-    drain_energy(model, *state, *scratch, input, force);
+    drain_energy(model, *state, *scratch, input, 0, force);
     drained_N = force.z - 0.15 * i;
     state->safety.last_device_w.force_N = {0, 0, 0.15 * i};
     remember_output(state->safety);

@@ -13,10 +13,9 @@
 namespace palpate {
 namespace {
 
-class RunTwoHands : public BallRun {
+class RecordedBallRun : public BallRun {
  protected:
-  RunTwoHands() {
-    options_.overlays.setting = {"device.holds=both", "device.grip_mm=[0, -10, 0]"};
+  RecordedBallRun() {
     options_.time = RunTime::kVirtual;
     options_.record = (folder_ / "run.plr").string();
     options_.duration_s = 1.5;
@@ -25,6 +24,21 @@ class RunTwoHands : public BallRun {
     std::ifstream file(options_.record, std::ios::binary);
     return {std::istreambuf_iterator<char>(file), {}};
   }
+  // Replays to the bit, and runs again to the same bytes.
+  void expect_the_same_again() {
+    const MappedFile file(options_.record);
+    RecordingReader again(file.bytes());
+    const RecordedScene scene(again, "");
+    EXPECT_TRUE(replay(again, scene.model(), [](const TickRecord&, const TickRecord&) {}).identical());
+    const std::string bytes = recording();
+    run_session(options_);
+    EXPECT_TRUE(recording() == bytes) << "virtual time: the same bytes again";
+  }
+};
+
+class RunTwoHands : public RecordedBallRun {
+ protected:
+  RunTwoHands() { options_.overlays.setting = {"device.holds=both", "device.grip_mm=[0, -10, 0]"}; }
   // Largest force on the hand at the ball, and how far it is from being the opposite of the other's.
   std::pair<double, double> forces() const {
     const MappedFile file(options_.record);
@@ -47,13 +61,7 @@ TEST_F(RunTwoHands, PressOneAnotherAndReplay) {
   const auto [most_N, apart_N] = forces();
   EXPECT_GT(most_N, 0.3);
   EXPECT_LT(apart_N, 1e-14);
-  const MappedFile file(options_.record);
-  RecordingReader again(file.bytes());
-  const RecordedScene scene(again, "");
-  EXPECT_TRUE(replay(again, scene.model(), [](const TickRecord&, const TickRecord&) {}).identical());
-  const std::string bytes = recording();
-  run_session(options_);
-  EXPECT_TRUE(recording() == bytes) << "virtual time: the same bytes again";
+  expect_the_same_again();
 }
 
 // The other hand lifts the ball by 3 mm towards the tool meanwhile: more force.
@@ -84,6 +92,38 @@ TEST_F(RunTwoHands, WhatDoesNotGoWithTheSceneIsRefused) {
   options_.scene = (folder_ / "ball.pal").string();
   options_.overlays.setting = {"device.holds=both"};
   EXPECT_THAT(error(), testing::HasSubstr("name the .toml"));
+}
+
+// A ball between two hands with a ball each, by tool points: the second one's way is the scene's.
+TEST_F(RecordedBallRun, TwoToolsOnOneBodyAndReplay) {
+  std::string text = kBallScene;
+  text.replace(text.find("[path]"), 6, "[[tool.piece]]\nshape = \"sphere\"\nradius_mm = 8\nhand = 2\n[path]");
+  std::ofstream(options_.scene) << text << R"(
+[[path.second]]
+time_s = 0
+position_mm = [45, 30, 0]
+[[path.second]]
+time_s = 0.5
+position_mm = [36, 30, 0]
+)";
+  options_.overlays.setting = {"device.holds=two_tools"};
+  const RunResult result = run_session(options_);
+  EXPECT_EQ(result.controller_exit, 0);
+  EXPECT_EQ(result.summary.fault, 0u);
+  EXPECT_EQ(result.summary.missed_ticks + result.summary.stale_ticks + result.lost, 0u);
+  const MappedFile file(options_.record);
+  RecordingReader ticks(file.bytes());
+  Vec3 first, second;
+  double apart_m = 0;
+  for (TickRecord record; ticks.next(record);) {
+    if (norm(record.output.device_w.force_N) > norm(first)) first = record.output.device_w.force_N;
+    if (norm(record.output.second_w.force_N) > norm(second)) second = record.output.second_w.force_N;
+    apart_m = std::max(apart_m, norm(record.output.second_tool_w.position_m - record.output.second_handle_w_m));
+  }
+  EXPECT_GT(first.y, 0.3);   // pressed from above
+  EXPECT_GT(second.x, 0.3);  // and from the right
+  EXPECT_GT(apart_m, 1e-4);  // the second tool stands on the ball, before its handle
+  expect_the_same_again();
 }
 
 }  // namespace

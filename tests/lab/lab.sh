@@ -11,7 +11,7 @@ jobs=${PALPATE_JOBS:-$(nproc)}
 every='faults usb kvaser vcan vcan_classic:21 determinism cyclictest'
 standard="$every scene_grasp_cylinder_5 scene_ring"
 scenes=$(cd "$root/config/scenes" && printf 'scene_%s ' *.toml | sed 's/\.toml//g')
-thorough="$every scenes buses vcan_classic vcan_odrive vcan_cia402 vcan_two_hands usb_unplug host_chaos viewer vcan:60 kvaser:60 usb:60 vcan_classic:600"
+thorough="$every scenes buses vcan_classic vcan_odrive vcan_cia402 vcan_two_hands vcan_two_tools usb_unplug host_chaos viewer vcan:60 kvaser:60 usb:60 vcan_classic:600"
 
 usage() {
   cat << TEXT
@@ -104,7 +104,7 @@ default_seconds() { # SCENARIO
 replay_outside() { # SCENARIO RESULT_DIR: what was computed inside must be what a real processor computes
   local scene=ellipsoid_mallet
   [ -e "$2/run.plr" ] || return
-  case $1 in scene_*) scene=${1#scene_} ;; vcan_two_hands) scene=two_hands ;; esac
+  case $1 in scene_*) scene=${1#scene_} ;; vcan_two_hands) scene=two_hands ;; vcan_two_tools) scene=two_tools ;; esac
   "$out/palpate" replay "$2/run.plr" --image "$out/scenes/$scene.pal" > "$2/replay.txt" 2>&1
   rm "$2/run.plr"
 }
@@ -251,10 +251,17 @@ for one in $scenes; do
   cp "$programs/../scenes/$one.pal" "$out/scenes/" || die "the scenes are not baked: build the target scene_images"
   "$programs/lab_scene" "$root/config/scenes/$one.toml" "$out/scenes" || die "$one.toml cannot be read"
 done
+bake() { # NAME SCENE [OPTION...]: a scene that is not shipped as it is
+  local name=$1 scene=$2
+  shift 2
+  "$programs/palpate" bake "$root/config/scenes/$scene.toml" "$@" -o "$out/scenes/$name.pal" > "$out/bake.log" 2>&1 ||
+    { cat "$out/bake.log"; die "$name cannot be baked"; }
+}
+case " ${scenarios[*]} " in # the mallet in one hand, the body in the other
+  *" vcan_two_hands"*) bake two_hands ellipsoid_mallet --set device.holds=both --set 'device.grip_mm=[0, 0, 0]' ;;
+esac
 case " ${scenarios[*]} " in
-  *" vcan_two_hands"*) # a scene that is not shipped: the mallet in one hand, the body in the other
-    "$programs/palpate" bake "$root/config/scenes/ellipsoid_mallet.toml" --set device.holds=both --set 'device.grip_mm=[0, 0, 0]' \
-      -o "$out/scenes/two_hands.pal" > "$out/bake.log" 2>&1 || { cat "$out/bake.log"; die "two hands cannot be baked"; } ;;
+  *" vcan_two_tools"*) bake two_tools ring --with "$root/config/scenes/hands/two_tools.toml" ;;
 esac
 bash "$here/guest.sh" "$cache" "$out" "$programs"/{palpate,palpate-rt,palpate-device,lab_host,lab_check,lab_readers,lab_idle} -- \
   "$here"/{scenarios,faults,hand.csv,press.csv} "$root/config/devices" "$out/scenes" || die "cannot build the guest"

@@ -14,6 +14,7 @@ inline Model roomiest_model() {
   model.sizes.n_joint = kMaxJoints;
   model.sizes.n_anchor = kMaxAnchors;
   model.sizes.n_corner = 1;
+  model.params.articulation = Articulation::kTwoTools;  // room for the other one
   model.sizes.n_vertex = model.sizes.n_nodal = kMaxNodalVertices;
   return model;
 }

@@ -21,6 +21,9 @@ using namespace elastic_layout;
 // What one more linearisation would move the surface under a tip: above it the tick says so.
 constexpr Real kElasticTolerance_m = 2e-5;
 
+// No tip's place holds more than this of its compliance to itself, whatever the rounding of a difference.
+constexpr Real kLeastLeft = 0.02;
+
 // Every tip sticks in the first; those that slip under its answer do so in the second. Decided instead by where the
 // body would go, the answer was one tick late, and ring and tube let a resting hand buzz for 35 ticks (2026-11-22).
 constexpr std::int32_t kSolvesOfFriction = 2;
@@ -57,6 +60,38 @@ void let_body_rest(const Model& model, State& state, Scratch& scratch) PALPATE_R
   state.elastic.swept_m = swept_m(model, work_of(scratch));
 }
 
+// A hand moves its tool while the other hand's keeps its depth, not its force: a region's compliance is then its own
+// less what the other hand's regions take of it, A_rr - A_ro A_oo^-1 A_or. A soft body between two tools sways with
+// both, and without this each hand's tangent was that of the sway: the two tools threw one another to and fro, by 0.09
+// N in every tick (2026-11-24). Adds the difference along the regions' normals. Bound: regions^3 / 6.
+void hold_other_hand(const ElasticLoad& load, State& state, Scratch& scratch, const Real* force_N,
+                     std::int32_t hand) PALPATE_RT {
+  std::int32_t others[kMaxRegions], count = 0;
+  Real compliance[kMaxRegions];
+  for (std::int32_t r = 0; r < load.n; ++r) {  // bound: kMaxRegions
+    const Region& region = state.region[scratch.rows.slot[r]];
+    if (!(region.tangent_N_per_m > 0)) return;
+    compliance[r] = 1 / region.tangent_N_per_m;
+    if (region.hand != hand) others[count++] = r;
+  }
+  Real* factor = scratch.system.factor;
+  for (std::int32_t i = 0; i < count; ++i)  // bound: regions^2
+    for (std::int32_t j = 0; j < count; ++j)
+      factor[i * count + j] = i == j ? compliance[others[i]] : load.curvature(force_N, others[i], others[j]);
+  if (count == 0 || !cholesky_factor(factor, count)) return;
+  for (std::int32_t r = 0; r < load.n; ++r) {  // bound: kMaxRegions
+    Region& region = state.region[scratch.rows.slot[r]];
+    if (region.hand != hand) continue;
+    Real across[kMaxRegions], answer[kMaxRegions];
+    for (std::int32_t i = 0; i < count; ++i) across[i] = answer[i] = load.curvature(force_N, r, others[i]);
+    cholesky_solve(factor, answer, count);
+    const Real left = max_of(compliance[r] - dot(across, answer, count), kLeastLeft * compliance[r]);
+    const Vec3 arm = region.centre_w - tool_of(state, hand).position_m;
+    add_spring(stiffness_of(scratch, hand), 1 / left - region.tangent_N_per_m, region.normal_w,
+               cross(arm, region.normal_w));
+  }
+}
+
 template <class Count>
 void solve_pressed(const Model& model, State& state, Scratch& scratch, Count soft) PALPATE_RT {
   const std::int32_t regions = scratch.rows.regions;
@@ -84,7 +119,9 @@ void solve_pressed(const Model& model, State& state, Scratch& scratch, Count sof
   scratch.energy_J += body.energy_J() + body.linear_energy_J(force_N);
   body.pull_aside(force_N);
   press_regions(load, state, scratch);
-  for (std::int32_t r = 0; r < regions; ++r)  // bound: kMaxRegions
+  if (has_two_tools(model))
+    for (const std::int32_t hand : {0, 1}) hold_other_hand(load, state, scratch, force_N, hand);  // bound: 2
+  for (std::int32_t r = 0; r < regions; ++r)                                                      // bound: kMaxRegions
     work_of(scratch).place_N_per_m[r] = load.place_N_per_m(r, scratch.system.shift_m[r]);
 }
 

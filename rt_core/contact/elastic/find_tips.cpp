@@ -3,6 +3,7 @@
 #include "rt_core/contact/regions.h"
 #include "rt_core/surface/body_box.h"
 #include "rt_core/surface/closest_point.h"
+#include "rt_core/tool/two_tools.h"
 
 namespace palpate {
 
@@ -172,6 +173,7 @@ class Finder {
     contact = Contact{};
     contact.row = contact.point = index;
     contact.piece = tool_point.piece;
+    contact.hand = hand_of(model_, contact.piece);
     contact.previous = point.region;
     contact.position_w = row.foot.foot_w;
     // A capsule: below where its axis was found to be deepest, with which the next tick begins.
