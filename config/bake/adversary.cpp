@@ -17,11 +17,16 @@ Vec3 Adversary::direction() {
   }
 }
 
+Vec3 Adversary::any_way(double most, double unit) {
+  const Vec3 way = direction();
+  return uniform(0, most) * unit * way;
+}
+
 Pose Adversary::start(double deepest_m) {
   const std::size_t v = random_() % model_.vertex_m.size(), i = random_() % model_.tool_point.size();
   const ToolPoint& point = model_.tool_point[i];
   const double deep = uniform(-1e-3, deepest_m);
-  Pose pose{{}, small_rotation(uniform(0, 3) * direction())};
+  Pose pose{{}, small_rotation(any_way(3))};
   if (!model_.grasp_w.empty()) pose.orientation = model_.grasp_w[0].orientation;
   const Vec3 target = model_.vertex_m[v] + (point.margin_m - deep) * model_.vertex_normal[v];
   pose.position_m = target - rotate(pose.orientation, point.position_tool_m);
@@ -37,8 +42,8 @@ bool Adversary::begin() {
   input_.pose_w = start(one_in(3) ? half : std::min(model_.params.max_depth_m, 0.5 * half));
   if (!model_.grasp_w.empty() && one_in(2)) {  // about the grasp that the tool was made for
     input_.pose_w = model_.grasp_w[0];
-    input_.pose_w.position_m += uniform(0, 0.2) * half * direction();
-    input_.pose_w.orientation = normalised(small_rotation(uniform(0, 0.5) * direction()) * input_.pose_w.orientation);
+    input_.pose_w.position_m += any_way(0.2, half);
+    input_.pose_w.orientation = normalised(small_rotation(any_way(0.5)) * input_.pose_w.orientation);
   }
   middle_ = input_.pose_w;
   drift_ = direction();
@@ -67,12 +72,14 @@ void Adversary::move(const Output& last) {
       at += uniform(0, 1) * step_m * drift_;
       return turn(uniform(0, 0.01), spin_);
     case Move::kSpin:
-      at += uniform(0, 0.2) * step_m * direction();
+      at += any_way(0.2, step_m);
       return turn(uniform(0, 1), spin_);
-    case Move::kShake:
+    case Move::kShake: {
       input_.pose_w = middle_;
-      at += uniform(0, 1) * step_m * direction();
-      return turn(uniform(0, 0.02), direction());
+      at += any_way(1, step_m);
+      const Vec3 axis = direction();
+      return turn(uniform(0, 0.02), axis);
+    }
     case Move::kCreep:
       break;
   }
