@@ -1,5 +1,7 @@
 #include "rt_core/contact/relaxation.h"
 
+#include "rt_core/decay.h"
+
 namespace palpate {
 
 namespace {
@@ -37,8 +39,8 @@ void relax(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   const Vec3 kept{p.relax_kept_1, p.relax_kept_2, p.relax_kept_3};
   const Real pressed = square_root(clamp_to(2 * scratch.energy_J, 0, kHuge));
   const Real surface = max_of(pressed, dot(share, r));  // where the body's own surface is
-  r = {kept.x * r.x + (1 - kept.x) * surface, kept.y * r.y + (1 - kept.y) * surface,
-       kept.z * r.z + (1 - kept.z) * surface};
+  r = settled(Vec3{kept.x * r.x + (1 - kept.x) * surface, kept.y * r.y + (1 - kept.y) * surface,
+                   kept.z * r.z + (1 - kept.z) * surface});
   const Vec3 held = Vec3{surface, surface, surface} - r;
   const Real yielding = share.x * held.x * held.x + share.y * held.y * held.y + share.z * held.z * held.z;
   scratch.energy_J = 0.5 * ((1 - (share.x + share.y + share.z)) * surface * surface + yielding);

@@ -1,5 +1,7 @@
 #include "rt_core/safety/hand_energy.h"
 
+#include "rt_core/decay.h"
+
 namespace palpate {
 
 namespace {
@@ -78,7 +80,7 @@ void add_coupling_damping(const Model& model, SafetyState& safety, Vec3& force_N
   const ModelParams& p = model.params;
   const Vec3 stretch_m = (1 / p.coupling_N_per_m) * force_N;
   const Vec3 rate = (1 / (p.period_s + kDampingSmooth_s)) * (stretch_m - safety.stretch_slow_m);
-  safety.stretch_slow_m += p.period_s * rate;
+  safety.stretch_slow_m = settled(safety.stretch_slow_m + p.period_s * rate);
   const double speed = norm(rate);
   if (!(speed > kDampingDead_m_per_s)) return;
   add_brake((p.coupling_Ns_per_m * (1 - kDampingDead_m_per_s / speed)) * rate, force_N);
@@ -119,7 +121,7 @@ bool is_unstable(const Model& model, SafetyState& safety, Vec3 force_N) PALPATE_
   const double least = max_of(kSwingLeast_N, kSwingShare * p.force_max_N);
   const bool large = squared_norm(step) > least * least && squared_norm(safety.last_step_N) > least * least;
   const bool back = large && dot(step, safety.last_step_N) < -0.5 * norm(step) * norm(safety.last_step_N);
-  safety.swings = kSwingKept * safety.swings + (back ? 1 : 0);
+  safety.swings = settled(kSwingKept * safety.swings + (back ? 1 : 0));
   safety.last_step_N = step;
   safety.last_coupling_N = force_N;
   const double most_J = max_of(kKick_J, 0.5 * p.force_max_N * p.force_max_N / p.coupling_N_per_m);

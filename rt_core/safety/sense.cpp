@@ -1,3 +1,4 @@
+#include "rt_core/decay.h"
 #include "rt_core/safety/encoder_observer.h"
 #include "rt_core/tick.h"
 #include "rt_core/tool/two_tools.h"
@@ -63,6 +64,8 @@ void observe_handle(const Model& model, State& state, Pose& pose) PALPATE_RT {
     pose.orientation = normalised(small_rotation(turn) * expected);
   }
   if (!is_finite(pose)) pose = told;  // a state spoilt in memory
+  state.observed_m_per_s = settled(state.observed_m_per_s);
+  state.observed_rad_per_s = settled(state.observed_rad_per_s);
 }
 
 // Velocity of the handle from fresh samples; between them, for as long as the last force is held, the handle is taken
@@ -72,7 +75,8 @@ void follow_hand(const Model& model, State& state, Scratch& scratch, const Input
   if (input.stale_ticks == 0 || state.rejected_ticks > 0) {
     const double elapsed_s = period_s * (1.0 + input.overrun_ticks + state.rejected_ticks);
     const Vec3 velocity = (1 / elapsed_s) * (pose.position_m - state.told_w.position_m);
-    state.hand_velocity_m_per_s += (1 / velocity_lag_ticks(model.params)) * (velocity - state.hand_velocity_m_per_s);
+    state.hand_velocity_m_per_s = settled(state.hand_velocity_m_per_s + (1 / velocity_lag_ticks(model.params)) *
+                                                                            (velocity - state.hand_velocity_m_per_s));
     state.told_w = pose;
     return observe_handle(model, state, pose);
   }
@@ -151,7 +155,8 @@ void sense(const Model& model, State& state, Scratch& scratch, const Input& inpu
   if (input.stale_ticks > 0) scratch.status |= Status::kInputHeld;
   // What lasts longer is silence, which has a limit of its own.
   if (input.stale_ticks <= static_cast<std::uint32_t>(model.params.silence_hold_ticks))
-    state.stale_share += ((input.stale_ticks > 0 ? 1 : 0) - state.stale_share) / kStaleWindow_ticks;
+    state.stale_share =
+        settled(state.stale_share + ((input.stale_ticks > 0 ? 1 : 0) - state.stale_share) / kStaleWindow_ticks);
   sense_tool(model, state, scratch, input);
   if (!has_two_tools(model)) return;
   scratch.work.other_samples += 1;

@@ -2,6 +2,7 @@
 
 #include "rt_core/cholesky.h"
 #include "rt_core/contact/contact_stiffness.h"
+#include "rt_core/decay.h"
 #include "rt_core/tool/two_tools.h"
 
 namespace palpate {
@@ -83,7 +84,8 @@ Twist twist_between(const Pose& from, const Pose& to) PALPATE_RT {
 }
 
 Pose moved(const Pose& pose, const Twist& twist) PALPATE_RT {
-  return {pose.position_m + twist.translation_m, normalised(small_rotation(twist.rotation_rad) * pose.orientation)};
+  return {settled(pose.position_m + twist.translation_m),
+          settled(normalised(small_rotation(twist.rotation_rad) * pose.orientation))};
 }
 
 bool follow(const Model& model, const State& state, const Twist& handle, Twist& tool) PALPATE_RT {
