@@ -46,6 +46,10 @@ PathDesc demo_path(const SceneModel& scene) {
   if (scene.scene()->path.point.empty())
     throw std::runtime_error(
         "--path demo: the scene has no [[path.point]], and how fingers close is not to be guessed");
+  if (scene.scene()->device.holds == HeldPart::kTwoTools)
+    throw std::runtime_error(
+        "--path demo: two hands move this scene, and a press moves the first one's tool alone; play both with "
+        "`palpate run`, or give --path CSV");
   return scene.scene()->path;
 }
 

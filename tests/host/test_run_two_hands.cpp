@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <cstdlib>
 
 #include "sim_host/record/mapped_file.h"
 #include "sim_host/record/recorded_image.h"
@@ -124,6 +125,14 @@ position_mm = [36, 30, 0]
   EXPECT_GT(second.x, 0.3);  // and from the right
   EXPECT_GT(apart_m, 1e-4);  // the second tool stands on the ball, before its handle
   expect_the_same_again();
+  // One hand's press of it is refused: the other one would stand by.
+  const std::string told = (folder_ / "told.txt").string();
+  EXPECT_NE(std::system((options_.program_folder + "/palpate press " + options_.scene +
+                         " --set device.holds=two_tools --path demo >" + told + " 2>&1")
+                            .c_str()),
+            0);
+  std::ifstream file_told(told);
+  EXPECT_THAT(std::string(std::istreambuf_iterator<char>(file_told), {}), testing::HasSubstr("palpate run"));
 }
 
 }  // namespace
