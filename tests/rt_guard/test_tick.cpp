@@ -13,6 +13,7 @@
 
 #include "rt_core/record.h"
 #include "rt_core/tick.h"
+#include "rt_core/tool/two_tools.h"
 #include "sim_host/tick_memory.h"
 #include "tests/rt_guard/guard.h"
 #include "tests/support/image_file.h"
@@ -23,32 +24,50 @@ namespace {
 
 constexpr int kTicks = 100000;
 constexpr const char* kScenes[] = {"ellipsoid_mallet", "heart_compass",    "tools_on_cylinder", "snap_in",
-                                   "pinch_block",      "grasp_cylinder_5", "hollow_cylinder"};
+                                   "pinch_block",      "grasp_cylinder_5", "hollow_cylinder",   "ring_two_tools"};
+
+std::string image_path(const std::string& scene) {
+  if (scene == "ring_two_tools") return PALPATE_TWO_TOOLS_IMAGE;
+  return std::string(PALPATE_IMAGE_DIR) + "/" + scene + ".pal";
+}
 
 // All the memory of a controller, allocated and touched before the first tick.
 struct Bench {
-  explicit Bench(const std::string& scene) : image(std::string(PALPATE_IMAGE_DIR) + "/" + scene + ".pal") {
+  explicit Bench(const std::string& scene) : image(image_path(scene)) {
     reset(*state);
     mlockall(MCL_CURRENT | MCL_FUTURE);  // as the controller does; where it is refused the warm-up alone must do
   }
-  // Plays the script over and over, each time from a reset state. Returns the number of ticks in contact.
+  // Plays the script over and over, each time from a reset state. Returns the number of ticks in which every tool is in
+  // contact.
   int play(int ticks) {
     int in_contact = 0;
-    ScriptedHand hand = fresh;
+    ScriptedHand hand = fresh, second = fresh;
     for (int i = 0; i < ticks; ++i) {
       if (i % kScriptTicks == 0) {
         reset(*state);
-        hand = fresh;
+        hand = second = fresh;
         *output = {};
       }
-      const Input input = hand.next(*output);
+      Input input = hand.next(*output);
+      if (two_tools) input.second_w = beside(second.next(as_first(*output)).pose_w);
       tick(image.model(), *state, *scratch, input, *output);
       fill_record(*state, input, *output, *record);
-      in_contact += output->contacts > 0 ? 1 : 0;
+      const bool second_touches = !two_tools || squared_norm(output->second_w.force_N) > 0;
+      in_contact += output->contacts > 0 && second_touches ? 1 : 0;
     }
     return in_contact;
   }
+  // The second hand does what the first one does, a finger's width away, and feels what its own device is sent.
+  static Pose beside(Pose pose_w) {
+    pose_w.position_m.x -= 0.016;
+    return pose_w;
+  }
+  static Output as_first(Output last) {
+    last.device_w = last.second_w;
+    return last;
+  }
   ImageFile image;
+  bool two_tools = has_two_tools(image.model());
   ScriptedHand fresh{image.model()};
   StatePtr state = make_state(image.model());
   ScratchPtr scratch = make_scratch(image.model());
@@ -75,7 +94,7 @@ TEST_P(EveryScene, TicksWithoutHeapLockOrPageFault) {
 TEST(GuardedScenes, HaveEveryMethodAndEveryKindOfTool) {
   unsigned methods = 0, tools = 0;
   for (const char* scene : kScenes) {
-    const ImageFile image(std::string(PALPATE_IMAGE_DIR) + "/" + scene + ".pal");
+    const ImageFile image(image_path(scene));
     methods |= bit_of(method_of(image.model().params));
     tools |= 1u << static_cast<unsigned>(image.model().params.articulation);
   }
