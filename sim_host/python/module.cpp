@@ -6,6 +6,7 @@
 
 #include "sim_host/build_id.h"
 #include "sim_host/python/py_scene.h"
+#include "sim_host/python/py_telemetry.h"
 #include "sim_host/python/record_arrays.h"
 #include "sim_host/record/mapped_file.h"
 #include "sim_host/record/recorded_image.h"
@@ -147,6 +148,16 @@ void add_scene(py::module_& m) {
       .def("finish_recording", &PyController::finish_recording);
 }
 
+void add_telemetry(py::module_& m) {
+  py::class_<PyTelemetry>(m, "Telemetry")
+      .def(py::init<const std::string&>())
+      .def("header", &PyTelemetry::header)
+      .def("read", &PyTelemetry::read)
+      .def("newest", &PyTelemetry::newest)
+      .def_property_readonly("lost", &PyTelemetry::lost)
+      .def_property_readonly("has_ended", &PyTelemetry::has_ended);
+}
+
 }  // namespace
 
 }  // namespace palpate
@@ -164,4 +175,5 @@ PYBIND11_MODULE(_core, m) {
   m.def("replay", &replay_recording);
   m.def("run", &run);
   add_scene(m);
+  add_telemetry(m);
 }

@@ -8,6 +8,7 @@ import re
 import subprocess
 import sys
 import tempfile
+import time
 
 programs, root = sys.argv[1:3]
 os.environ["PATH"] = os.path.abspath(programs) + ":" + os.environ["PATH"]
@@ -21,9 +22,21 @@ with tempfile.TemporaryDirectory() as folder:
     os.symlink(os.path.abspath(scene), "config/scenes/ellipsoid_mallet.toml")
     names = {}
     # The page tells of `palpate.run` in its text; the block after it reads what that leaves.
-    before = {2: 'palpate.run("config/scenes/ellipsoid_mallet.toml", 1.0, record="run.plr")'}
+    before = {2: 'palpate.run("config/scenes/ellipsoid_mallet.toml", 1.0, record="run.plr")', 4: "watched = start_a_run()"}
+
+    def start_a_run():
+        run = subprocess.Popen(["palpate", "run", "config/scenes/ellipsoid_mallet.toml", "--device", "loopback",
+                                "--duration", "1.5", "--telemetry", "./run.telemetry"], stdout=subprocess.DEVNULL)
+        while not os.path.exists("run.telemetry"):
+            assert run.poll() is None, "palpate run ended before it began"
+            time.sleep(0.01)
+        return run
+
+    names["start_a_run"] = start_a_run
     for i, block in enumerate(blocks):
         exec(compile(before.get(i, "") + "\n" + block, f"docs/python.md, block {i + 1}", "exec"), names)
+    assert names["watched"].wait(60) == 0
+    assert len(names["felt_N"]) > 1000, f"{len(names['felt_N'])} ticks of 1.5 s were watched"
     palpate, fallen = names["palpate"], names["fallen"]
     assert fallen.ticks["contact_force_N"].max() > 0.5, "the falling weight met no body"
     assert palpate.Recording("fallen.plr").replay()[0]["identical"]

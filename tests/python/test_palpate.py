@@ -5,6 +5,7 @@ import os
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 import numpy as np
@@ -132,6 +133,30 @@ class Module(unittest.TestCase):
         self.assertGreaterEqual(len(hashes[0]), 490)
         np.testing.assert_array_equal(*(h[:490] for h in hashes))
 
+    def test_a_run_is_watched_while_it_goes_on(self):
+        door, recording = self.path("door"), self.path("watched.plr")
+        run = subprocess.Popen([os.path.join(PROGRAMS, "palpate"), "run", MALLET, "--device", "loopback", "--duration",
+                                "1.5", "--telemetry", door, "--record", recording], stdout=subprocess.PIPE,
+                               stderr=subprocess.STDOUT, text=True)
+        try:
+            while not os.path.exists(door) and run.poll() is None:
+                time.sleep(0.01)
+            telemetry = palpate.Telemetry(door)
+            self.assertFalse(telemetry.has_ended)
+            self.assertEqual(telemetry.header["scene_hash"], self.scene.hash)
+            seen = list(telemetry.follow())
+        finally:
+            said = run.communicate(timeout=60)[0]
+        self.assertEqual(run.returncode, 0, said)
+        self.assertTrue(telemetry.has_ended)
+        self.assertGreater(len(seen), 3, "while it ran, and not all of it at the end")
+        recorded = palpate.Recording(recording)
+        self.assertEqual((telemetry.lost, recorded.lost), (0, 0))
+        for parts, whole in (([part.ticks for part in seen], recorded.ticks),
+                             ([part.regions for part in seen], recorded.regions)):
+            self.assertTrue(b"".join(part.tobytes() for part in parts) == whole.tobytes())  # padding included
+        self.assertEqual(telemetry.newest.ticks.tobytes(), recorded.ticks[-1:].tobytes())
+
     def test_the_tick_by_itself(self):
         controller = palpate.Controller(self.scene)
         self.assertEqual(len(controller.last.ticks), 0)
@@ -167,6 +192,8 @@ class Module(unittest.TestCase):
             (lambda: palpate.Scene("/nonexistent.toml"), RuntimeError, "/nonexistent.toml"),
             (lambda: palpate.Scene(MALLET, settings={"body.colour": 1}), RuntimeError, "body.colour"),
             (lambda: palpate.Recording(MALLET), RuntimeError, ""),
+            (lambda: palpate.Telemetry("./no.telemetry"), RuntimeError, "./no.telemetry"),
+            (lambda: palpate.Telemetry(os.getpid()), RuntimeError, str(os.getpid())),
             (lambda: self.scene.press(np.zeros((3, 2))), ValueError, "(3, 2)"),
             (lambda: self.scene.press([[np.nan, 0, 0]]), ValueError, "finite"),
             (lambda: palpate.Controller(self.scene).tick([0, 0]), ValueError, "pose"),

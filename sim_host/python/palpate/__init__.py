@@ -1,4 +1,4 @@
-"""Palpate from Python: bake a scene, press it, tick it, be its device, read and replay recordings.
+"""Palpate from Python: bake a scene, press it, tick it, be its device, watch a run, read and replay recordings.
 
 Everything is in SI units and in the scene's world frame; names end in their unit (``_m``, ``_N``, ``_Nm``, ``_s``).
 Orientations are unit quaternions in the order w, x, y, z. Results are NumPy structured arrays whose rows are the
@@ -14,9 +14,10 @@ controller's own records, bit for bit: ``palpate.TICK_FIELDS`` and ``palpate.REG
 from __future__ import annotations
 
 import shutil
+import time
 from os import PathLike, fspath
 from pathlib import Path
-from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple, Union
+from typing import Any, Callable, Dict, Iterator, List, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -25,7 +26,7 @@ from . import _core
 
 __all__ = [
     "BUILD", "FAULT_BITS", "MODES", "REGION_DTYPE", "REGION_FIELDS", "STATUS_BITS", "TICK_DTYPE", "TICK_FIELDS",
-    "Controller", "Records", "Recording", "Scene", "bake", "bits", "run",
+    "Controller", "Records", "Recording", "Scene", "Telemetry", "bake", "bits", "run",
 ]
 
 Floats = npt.ArrayLike
@@ -287,6 +288,58 @@ class Recording:
         inside is not wanted."""
         said, ticks, regions = _core.replay(self.path, fspath(image))
         return said, Records(ticks, regions)
+
+
+class Telemetry:
+    """What a controller renders, while it runs: every tick's records, as a recording has them.
+
+    ``where``: the path given to ``palpate run --telemetry``, or the process id of a palpate-rt of one's own user. The
+    controller's memory is mapped read-only and keeps the last 4,096 ticks: who looks less often than every 4 s at 1 kHz
+    loses records, and the controller does not notice. The first ``read()`` begins with the oldest that is there.
+
+    >>> for records in palpate.Telemetry("./run.telemetry").follow():
+    ...     print(records.ticks["device_force_N"][-1:])
+    """
+
+    def __init__(self, where: Union[int, FilePath]) -> None:
+        self.where = str(where) if isinstance(where, int) else fspath(where)
+        self._core = _core.Telemetry(self.where)
+
+    @property
+    def header(self) -> Dict[str, Any]:
+        """scene, scene_hash and image_path of the newest scene; period_s, build, controller (its process id)."""
+        return self._core.header()
+
+    @property
+    def newest(self) -> Records:
+        """The newest tick, one row (none before the first), and its regions; ``read()`` gives it again."""
+        return Records(*self._core.newest())
+
+    def read(self, most: int = 4096) -> Records:
+        """What was rendered since the last call, at most so many ticks, oldest first; empty when there is nothing."""
+        if most < 1:
+            raise ValueError(f"most = {most}, not 1 or more")
+        return Records(*self._core.read(most))
+
+    @property
+    def lost(self) -> int:
+        """Ticks that were overwritten before ``read()`` came to them."""
+        return self._core.lost
+
+    @property
+    def has_ended(self) -> bool:
+        """The controller is gone; what it rendered last can still be read."""
+        return self._core.has_ended
+
+    def follow(self, every_s: float = 0.05) -> Iterator[Records]:
+        """What is new, about every ``every_s`` seconds, until the controller has ended and all of it is read."""
+        while True:
+            over = self.has_ended  # before the look: what was written until then is seen by it
+            while len((records := self.read()).ticks):
+                yield records
+            if over:
+                return
+            time.sleep(every_s)
 
 
 def bake(scene: FilePath, image: FilePath, overlay: Sequence[FilePath] = (),
