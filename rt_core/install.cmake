@@ -48,8 +48,10 @@ endif()
 install(FILES ${PROJECT_BINARY_DIR}/palpate.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME palpate
   COMPONENT programs)
 install(DIRECTORY config/scenes config/devices DESTINATION ${CMAKE_INSTALL_DATADIR}/palpate/config COMPONENT programs)
-install(PROGRAMS docs/examples/device.py DESTINATION ${CMAKE_INSTALL_DATADIR}/palpate/examples COMPONENT programs)
-install(FILES docs/examples/device.c docs/examples/organ.toml DESTINATION ${CMAKE_INSTALL_DATADIR}/palpate/examples COMPONENT programs)
+install(PROGRAMS docs/examples/device.py docs/examples/device_kit.py DESTINATION ${CMAKE_INSTALL_DATADIR}/palpate/examples
+  COMPONENT programs)
+install(FILES docs/palpate.dbc DESTINATION ${CMAKE_INSTALL_DATADIR}/palpate COMPONENT programs)
+install(FILES docs/examples/device.c docs/examples/organ.toml sim_host/python/palpate_wire.py DESTINATION ${CMAKE_INSTALL_DATADIR}/palpate/examples COMPONENT programs)
 install(DIRECTORY rt_core DESTINATION include/palpate COMPONENT core FILES_MATCHING PATTERN "*.h")
 install(DIRECTORY hal config sim_host DESTINATION include/palpate COMPONENT host FILES_MATCHING PATTERN "*.h")
 foreach(component core host)

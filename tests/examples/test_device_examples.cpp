@@ -29,18 +29,20 @@ struct Example {
 
 void PrintTo(const Example& example, std::ostream* out) { *out << example.name; }
 
-class DeviceExample : public testing::TestWithParam<Example> {
- protected:
-  DeviceExample() {
+// A folder of programs: the controller's, and a device that is a shell's words.
+class ExampleFolder {
+ public:
+  ExampleFolder() {
     folder_ = std::filesystem::temp_directory_path() / ("palpate_example_" + std::to_string(getpid()));
     std::filesystem::create_directories(folder_);
     const std::filesystem::path bin =
         std::filesystem::read_symlink("/proc/self/exe").parent_path().parent_path() / "bin";
     std::filesystem::create_symlink(bin / "palpate-rt", folder_ / "palpate-rt");
-    in_lockstep_ = script("palpate-device", GetParam().in_lockstep);
   }
-  ~DeviceExample() override { std::filesystem::remove_all(folder_); }
-
+  ~ExampleFolder() { std::filesystem::remove_all(folder_); }
+  ExampleFolder(const ExampleFolder&) = delete;
+  ExampleFolder& operator=(const ExampleFolder&) = delete;
+  const std::filesystem::path& path() const { return folder_; }
   std::string script(const std::string& name, const std::string& command) const {
     const std::filesystem::path file = folder_ / name;
     std::ofstream(file) << "#!/bin/sh\nexec " << command << " \"$@\"\n";
@@ -48,14 +50,21 @@ class DeviceExample : public testing::TestWithParam<Example> {
     return file.string();
   }
 
+ private:
   std::filesystem::path folder_;
-  std::string in_lockstep_;
 };
 
-TEST_P(DeviceExample, KeepsEveryRuleOfTheWireProtocol) {
+class DeviceExample : public testing::TestWithParam<Example> {
+ protected:
+  ExampleFolder folder_;
+  std::string in_lockstep_ = folder_.script("palpate-device", GetParam().in_lockstep);
+};
+
+// The rules of `palpate device-test`, in the controller's virtual time. `untold`: rows that the profile cannot tell.
+void keeps_every_rule(const std::string& program, WireProfile profile, int untold) {
   SocketPair wire, turns;
   Process device =
-      Process::start(in_lockstep_, {"--device-fd", "3", "--turn-fd", "4"}, {{wire.end(1), 3}, {turns.end(1), 4}});
+      Process::start(program, {"--device-fd", "3", "--turn-fd", "4"}, {{wire.end(1), 3}, {turns.end(1), 4}});
   wire.close_end(1);
   turns.close_end(1);
   std::string error;
@@ -66,9 +75,12 @@ TEST_P(DeviceExample, KeepsEveryRuleOfTheWireProtocol) {
   clock.add(turns.end(0), "device");
   std::int64_t now_ns = 0;
   const std::vector<DoctorItem> rows =
-      DeviceTest(*transport, WireProfile::kFd, 1, [&] { clock.wait_until(now_ns += 1'000'000); }).run();
+      DeviceTest(*transport, profile, 1, [&] { clock.wait_until(now_ns += 1'000'000); }).run();
   EXPECT_EQ(rows.size(), 21u);
-  for (const DoctorItem& row : rows) EXPECT_EQ(row.verdict, Verdict::kPass) << row.name << ": " << row.found;
+  for (const DoctorItem& row : rows) {
+    if (row.verdict == Verdict::kUnknown && untold-- > 0) continue;
+    EXPECT_EQ(row.verdict, Verdict::kPass) << row.name << ": " << row.found;
+  }
   EXPECT_EQ(clock.lost(), nullptr);
   transport.reset();
   turns.close_end(0);
@@ -76,18 +88,20 @@ TEST_P(DeviceExample, KeepsEveryRuleOfTheWireProtocol) {
   EXPECT_EQ(device.exit_code(), 0);
 }
 
+TEST_P(DeviceExample, KeepsEveryRuleOfTheWireProtocol) { keeps_every_rule(in_lockstep_, WireProfile::kFd, 0); }
+
 // Its hand presses for a second and withdraws in another: one period of the motion, and half a second of the next.
 TEST_P(DeviceExample, PressesAndWithdrawsWithoutAFault) {
   RunOptions options;
   options.scene = PALPATE_SOURCE_DIR "/config/scenes/ellipsoid_mallet.toml";
-  options.image = (folder_ / "mallet.pal").string();
+  options.image = (folder_.path() / "mallet.pal").string();
   options.record = "";
   options.device = "loopback";
   options.time = RunTime::kVirtual;
   options.duration_s = 2.5;
   options.priority = 0;
   options.quiet = true;
-  options.program_folder = folder_.string();
+  options.program_folder = folder_.path().string();
   double pressed_N = 0, withdrawn_N = 0;
   options.companion.tick = [&](const TickRecord& record) {
     const double force_N = norm(record.output.device_w.force_N);
@@ -108,7 +122,7 @@ TEST_P(DeviceExample, PressesAndWithdrawsWithoutAFault) {
 
 TEST_P(DeviceExample, StartsAndEndsAsAReaderStartsIt) {
   const std::string name = "palpate-example-" + std::to_string(getpid());
-  Process device = Process::start(script("example", GetParam().command), {name}, {});
+  Process device = Process::start(folder_.script("example", GetParam().command), {name}, {});
   std::string error;
   std::unique_ptr<Transport> transport = accept_loopback(name, kLongest_ms, error);
   ASSERT_TRUE(transport) << error;
@@ -134,11 +148,19 @@ std::string name_of(const testing::TestParamInfo<Example>& info) { return info.p
 INSTANTIATE_TEST_SUITE_P(C, DeviceExample, testing::Values(Example{"device_c", PALPATE_C_DEVICE, PALPATE_C_LOCKSTEP}),
                          name_of);
 #ifdef PALPATE_PYTHON3
+#define PALPATE_EXAMPLE PALPATE_PYTHON3 " " PALPATE_SOURCE_DIR "/docs/examples/"
+#define PALPATE_LOCKSTEP PALPATE_PYTHON3 " " PALPATE_SOURCE_DIR "/tests/examples/lockstep_device.py "
+#define PALPATE_KIT "env PYTHONPATH=" PALPATE_SOURCE_DIR "/sim_host/python " PALPATE_EXAMPLE "device_kit.py loopback:$1"
 INSTANTIATE_TEST_SUITE_P(Python, DeviceExample,
-                         testing::Values(Example{
-                             "device_py", PALPATE_PYTHON3 " " PALPATE_SOURCE_DIR "/docs/examples/device.py",
-                             PALPATE_PYTHON3 " " PALPATE_SOURCE_DIR "/tests/examples/lockstep_device.py"}),
+                         testing::Values(Example{"device_py", PALPATE_EXAMPLE "device.py", PALPATE_LOCKSTEP "device"},
+                                         Example{"device_kit_py", PALPATE_KIT, PALPATE_LOCKSTEP "device_kit"}),
                          name_of);
+// The kit speaks classic frames too, which carry no time.
+TEST(ClassicExample, KeepsEveryRuleOfTheWireProtocol) {
+  const ExampleFolder folder;
+  const std::string program = folder.script("palpate-device", PALPATE_LOCKSTEP "device_kit_classic");
+  keeps_every_rule(program, WireProfile::kClassic, 1);
+}
 #endif
 
 }  // namespace

@@ -27,7 +27,8 @@ done
 usr=$work/root/usr
 for file in bin/palpate bin/palpate-rt bin/palpate-device lib/systemd/system/palpate@.service lib/udev/rules.d/70-palpate.rules \
   share/bash-completion/completions/palpate share/man/man1/palpate.1 share/man/man1/palpate-rt.1 \
-  share/palpate/config/scenes/ellipsoid_mallet.toml share/palpate/examples/device.py include/palpate/rt_core/palpate_core.h lib/libpalpate_core.a; do
+  share/palpate/config/scenes/ellipsoid_mallet.toml share/palpate/examples/device.py share/palpate/examples/palpate_wire.py share/palpate/palpate.dbc \
+  include/palpate/rt_core/palpate_core.h lib/libpalpate_core.a; do
   [ -s "$usr/$file" ] || wrong "no package has $file"
 done
 [[ $(dpkg-deb -f "$work"/palpate_*.deb Depends) == *libc6* ]] || wrong "palpate does not say which libraries it needs"
@@ -44,5 +45,8 @@ done
 "$usr/bin/palpate" run "$usr/share/palpate/config/scenes/ellipsoid_mallet.toml" --duration 0.2 --record "$work/run.plr" >"$work/log" 2>&1 ||
   { tail "$work/log"; wrong "a run of what was packed failed"; }
 "$usr/bin/palpate" replay "$work/run.plr" | grep -q '^identical' || wrong "and its recording does not replay"
+# The device kit finds its table where it was packed.
+/usr/bin/python3 -c "import sys; sys.dont_write_bytecode = True; sys.path.insert(0, '$usr/share/palpate/examples')
+import palpate_wire; palpate_wire.read_dbc(palpate_wire.find_dbc())" || wrong "the packed device kit does not find its table"
 [ "$problems" -eq 0 ] || { echo "packages: $problems problems"; exit 1; }
 echo "packages: $made: no problem"
