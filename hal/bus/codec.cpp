@@ -109,6 +109,7 @@ constexpr double kTorqueUnit_Nm = unit_of(kSignalsCommand, 96);
 constexpr double kPositionUnit_m = unit_of(kSignalsStatus, 96);
 constexpr double kQuaternionUnit = unit_of(kSignalsStatus, 168);
 constexpr double kStiffnessUnit_N_per_m = unit_of(kSignalsLocalCommand, 144);
+static_assert(kStiffnessUnit_N_per_m == kStiffnessStep_N_per_m);
 constexpr double kPointUnit_m = unit_of(kSignalsLocalCommand, 288);
 constexpr double kValidUnit_s = unit_of(kSignalsLocalCommand, 360);
 constexpr double kClassicForceUnit_N = unit_of(kSignalsClassicForce, 8);

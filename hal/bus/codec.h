@@ -101,6 +101,8 @@ std::uint8_t crc8(std::span<const std::uint8_t> bytes, std::uint8_t crc = 0xFF) 
 // What the classic profile has room for: the second half's share of the sample's number and the echo of a command's.
 inline constexpr std::uint32_t kClassicPairMask = 0xF, kClassicEchoMask = 0x3F, kClassicButtonMask = 0x3;
 
+inline constexpr double kStiffnessStep_N_per_m = 0.01;  // of the wire table
+
 // Pose and wrench in SI units <-> counts of each profile. Positions out of range saturate per axis; a force or torque
 // out of range is scaled as a whole, so that it keeps its direction; not finite ones become 0. get_pose does not
 // normalise: whether four numbers are a rotation is for the reader to judge.

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <random>
 
 #include "hal/bus/codec.h"
 #include "hal/bus/device_bus.h"
@@ -60,6 +61,25 @@ TEST(LocalModel, PushesByHookeAndNeverPullsBack) {
   EXPECT_NEAR(local_force_N({2, 0, 0}, model, {0.011, 0, 0}).x, 1, 1e-12);
   EXPECT_EQ(local_force_N({2, 0, 0}, model, {0.020, 0, 0}).x, 0);  // beyond the surface
   EXPECT_EQ(local_force_N({0, 1, 0}, model, {0.009, 0, 0}).y, 1);  // across
+}
+
+// A contact without friction is stiff in one direction alone. Rounded to the wire's step it may seem to push in the
+// others: whichever its direction, it is taken, and pushes by no more than the rounding.
+TEST(LocalModel, IsTakenInEveryDirectionAfterRounding) {
+  std::mt19937_64 draw(1);
+  std::normal_distribution<double> part;
+  for (const double k : {10.0, 100.0, 1000.0, 5000.0, 50000.0}) {
+    for (int i = 0; i < 2000; ++i) {
+      const Vec3 n = unit_or({part(draw), part(draw), part(draw)}, {1, 0, 0});
+      wire::LocalCommand command;
+      wire::set_local(command,
+                      {{}, k * Vec3{n.x * n.x, n.y * n.y, n.z * n.z}, k * Vec3{n.y * n.z, n.x * n.z, n.x * n.y}, 1e-3});
+      const LocalModel taken = bounded_model(wire::get_local(command), 1e5);
+      ASSERT_GT(taken.valid_s, 0) << k << " N/m along " << n.x << " " << n.y << " " << n.z;
+      const Vec3 across = cross(n, unit_or({part(draw), part(draw), part(draw)}, {0, 1, 0}));
+      ASSERT_LT(norm(local_force_N({}, taken, 1e-3 * across)), 1.5e-5 + 1e-12);
+    }
+  }
 }
 
 TEST(LocalModel, TravelsOnTheWire) {
