@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include "hal/bus/loopback.h"
 #include "hal/loop/lockstep.h"
@@ -91,17 +92,18 @@ void keeps_every_rule(const std::string& program, WireProfile profile, int untol
 TEST_P(DeviceExample, KeepsEveryRuleOfTheWireProtocol) { keeps_every_rule(in_lockstep_, WireProfile::kFd, 0); }
 
 // Its hand presses for a second and withdraws in another: one period of the motion, and half a second of the next.
-TEST_P(DeviceExample, PressesAndWithdrawsWithoutAFault) {
+void presses_and_withdraws(const ExampleFolder& folder, const std::vector<std::string>& settings) {
   RunOptions options;
+  options.overlays.setting = settings;
   options.scene = PALPATE_SOURCE_DIR "/config/scenes/ellipsoid_mallet.toml";
-  options.image = (folder_.path() / "mallet.pal").string();
+  options.image = (folder.path() / "mallet.pal").string();
   options.record = "";
   options.device = "loopback";
   options.time = RunTime::kVirtual;
   options.duration_s = 2.5;
   options.priority = 0;
   options.quiet = true;
-  options.program_folder = folder_.path().string();
+  options.program_folder = folder.path().string();
   double pressed_N = 0, withdrawn_N = 0;
   options.companion.tick = [&](const TickRecord& record) {
     const double force_N = norm(record.output.device_w.force_N);
@@ -119,6 +121,8 @@ TEST_P(DeviceExample, PressesAndWithdrawsWithoutAFault) {
   EXPECT_LT(pressed_N, 8);
   EXPECT_LT(withdrawn_N, 0.05);  // 18 mm clear of the body: nothing but what the coupling carries of the motion
 }
+
+TEST_P(DeviceExample, PressesAndWithdrawsWithoutAFault) { presses_and_withdraws(folder_, {}); }
 
 TEST_P(DeviceExample, StartsAndEndsAsAReaderStartsIt) {
   const std::string name = "palpate-example-" + std::to_string(getpid());
@@ -147,6 +151,21 @@ std::string name_of(const testing::TestParamInfo<Example>& info) { return info.p
 
 INSTANTIATE_TEST_SUITE_P(C, DeviceExample, testing::Values(Example{"device_c", PALPATE_C_DEVICE, PALPATE_C_LOCKSTEP}),
                          name_of);
+// The firmware's node has no socket of its own: in lock step alone. With its local model and without.
+TEST(FirmwareNode, KeepsEveryRuleOfTheWireProtocol) {
+  const ExampleFolder folder;
+  keeps_every_rule(folder.script("palpate-device", PALPATE_FIRMWARE), WireProfile::kFd, 0);
+  keeps_every_rule(folder.script("palpate-device", PALPATE_FIRMWARE " 3000"), WireProfile::kFd, 0);
+}
+
+TEST(FirmwareNode, PressesAndWithdrawsWithAndWithoutItsLocalModel) {
+  const ExampleFolder folder;
+  folder.script("palpate-device", PALPATE_FIRMWARE);
+  presses_and_withdraws(folder, {});
+  folder.script("palpate-device", PALPATE_FIRMWARE " 3000");
+  presses_and_withdraws(folder, {"device.local_kHz=10"});
+}
+
 #ifdef PALPATE_PYTHON3
 #define PALPATE_EXAMPLE PALPATE_PYTHON3 " " PALPATE_SOURCE_DIR "/docs/examples/"
 #define PALPATE_LOCKSTEP PALPATE_PYTHON3 " " PALPATE_SOURCE_DIR "/tests/examples/lockstep_device.py "
