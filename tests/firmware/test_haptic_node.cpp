@@ -142,8 +142,8 @@ TEST_F(HapticNode, SilenceLetsGoUntilEnabledAnew) {
   }
   EXPECT_NEAR(control().x, 2, 1e-6);
   for (int step = 3; step <= 200; ++step) ASSERT_NEAR(control().x, 2, 1e-6) << step;  // 20 ms
-  EXPECT_LT(control().x, 2);
-  double before = 2;
+  double before = control().x;
+  EXPECT_LT(before, 2);
   for (int step = 0; step < 100; ++step) {
     const double now = control().x;
     ASSERT_GE(now, before - 8.5 / 100 - 1e-6);  // a tenth of the limit in ten steps
