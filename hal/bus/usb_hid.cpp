@@ -13,7 +13,7 @@ namespace palpate {
 
 namespace {
 
-// A frame of more than kReportBytes - kReportHeaderBytes does not fit; the protocol's longest is 32 bytes.
+// A frame of more than kReportBytes - kReportHeaderBytes does not fit; the protocol's longest is 48 bytes.
 void pack(const Frame& frame, std::uint8_t (&report)[kReportBytes]) noexcept {
   const std::size_t length = std::min<std::size_t>(frame.length, kReportBytes - kReportHeaderBytes);
   std::memset(report, 0, sizeof report);

@@ -16,6 +16,7 @@ import binascii
 import contextlib
 import errno
 import math
+import os
 import re
 import socket
 import struct
@@ -164,6 +165,36 @@ class SocketBus:
             self.socket.send(data)
 
 
+class HidBus:
+    """Frames in the reports of a USB gadget, /dev/hidgN: 64 bytes, of which the first three are length and identifier."""
+
+    REPORT_BYTES, HEADER = 64, struct.Struct("<BH")
+
+    def __init__(self, descriptor: int, fd: bool = True) -> None:
+        self.descriptor, self.fd = descriptor, fd
+        os.set_blocking(descriptor, False)
+
+    def receive(self) -> List[Frame]:
+        """All that arrived. Raises ConnectionError when the cable was pulled, or the host has gone."""
+        frames: List[Frame] = []
+        try:
+            while report := os.read(self.descriptor, self.REPORT_BYTES):
+                length, identifier = self.HEADER.unpack_from(report + bytes(self.HEADER.size))
+                if len(report) == self.REPORT_BYTES and length <= self.REPORT_BYTES - self.HEADER.size:
+                    frames.append((identifier, report[self.HEADER.size:self.HEADER.size + length]))
+        except BlockingIOError:
+            return frames
+        except OSError as error:
+            raise ConnectionResetError(f"the USB host has gone: {error.strerror}") from error
+        raise ConnectionResetError("the USB host has gone")
+
+    def send(self, frame: Frame) -> None:
+        identifier, payload = frame
+        report = self.HEADER.pack(len(payload), identifier) + payload
+        with contextlib.suppress(OSError):
+            os.write(self.descriptor, report.ljust(self.REPORT_BYTES, b"\0"))
+
+
 class PythonCanBus:
     """Frames through python-can: every adapter it knows."""
 
@@ -188,13 +219,18 @@ class PythonCanBus:
 
 
 def open_bus(where: str, fd: bool = True, wait_s: float = math.inf) -> Any:
-    """The bus at ``loopback:NAME`` (waits for the controller, which listens), ``can:IFACE`` (SocketCAN) or
-    ``python-can:INTERFACE:CHANNEL``. ``fd``: CAN FD frames; False: classic ones."""
+    """The bus at ``loopback:NAME`` (waits for the controller, which listens), ``can:IFACE`` (SocketCAN),
+    ``usb:/dev/hidgN`` (a USB gadget) or ``python-can:INTERFACE:CHANNEL``. ``fd``: CAN FD frames; False: classic ones."""
     kind, _, name = where.partition(":")
     if kind == "loopback" and name:
         return SocketBus(_loopback(name, wait_s), fd)
     if kind == "can" and name:
         return SocketBus(_socketcan(where, name, fd), fd)
+    if kind == "usb" and "/" in name:
+        try:
+            return HidBus(os.open(name, os.O_RDWR | os.O_NONBLOCK), fd)
+        except OSError as error:
+            raise WireError(f"{where}: {error.strerror}: is the gadget set up? `ls /dev/hidg*`") from error
     if kind == "python-can" and ":" in name:
         try:
             import can
@@ -202,7 +238,7 @@ def open_bus(where: str, fd: bool = True, wait_s: float = math.inf) -> Any:
             raise WireError(f"{where}: python-can is missing: apt-get install python3-can") from error
         interface, _, channel = name.partition(":")
         return PythonCanBus(can.Bus(interface=interface, channel=channel, fd=fd), fd)
-    raise WireError(f"'{where}' is no bus: loopback:NAME, can:IFACE or python-can:INTERFACE:CHANNEL")
+    raise WireError(f"'{where}' is no bus: loopback:NAME, can:IFACE, usb:/dev/hidgN or python-can:INTERFACE:CHANNEL")
 
 
 def _socketcan(where: str, name: str, fd: bool) -> socket.socket:

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A device of docs/examples in the controller's virtual time (hal/loop/lockstep.h), started as palpate-device is.
 
-Usage: lockstep_device.py device | device_kit | device_kit_classic --device-fd N --turn-fd N
+Usage: lockstep_device.py device | device_kit | device_kit_classic | device_kit_usb --device-fd N --turn-fd N
 """
 import os
 import socket
@@ -24,7 +24,9 @@ def device_on(bus):
         from device import Device
         return Device(bus)
     from device_kit import Device
-    from palpate_wire import SocketBus
+    from palpate_wire import HidBus, SocketBus
+    if sys.argv[1] == "device_kit_usb":
+        return Device(HidBus(bus.detach()))
     return Device(SocketBus(bus, fd=sys.argv[1] == "device_kit"))
 
 

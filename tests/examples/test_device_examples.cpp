@@ -1,5 +1,6 @@
 // The devices of docs/examples, as programs: the controller meets nothing of theirs but frames. Graded rule by rule and
 // pressed into a scene in virtual time; then started as a reader would start them.
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <time.h>
 #include <unistd.h>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "hal/bus/loopback.h"
+#include "hal/bus/usb_hid.h"
 #include "hal/loop/lockstep.h"
 #include "sim_host/doctor/device_test.h"
 #include "sim_host/run/process.h"
@@ -61,15 +63,23 @@ class DeviceExample : public testing::TestWithParam<Example> {
   std::string in_lockstep_ = folder_.script("palpate-device", GetParam().in_lockstep);
 };
 
+// Both ends of a socket are a gadget's: plain reports of 64 bytes, without the number that hidraw wants first.
+std::unique_ptr<Transport> usb_over(int fd) {
+  fcntl(fd, F_SETFL, O_NONBLOCK);
+  return std::make_unique<UsbHid>(fd, UsbSide::kDevice);
+}
+
 // The rules of `palpate device-test`, in the controller's virtual time. `untold`: rows that the profile cannot tell.
-void keeps_every_rule(const std::string& program, WireProfile profile, int untold) {
+// `as_usb`: the wire carries the reports of USB.
+void keeps_every_rule(const std::string& program, WireProfile profile, int untold, bool as_usb = false) {
   SocketPair wire, turns;
   Process device =
       Process::start(program, {"--device-fd", "3", "--turn-fd", "4"}, {{wire.end(1), 3}, {turns.end(1), 4}});
   wire.close_end(1);
   turns.close_end(1);
   std::string error;
-  std::unique_ptr<Transport> transport = adopt_loopback(dup(wire.end(0)), error);
+  const int mine = dup(wire.end(0));
+  std::unique_ptr<Transport> transport = as_usb ? usb_over(mine) : adopt_loopback(mine, error);
   wire.close_end(0);
   ASSERT_TRUE(transport) << error;
   LockstepClock clock;
@@ -174,6 +184,10 @@ INSTANTIATE_TEST_SUITE_P(Python, DeviceExample,
                          testing::Values(Example{"device_py", PALPATE_EXAMPLE "device.py", PALPATE_LOCKSTEP "device"},
                                          Example{"device_kit_py", PALPATE_KIT, PALPATE_LOCKSTEP "device_kit"}),
                          name_of);
+TEST(UsbExample, KeepsEveryRuleOfTheWireProtocol) {
+  const ExampleFolder folder;
+  keeps_every_rule(folder.script("palpate-device", PALPATE_LOCKSTEP "device_kit_usb"), WireProfile::kFd, 0, true);
+}
 // The kit speaks classic frames too, which carry no time.
 TEST(ClassicExample, KeepsEveryRuleOfTheWireProtocol) {
   const ExampleFolder folder;

@@ -5,6 +5,7 @@ import itertools
 import math
 import os
 import random
+import re
 import socket
 import sys
 import tempfile
@@ -237,6 +238,32 @@ class Buses(unittest.TestCase):
             with self.assertRaises(ConnectionError):
                 bus.receive()
             near.close()
+
+    def test_usb_reports_keep_the_layout_and_tell_when_the_host_has_gone(self):
+        near, far = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        bus = wire.HidBus(near.fileno())
+        payload = bytes(range(1, 33))
+        bus.send((0x181, payload))
+        report = far.recv(100)
+        self.assertEqual(report, b"\x20\x81\x01" + payload + bytes(29))
+        far.send(report)
+        far.send(report[:-1])  # not a report
+        far.send(b"\x3e" + report[1:])  # longer than there is room for
+        self.assertEqual(bus.receive(), [(0x181, payload)])
+        self.assertEqual(bus.receive(), [])
+        far.close()
+        with self.assertRaises(ConnectionError):
+            bus.receive()
+        near.close()
+        with self.assertRaisesRegex(wire.WireError, "gadget"):
+            wire.open_bus("usb:/dev/hidg99")
+
+    # The descriptor that the page gives is the one by which the laboratory's emulated USB runs.
+    def test_the_page_has_the_laboratorys_report_descriptor(self):
+        page = (ROOT / "docs/wire_protocol.md").read_text(encoding="utf-8")
+        told = bytes.fromhex(re.search(r"```\n(06 00 FF [0-9A-F \n]+)```", page)[1])
+        octal = re.search(r"printf '([\\0-7]+)' > functions/hid.0/report_desc", (ROOT / "tests/lab/guest_init").read_text())[1]
+        self.assertEqual(told, bytes(int(digits, 8) for digits in octal.split("\\")[1:]))
 
     def test_python_can_carries_commands_and_statuses(self):
         for fd in (True, False):
