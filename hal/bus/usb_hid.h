@@ -5,6 +5,7 @@
 // Report: byte 0 frame length (0..61), bytes 1-2 identifier (little-endian), then the frame's data, zero to the end.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -15,6 +16,10 @@ namespace palpate {
 
 inline constexpr int kReportBytes = 64;
 inline constexpr int kReportHeaderBytes = 3;
+// What the device tells of itself (docs/wire_protocol.md): vendor-defined, 64 bytes in, 64 bytes out, no numbers.
+inline constexpr std::uint8_t kReportDescriptor[] = {0x06, 0x00, 0xFF, 0x09, 0x01, 0xA1, 0x01, 0x15, 0x00,
+                                                     0x26, 0xFF, 0x00, 0x75, 0x08, 0x95, 0x40, 0x09, 0x02,
+                                                     0x81, 0x02, 0x09, 0x03, 0x91, 0x02, 0xC0};
 // hidraw's queue holds 63 reports and then drops the newest: a full drain means reports were lost.
 inline constexpr int kHidrawQueue = 63;
 

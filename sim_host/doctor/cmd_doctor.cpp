@@ -6,11 +6,14 @@
 #include "sim_host/cli_checks.h"
 #include "sim_host/doctor/doctor.h"
 #include "sim_host/doctor/doctor_json.h"
+#include "sim_host/doctor/find_devices.h"
 #include "sim_host/doctor/identify.h"
 
 namespace palpate {
 
 namespace {
+
+constexpr const char* kFind = "find";
 
 struct Options {
   std::string device = "loopback", profile, identify;
@@ -61,6 +64,7 @@ int tell(const std::vector<DoctorItem>& items, Json& json) {
 }
 
 int run_doctor(const Options& options, Json& json) {
+  if (options.device == kFind) return tell(find_devices("/", listen_to_bus), json) == 0 ? kExitOk : kExitFailed;
   std::vector<DoctorItem> items = examine_machine_and_device(options.cpu, options.priority, options.device);
   const std::vector<DoctorItem> profile = examine_profile(options.device, options.profile);
   items.insert(items.end(), profile.begin(), profile.end());
@@ -76,8 +80,11 @@ void add_doctor_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("doctor", "Check this machine and the device's bus for hard real time");
   command
       ->add_option("--device", options->device,
-                   "device address: loopback, can:IFACE, usb:/dev/hidrawN, with ,classic and ,node=N")
-      ->capture_default_str();
+                   "device address: loopback (if not given), can:IFACE, usb:/dev/hidrawN, with ,classic and ,node=N; "
+                   "without an address, or find: what is plugged in, its driver and the next command; nothing is sent")
+      ->expected(0, 1)
+      ->default_str(kFind)  // of the option without a value
+      ->type_name("[ADDRESS]");
   command->add_option("--profile", options->profile, "the device's profile (config/devices/*.toml)");
   command->add_option("--cpu", options->cpu, "CPU the controller will run on");
   command->add_option("--priority", options->priority, "SCHED_FIFO priority of the loop")
@@ -90,7 +97,8 @@ void add_doctor_command(CLI::App& app, int& exit_code) {
       ->check(ends_in({".toml"}));
   command->footer(
       "Exits with 1 when an item fails; unknown ones do not count.\n"
-      "Examples:\n  palpate doctor\n  palpate doctor --device can:can0 --profile arm.toml --cpu 3\n"
+      "Examples:\n  palpate doctor\n  palpate doctor --device\n  palpate doctor --device can:can0 --profile arm.toml "
+      "--cpu 3\n"
       "  palpate doctor --identify measured.toml --profile config/devices/sim-6dof.toml");
   add_json_flag(*command, options->json);
   command->callback([options, &exit_code] {

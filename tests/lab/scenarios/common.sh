@@ -74,11 +74,19 @@ render() {
   if [ "$seconds" -gt 20 ]; then render_hostile; else render_recorded; fi
 }
 
+# `palpate doctor --device` must find the device, which sends on after the run; the scenario says as what, in `found`.
+find_device() {
+  [ -n "${found:-}" ] || return 0
+  palpate doctor --device > /results/found.txt || true
+  grep -q "^pass *$found" /results/found.txt
+}
+
 render_recorded() {
   status=0
   # shellcheck disable=SC2086  # an address, or the options of two
   palpate run "$image" --device $controller_at --profile "$profile" --duration "$seconds" --record /tmp/run.plr \
     --priority 80 --quiet || status=$?
+  find_device
   kill $device 2> /dev/null || true
   palpate latency --recording /tmp/run.plr --histfile /results/latency.txt --json /results/latency.json \
     --overlay /results/cyclictest.txt --plot /results/latency.svg || true

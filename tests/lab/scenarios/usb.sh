@@ -2,4 +2,5 @@
 . /lab/scenarios/common.sh
 raise 'irq/*' 85
 raise_usb
+found='usb:/dev/hidraw0: open node'
 render usb:/dev/hidraw0 usb:/dev/hidg0
