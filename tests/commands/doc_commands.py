@@ -21,6 +21,7 @@ EXCEPTIONS = [
     (r"^\./run ", "builds, tests or boots all of it; the suite itself is one of these"),
     (r"^cmake |^cd build|^apt-get |^PYTHONPATH=", "builds or installs: tests install.*, python.* and ./run packages"),
     (r"^palpate view .*--screenshot|^xvfb-run", "needs a screen of sorts: tests/view/smoke.sh"),
+    (r"functions/hid|> idVendor", "needs a kernel with a USB device port; the laboratory has one"),
     (r"^palpate view ", "a window until somebody closes it"),
 ]
 PAGES_OF_OTHERS = {"tutorial.md": "tests/commands/newcomer.py types it"}
@@ -116,8 +117,9 @@ def prepare(folder):
 
 def run(command, folder):
     own = re.sub(r"(loopback:|\b(?:device\.py|device) )(arm|mine|x)\b", rf"\g<1>\g<2>{os.getpid()}", command)
-    path = f"{folder}/tools:{os.path.dirname(palpate)}:{os.environ['PATH']}"
-    with subprocess.Popen(["bash", "-c", own], cwd=folder, env={**os.environ, "PATH": path}, text=True,
+    env = {**os.environ, "PATH": f"{folder}/tools:{os.path.dirname(palpate)}:{os.environ['PATH']}",
+           "PYTHONPATH": str(root / "sim_host/python")}  # as the line before it on its page exports
+    with subprocess.Popen(["bash", "-c", own], cwd=folder, env=env, text=True,
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, start_new_session=True) as shell:
         try:
             output = shell.communicate(timeout=LIMIT_S)[0]
