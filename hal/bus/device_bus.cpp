@@ -95,6 +95,7 @@ void DeviceBus::take_status(const Frame& frame) noexcept {
   wire::get_pose(status, position_m, orientation);
   judge_orientation(frame, orientation);
   accept(position_m, orientation);
+  sample_.age_ns = frame.age_ns;
   sample_.device_time_us = status.time_us;
   sample_.flags = status.flags;
   sample_.buttons = status.buttons;
@@ -125,6 +126,7 @@ void DeviceBus::take_orientation(const Frame& frame) noexcept {
   wire::get_pose(pending_, orientation, position_m, rotation);
   judge_orientation(frame, rotation);
   accept(position_m, rotation);
+  sample_.age_ns = frame.age_ns;
   sample_.flags = orientation.flags;
   sample_.buttons = orientation.buttons;
   sample_.error_code = 0;

@@ -3,6 +3,7 @@
 #include <linux/can.h>
 #include <linux/can/error.h>
 #include <sys/socket.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -12,7 +13,7 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kControlBytes = CMSG_SPACE(sizeof(std::uint32_t));
+constexpr std::size_t kControlBytes = CMSG_SPACE(sizeof(std::uint32_t)) + CMSG_SPACE(sizeof(timespec));
 
 // Number of frames the kernel dropped on this socket since it was opened (SO_RXQ_OVFL), or `last` if not told.
 std::uint32_t overflow_of(msghdr& header, std::uint32_t last) noexcept {
@@ -22,10 +23,32 @@ std::uint32_t overflow_of(msghdr& header, std::uint32_t last) noexcept {
   return last;
 }
 
+std::int64_t nanoseconds(const timespec& time) noexcept {
+  return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
+}
+
+// Since the kernel took the frame (SO_TIMESTAMPNS), by the clock of its stamps; -1 without one. That clock can be set:
+// what lies in the future or more than a second back is no age.
+std::int64_t age_of(msghdr& header, std::int64_t now_ns) noexcept {
+  for (cmsghdr* c = CMSG_FIRSTHDR(&header); c != nullptr; c = CMSG_NXTHDR(&header, c)) {
+    if (c->cmsg_level != SOL_SOCKET || c->cmsg_type != SCM_TIMESTAMPNS) continue;
+    timespec stamp;
+    std::memcpy(&stamp, CMSG_DATA(c), sizeof stamp);
+    const std::int64_t age_ns = now_ns - nanoseconds(stamp);
+    return age_ns >= 0 && age_ns < 1'000'000'000 ? age_ns : -1;
+  }
+  return -1;
+}
+
 }  // namespace
 
 FrameSocket::~FrameSocket() {
   if (fd_ >= 0) ::close(fd_);
+}
+
+void FrameSocket::stamp_arrivals() noexcept {
+  const int on = 1;
+  stamps_ = ::setsockopt(fd_, SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on) == 0;
 }
 
 void FrameSocket::take_failure(int error) noexcept {
@@ -86,6 +109,8 @@ int FrameSocket::receive(std::span<Frame> frames) noexcept {
   }
   const int arrived = ::recvmmsg(fd_, message, static_cast<unsigned>(most), MSG_DONTWAIT, nullptr);
   if (arrived < 0) take_failure(errno);
+  timespec now{};
+  if (stamps_ && arrived > 0) ::clock_gettime(CLOCK_REALTIME, &now);
   std::size_t kept = 0;
   for (int i = 0; i < arrived; ++i) {
     const unsigned bytes = message[i].msg_len;
@@ -110,6 +135,7 @@ int FrameSocket::receive(std::span<Frame> frames) noexcept {
       out.remote = (in.can_id & CAN_RTR_FLAG) != 0;
       out.length = in.len;
       out.fd = fd;
+      out.age_ns = stamps_ ? age_of(message[i].msg_hdr, nanoseconds(now)) : -1;
       std::memcpy(out.data, in.data, in.len);
     }
   }

@@ -14,6 +14,7 @@ struct Frame {
   bool fd = false;
   bool remote = false;  // asks for the frame of this identifier; carries no data
   std::uint8_t data[64] = {};
+  std::int64_t age_ns = -1;  // since it arrived, when it was received; negative: not known
 };
 
 // What a transport noticed since it was opened; only ever counts up.
@@ -46,6 +47,8 @@ class Transport {
   virtual int receive(std::span<Frame> frames) noexcept = 0;
   // Remote frames are handed out from now on; by default they are counted as malformed.
   virtual void accept_remote() noexcept {}
+  // Received frames tell their age from now on, where the system knows it (sockets; hidraw does not).
+  virtual void stamp_arrivals() noexcept {}
   virtual TransportState state() const noexcept = 0;
   virtual const TransportCounters& counters() const noexcept = 0;
 };

@@ -48,6 +48,7 @@ struct DeviceSample {
   std::uint32_t faults = 0;       // Fault bits found on the way: bus-off, error reported by the device
   std::uint32_t received = 0;     // valid samples that arrived since the last call; only the newest is kept
   std::uint32_t gaps = 0;         // sequence numbers missing among them
+  std::int64_t age_ns = -1;       // of the newest when it was received; negative: the bus does not say
   bool fresh = false;             // received > 0
 };
 

@@ -1,7 +1,8 @@
 // The overrun state machine, apart from any clock or sleep: which slot the next tick belongs to, how many were missed,
 // and when missing them becomes a fault.
 //
-// Slots are period_ns apart on one absolute grid, so lateness never accumulates. A tick late by less than a period runs
+// Slots are period_ns apart on one absolute grid (which may follow the device's, phase_lock.h), so lateness never
+// accumulates. A tick late by less than a period runs
 // at once. One late by a period or more has missed whole slots: they are counted and skipped, and the tick waits for
 // the next slot. It never catches up with a burst, which the hand would feel as several impulses at once.
 #pragma once
@@ -36,9 +37,9 @@ class DeadlineTracker {
 
   std::int64_t deadline_ns() const noexcept { return deadline_ns_; }
 
-  // Moves on to the next slot after a tick; missed_ starts again.
-  void advance() noexcept {
-    deadline_ns_ += limits_.period_ns;
+  // Moves on to the next slot after a tick; missed_ starts again. `correction_ns`: of a PhaseLock.
+  void advance(std::int64_t correction_ns = 0) noexcept {
+    deadline_ns_ += limits_.period_ns + correction_ns;
     missed_ = 0;
   }
   // True if `now_ns` is a whole period or more past the slot: the slots that passed are counted, and the deadline is

@@ -21,6 +21,7 @@
 #include "hal/loop/clock.h"
 #include "hal/loop/deadline.h"
 #include "hal/loop/link_watch.h"
+#include "hal/loop/phase_lock.h"
 #include "rt_core/record.h"
 #include "rt_core/tick.h"
 
@@ -85,6 +86,9 @@ struct LoopSummary {
   std::uint64_t unheard_ticks = 0;  // ticks in which force was let go because the device did not hear
   std::uint32_t link_drops = 0;     // times that began
   std::uint32_t faults = 0;         // every latched fault seen
+  bool phase_locked = false;        // the slots followed the device's clock
+  double device_ppm = 0;            // by which that is fast, of the last slot
+  std::int64_t worst_phase_ns = 0;  // furthest that a sample's age was from half a period once locked
 };
 
 // What computes the force. step: one tick. fill: completes a record after it.
@@ -138,7 +142,8 @@ class Loop {
         host_(host),
         options_(options),
         stop_(stop),
-        slots_(options.deadline, first_slot_ns(clock.now_ns(), options.deadline.period_ns, options.phase_ns)) {}
+        slots_(options.deadline, first_slot_ns(clock.now_ns(), options.deadline.period_ns, options.phase_ns)),
+        phase_(options.deadline.period_ns) {}
 
   LoopSummary run() noexcept {
     summary_.end = wait_for_device();
@@ -147,6 +152,9 @@ class Loop {
     summary_.missed_slots = slots_.total_missed();
     summary_.overrun_ticks = slots_.overrun_ticks();
     summary_.worst_missed = slots_.worst_missed();
+    summary_.phase_locked = phase_.locked();
+    summary_.device_ppm = phase_.device_ppm();
+    summary_.worst_phase_ns = phase_.worst_ns();
     return summary_;
   }
 
@@ -210,7 +218,7 @@ class Loop {
     LoopEnd end = LoopEnd::kStopped;
     for (bool first = true;; first = false) {
       if (!first) {
-        slots_.advance();
+        slots_.advance(phase_.correction_ns());
         wait();
       }
       const bool done = options_.ticks > 0 && summary_.ticks >= options_.ticks;
@@ -236,6 +244,7 @@ class Loop {
     if (receive) this->receive();
     each_hand([](Hand& hand) { hand.link.look(hand.sample); });
     const std::int64_t received_ns = clock_.now_ns();
+    if (receive) follow_phase(received_ns - timing.deadline_ns);
     make_input(stopping);
     stamps_ = {&clock_, &timing, received_ns};
     for (std::int32_t& stage_ns : timing.stage_ns) stage_ns = 0;
@@ -254,6 +263,12 @@ class Loop {
     record_.sequence = summary_.ticks;
     sink_.publish(record_);
     publish_ns_ = brief(clock_.now_ns() - sent_ns);
+  }
+
+  // Of the first hand's device: two with clocks of their own cannot both be followed.
+  void follow_phase(std::int64_t since_slot_ns) noexcept {
+    const DeviceSample& sample = hand_[0].sample;
+    if (sample.fresh && sample.age_ns >= 0) phase_.see(sample.age_ns - since_slot_ns);
   }
 
   // What the second device renders, in the place of what the first does.
@@ -398,6 +413,7 @@ class Loop {
   LoopOptions options_;
   const std::atomic<bool>& stop_;
   DeadlineTracker slots_;
+  PhaseLock phase_;
   Input input_;
   Output output_;
   TickRecord record_{};

@@ -446,6 +446,7 @@ int run(int argc, char** argv) {
   if (second) connection.second = &other.emplace(*second->transport, second->address.profile, second->address.node);
   const bool real = connection.address.kind != TransportKind::kLoopback ||
                     (second && second->address.kind != TransportKind::kLoopback);
+  if (!arguments.virtual_time()) connection.transport->stamp_arrivals();  // they are the computer's time
   arguments.require_rt = (arguments.require_rt || real) && !arguments.allow_no_rt && !arguments.virtual_time();
   if (!arguments.virtual_time()) check_tick_fits(model, real);
   LoopUsage usage;

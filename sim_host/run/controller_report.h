@@ -27,6 +27,10 @@ inline void print_run(const LoopSummary& summary) {
       "controller: %llu ticks, %llu missed, %u stalls ridden through, %llu without a fresh sample, faults 0x%x\n",
       static_cast<unsigned long long>(summary.ticks), static_cast<unsigned long long>(summary.missed_slots),
       summary.stalls, static_cast<unsigned long long>(summary.stale_ticks), summary.faults);
+  if (summary.phase_locked) {
+    std::fprintf(stderr, "device clock: %+.0f ppm, followed; phase at most %.3f ms off\n", summary.device_ppm,
+                 1e-6 * static_cast<double>(summary.worst_phase_ns));
+  }
 }
 
 }  // namespace palpate

@@ -145,7 +145,8 @@ TEST(FaultReaction, ALongRestartLatches) {
   expect_latches(run_with_faults(at_fault("restart 0.3")), Fault::kDeviceSilent, 20, 27);
 }
 
-// A clock that runs slow leaves a tick without a sample once in 1/ppm ticks: held, and nothing is felt.
+// A clock that runs slow and is not followed (nobody tells arrivals in virtual time) leaves a tick without a sample
+// once in 1/ppm ticks: held, and nothing is felt.
 TEST(FaultReaction, ASlowDeviceClockCostsASingleHeldTickNowAndThen) {
   const FaultRun run = run_with_faults("0 drift -4000");
   expect_orderly(run);
