@@ -9,6 +9,7 @@
 #include "hal/device/device_profile.h"
 #include "hal/drives/axis_device.h"
 #include "tests/hal/arm_text.h"
+#include "tests/hal/bad_cable.h"
 #include "tests/hal/fault_bench.h"
 
 namespace palpate::test {
@@ -60,30 +61,6 @@ inline HandPath pressing_arm_hand(Vec3 origin_w_m) {
   return HandPath(poses);
 }
 
-// A cable that a test breaks from one tick to another.
-class BadCable : public Transport {
- public:
-  enum class Fault { kNone, kLoseReceived, kLoseSent, kFullQueue, kBusOff };
-  explicit BadCable(Transport& inner) : inner_(inner) {}
-  void set(Fault fault) { fault_ = fault; }
-  int send(std::span<const Frame> frames) noexcept override {
-    if (fault_ == Fault::kFullQueue) return 0;
-    return fault_ == Fault::kLoseSent ? static_cast<int>(frames.size()) : inner_.send(frames);
-  }
-  int receive(std::span<Frame> frames) noexcept override {
-    const int count = inner_.receive(frames);
-    return fault_ == Fault::kLoseReceived ? 0 : count;
-  }
-  TransportState state() const noexcept override {
-    return fault_ == Fault::kBusOff ? TransportState::kBusOff : inner_.state();
-  }
-  const TransportCounters& counters() const noexcept override { return inner_.counters(); }
-
- private:
-  Transport& inner_;
-  Fault fault_ = Fault::kNone;
-};
-
 template <class Drives, class Sim>
 class WiredArm {
  public:
@@ -93,8 +70,9 @@ class WiredArm {
         frame_(frame_of(*profile_.arm, pressing_hand())),
         ends_(open_loopback_pair(error_)),
         cable_(*ends_.first),
+        far_cable_(*ends_.second),
         drives_(cable_, *profile_.arm, 1e-3),
-        sim_(*ends_.second, *profile_.arm, plant, pressing_arm_hand(frame_.position_w)),
+        sim_(far_cable_, *profile_.arm, plant, pressing_arm_hand(frame_.position_w)),
         device_(drives_, *profile_.arm, frame_, 1e-3) {}
 
   // The hand stands still while the drives are set up: simulated time of the hand begins with the loop's.
@@ -116,7 +94,8 @@ class WiredArm {
   }
   void silence_controller(bool silent) { silent_ = silent; }
   Sim& sim() { return sim_; }
-  BadCable& cable() { return cable_; }
+  BadCable& cable() { return cable_; }          // at the controller
+  BadCable& far_cable() { return far_cable_; }  // at the drives
   AxisDevice& axes() { return device_; }
   const CartesianKinematics& frame() const { return frame_; }
   const DeviceCommand& last_sent() const { return last_sent_; }
@@ -129,7 +108,7 @@ class WiredArm {
   DeviceProfile profile_;
   CartesianKinematics frame_;
   std::pair<std::unique_ptr<Transport>, std::unique_ptr<Transport>> ends_;
-  BadCable cable_;
+  BadCable cable_, far_cable_;
   Drives drives_;
   Sim sim_;
   AxisDevice device_;
@@ -139,48 +118,5 @@ class WiredArm {
   bool silent_ = false;
   std::int64_t due_ns_ = 1'000'000;
 };
-
-// What a cable that is bad for so many ticks, in the middle of a press, comes to.
-struct CableRun {
-  FaultRun run;
-  std::vector<Vec3> rendered_N;
-};
-template <class Arm>
-CableRun run_on_bad_cable(const std::string& tables, BadCable::Fault fault, std::uint64_t ticks) {
-  VirtualClock clock;
-  Arm arm(tables, clock);
-  EXPECT_EQ(arm.start(), "");
-  const auto meddle = [&](const Surroundings& s) {
-    if (s.tick == 800) arm.cable().set(fault);
-    if (s.tick == 800 + ticks) arm.cable().set(BadCable::Fault::kNone);
-  };
-  CableRun result;
-  result.run = run_on(arm, clock, 2500, 2e4, meddle, 0, arm.frame());
-  result.rendered_N = arm.rendered_N();
-  return result;
-}
-
-// A few bad ticks, each way: no fault, and the force is there afterwards. Many: what a device on a bus comes to as
-// well. Through all of it the hand feels no step above what the motors' slope allows: a tenth of 0.1 N m a millisecond
-// on each of three levers of at least 0.1 m, geared up by at most 16, is below 5 N; 1.6 N was seen (2026-11-23).
-template <class Arm>
-void expect_bad_cables_are_borne(const std::string& tables) {
-  using Fault = BadCable::Fault;
-  for (const Fault fault : {Fault::kLoseReceived, Fault::kLoseSent, Fault::kFullQueue}) {
-    const CableRun few = run_on_bad_cable<Arm>(tables, fault, 4);
-    EXPECT_EQ(few.run.summary.faults, 0u) << static_cast<int>(fault);
-    EXPECT_GT(norm(few.rendered_N[2400]), 1.0) << static_cast<int>(fault);
-    double step_N = 0;
-    for (std::size_t i = 1; i < few.rendered_N.size(); ++i)
-      step_N = std::max(step_N, norm(few.rendered_N[i] - few.rendered_N[i - 1]));
-    EXPECT_LT(step_N, 5.0) << static_cast<int>(fault);
-  }
-  const CableRun deaf = run_on_bad_cable<Arm>(tables, Fault::kLoseReceived, 40);
-  EXPECT_EQ(deaf.run.summary.faults & palpate::Fault::kDeviceSilent, palpate::Fault::kDeviceSilent);
-  EXPECT_EQ(deaf.rendered_N.back(), Vec3{});
-  const CableRun off = run_on_bad_cable<Arm>(tables, Fault::kBusOff, 2);
-  EXPECT_EQ(off.run.summary.faults & palpate::Fault::kBusOff, palpate::Fault::kBusOff);
-  EXPECT_EQ(off.rendered_N.back(), Vec3{});
-}
 
 }  // namespace palpate::test

@@ -5,7 +5,7 @@
 
 #include "hal/drives/odrive_drives.h"
 #include "hal/drives/odrive_sim.h"
-#include "tests/hal/arm_bench.h"
+#include "tests/hal/cable_judge.h"
 
 namespace palpate {
 namespace {
@@ -117,6 +117,7 @@ TEST(ODrive, ADriveThatTakesNoClosedLoopIsAFault) {
 }
 
 TEST(ODrive, BadCablesAreBorneOrNoticed) { test::expect_bad_cables_are_borne<ODriveArm>(tables()); }
+TEST(ODrive, GarbledCommandsEndWithTheCable) { test::expect_garbled_commands_end_with_the_cable<ODriveArm>(tables()); }
 
 }  // namespace
 }  // namespace palpate
