@@ -5,6 +5,7 @@
 #include <deque>
 #include <random>
 #include <span>
+#include <vector>
 
 #include "hal/bus/transport.h"
 
@@ -16,14 +17,17 @@ class BadCable : public Transport {
   enum class Fault { kNone, kLose, kDuplicate, kReorder, kDelay, kCorrupt, kLoseSent, kFullQueue, kBusOff };
   explicit BadCable(Transport& inner) : inner_(inner) {}
   void set(Fault fault) { fault_ = fault; }
+  void tap(std::vector<Frame>& frames) { tap_ = &frames; }  // all that passes is written there, both ways
 
   int send(std::span<const Frame> frames) noexcept override {
+    if (tap_ != nullptr) tap_->insert(tap_->end(), frames.begin(), frames.end());
     if (fault_ == Fault::kFullQueue) return 0;
     return fault_ == Fault::kLoseSent ? static_cast<int>(frames.size()) : inner_.send(frames);
   }
   int receive(std::span<Frame> frames) noexcept override {
     Frame arrived[kMaxFramesPerReceive];
     const int count = inner_.receive(arrived);
+    if (tap_ != nullptr) tap_->insert(tap_->end(), arrived, arrived + count);
     const std::size_t older = held_.size();
     if (!behind_ && fault_ != Fault::kDelay) release(older);
     for (int i = 0; i < count; ++i) take(arrived[i]);
@@ -53,6 +57,7 @@ class BadCable : public Transport {
 
   Transport& inner_;
   Fault fault_ = Fault::kNone;
+  std::vector<Frame>* tap_ = nullptr;
   std::deque<Frame> held_, ready_;  // what waits, and what is to be handed out
   bool behind_ = false;             // what waits comes after what arrives next
   std::mt19937 draw_{17};

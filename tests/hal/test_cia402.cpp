@@ -3,10 +3,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <map>
+#include <set>
+
 #include "hal/drives/cia402_drives.h"
 #include "hal/drives/cia402_sim.h"
 #include "hal/drives/drive_link.h"
 #include "tests/hal/cable_judge.h"
+#include "tests/hal/dissector.h"
 
 namespace palpate {
 namespace {
@@ -54,6 +59,57 @@ TEST(Cia402, ThreeDrivesAreFoundMappedAndWatched) {
     EXPECT_EQ(arm.sim().object(i, kTpdoCob), 0x40000180u + node);
     EXPECT_FALSE(arm.sim().enabled(i));
   }
+}
+
+// CANopen as another program reads it: every question of start-up has its answer, what is set is set at each drive
+// alike, and in the loop a SYNC has a torque to each drive and a position from each.
+TEST(Cia402, AnotherDissectorReadsTheBus) {
+  if (!test::dissector_is_installed()) GTEST_SKIP() << "apt-get install tshark";
+  VirtualClock clock;
+  Cia402Arm arm(tables(), clock);
+  std::vector<Frame> frames;
+  arm.cable().tap(frames);
+  ASSERT_EQ(arm.start(), "");
+  constexpr std::size_t kTicks = 1000;
+  test::run_on(arm, clock, kTicks, 2e4, {}, 0, arm.frame());
+  const std::string file = testing::TempDir() + "cia402.pcap";
+  test::write_capture(file, frames);
+  enum Field { kFunction, kNode, kIndex, kSubindex, kClient, kNmt, kState, kMalformed };
+  const test::Dissected seen =
+      test::dissect(file, "canopen",
+                    {"canopen.function_code", "canopen.node_id", "canopen.sdo.main_idx", "canopen.sdo.sub_idx",
+                     "canopen.sdo.ccs", "canopen.nmt_ctrl.cd", "canopen.nmt_guard.state", "_ws.malformed"});
+  ASSERT_EQ(seen.size(), frames.size());
+  std::map<int, std::map<int, std::size_t>> count;  // by function code and node
+  std::map<int, std::set<std::string>> written;     // objects, by node
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const std::vector<std::string>& row = seen[i];
+    EXPECT_EQ(row[kMalformed], "") << i;
+    const int function = std::stoi(row[kFunction], nullptr, 16), node = std::stoi(row[kNode], nullptr, 16);
+    count[function][node] += 1;
+    if (function == kSdoRequest >> 7) {
+      ASSERT_LT(i + 1, seen.size());
+      const std::vector<std::string>& reply = seen[i + 1];
+      EXPECT_EQ(std::stoi(reply[kFunction], nullptr, 16), kSdoReply >> 7) << i;
+      EXPECT_EQ(reply[kNode] + reply[kIndex] + reply[kSubindex], row[kNode] + row[kIndex] + row[kSubindex]) << i;
+      if (row[kClient] == "1") written[node].insert(row[kIndex]);
+    }
+    if (function == kHeartbeat >> 7 && node == kMasterNode) {
+      EXPECT_EQ(row[kState], "0x05");
+    }
+  }
+  const std::set<std::string> expected{"0x1016", "0x1400", "0x1600", "0x1800", "0x1a00",
+                                       "0x6007", "0x6060", "0x6072", "0x60c2"};
+  // The last tick's SYNC and those of the commands that end the run have nobody who waits for an answer.
+  const std::size_t unheard = 1 + LoopOptions{}.zero_ticks;
+  const std::size_t syncs = count[kSync >> 7][0];
+  EXPECT_GE(syncs, kTicks);
+  for (int node = 1; node <= 3; ++node) {
+    EXPECT_EQ(written[node], expected) << node;
+    EXPECT_EQ(count[kRpdo1 >> 7][node], syncs) << node;
+    EXPECT_EQ(count[kTpdo1 >> 7][node] + unheard, syncs) << node;
+  }
+  EXPECT_EQ(std::ranges::count_if(seen, [](const auto& row) { return row[kNmt] == "0x01"; }), 3) << "started";
 }
 
 TEST(Cia402, WhatIsWrongIsSaidBeforeAMotorIsEnabled) {

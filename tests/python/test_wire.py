@@ -15,6 +15,7 @@ from pathlib import Path
 ROOT = Path(sys.argv[1])
 sys.path.insert(0, str(ROOT / "sim_host/python"))
 import can  # noqa: E402
+import canmatrix.formats  # noqa: E402
 import palpate_wire as wire  # noqa: E402
 
 TABLE = wire.read_dbc(ROOT / "docs/palpate.dbc")
@@ -34,6 +35,19 @@ class Codec(unittest.TestCase):
                 values = {name: count * message.signals[name].unit for name, count in counts.items()}
                 read = message.decode(7, message.encode(7, values))
                 self.assertEqual({name: round(read[name] / message.signals[name].unit) for name in counts}, counts)
+
+    def test_another_reader_of_the_table_sees_the_same_values(self):
+        matrix = next(iter(canmatrix.formats.loadp(str(ROOT / "docs/palpate.dbc")).values()))
+        self.assertEqual({frame.name for frame in matrix.frames}, set(TABLE))
+        draw = random.Random(2)
+        for message in TABLE.values():
+            for _ in range(50):
+                values = {name: draw.randrange(-(1 << s.bits - 1) if s.signed else 0, 1 << s.bits - s.signed) * s.unit
+                          for name, s in message.signals.items() if name != "Checksum"}
+                identifier, payload = message.encode(1, values)
+                seen = matrix.decode(canmatrix.ArbitrationId(identifier), payload)
+                for name, value in values.items():
+                    self.assertAlmostEqual(float(seen[name].phys_value), value, delta=1e-9 * (1 + abs(value)))
 
     def test_no_single_bit_error_passes(self):
         for message in TABLE.values():

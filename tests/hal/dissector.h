@@ -1,0 +1,60 @@
+// What another program makes of frames: they are written as a capture and read by Wireshark's command line (tshark),
+// whose dissectors were written by others from the standards.
+#pragma once
+
+#include <linux/can.h>
+
+#include <cstdint>
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "hal/bus/transport.h"
+
+namespace palpate::test {
+
+inline bool dissector_is_installed() { return std::system("command -v tshark > /dev/null") == 0; }
+
+// pcap, version 2.4, link type 227 (LINKTYPE_CAN_SOCKETCAN): identifier and flags in network order, length, flags of
+// FD, two reserved bytes, data. One frame a microsecond: only their order counts.
+inline void write_capture(const std::string& file, const std::vector<Frame>& frames) {
+  std::ofstream out(file, std::ios::binary);
+  const auto little = [&out](std::uint32_t value, int bytes) {
+    for (int i = 0; i < bytes; ++i) out.put(static_cast<char>(value >> 8 * i & 0xFF));
+  };
+  little(0xA1B2C3D4, 4), little(2, 2), little(4, 2), little(0, 4), little(0, 4), little(65535, 4), little(227, 4);
+  std::uint32_t time_us = 0;
+  for (const Frame& frame : frames) {
+    const std::uint32_t bytes = 8u + frame.length;
+    little(0, 4), little(++time_us, 4), little(bytes, 4), little(bytes, 4);
+    const std::uint32_t id = frame.id | (frame.remote ? CAN_RTR_FLAG : 0);
+    for (int i = 3; i >= 0; --i) out.put(static_cast<char>(id >> 8 * i & 0xFF));
+    out.put(static_cast<char>(frame.length)).put(static_cast<char>(frame.fd ? 4 : 0)).put(0).put(0);
+    out.write(reinterpret_cast<const char*>(frame.data), frame.length);
+  }
+}
+
+using Dissected = std::vector<std::vector<std::string>>;  // of each frame, the fields that were asked for; "": has none
+inline Dissected dissect(const std::string& file, const std::string& protocol, const std::vector<std::string>& fields) {
+  std::string command = "tshark -r '" + file + "' -d can.subdissector," + protocol + " -T fields -E separator='|'";
+  for (const std::string& field : fields) command += " -e " + field;
+  Dissected rows;
+  FILE* pipe = ::popen((command + " 2> /dev/null").c_str(), "r");
+  if (pipe == nullptr) return rows;
+  std::string text;
+  for (int c; (c = std::fgetc(pipe)) != EOF;) text += static_cast<char>(c);
+  if (::pclose(pipe) != 0) return rows;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    std::vector<std::string> row(1);
+    for (const char c : line) c == '|' ? row.emplace_back() : row.back() += c;
+    row.resize(fields.size());
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+}  // namespace palpate::test
