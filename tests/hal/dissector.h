@@ -1,5 +1,5 @@
 // What another program makes of frames: they are written as a capture and read by Wireshark's command line (tshark),
-// whose dissectors were written by others from the standards.
+// whose dissectors were written by others from the standards; the program and the package are called tshark.
 #pragma once
 
 #include <linux/can.h>
@@ -15,8 +15,6 @@
 #include "hal/bus/transport.h"
 
 namespace palpate::test {
-
-inline bool dissector_is_installed() { return std::system("command -v tshark > /dev/null") == 0; }
 
 // pcap, version 2.4, link type 227 (LINKTYPE_CAN_SOCKETCAN): identifier and flags in network order, length, flags of
 // FD, two reserved bytes, data. One frame a microsecond: only their order counts.
