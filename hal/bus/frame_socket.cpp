@@ -76,7 +76,7 @@ int FrameSocket::send(std::span<const Frame> frames) noexcept {
   std::memset(message, 0, sizeof message);
   for (std::size_t i = 0; i < count; ++i) {
     const Frame& frame = frames[i];
-    wire[i].can_id = frame.remote ? frame.id | CAN_RTR_FLAG : frame.id;
+    wire[i].can_id = frame.id | (frame.remote ? CAN_RTR_FLAG : 0) | (frame.id > CAN_SFF_MASK ? CAN_EFF_FLAG : 0);
     wire[i].len = std::min<std::uint8_t>(frame.length, frame.fd ? CANFD_MAX_DLEN : CAN_MAX_DLEN);
     wire[i].flags = frame.fd ? CANFD_BRS : 0;
     std::memcpy(wire[i].data, frame.data, wire[i].len);
@@ -127,11 +127,12 @@ int FrameSocket::receive(std::span<Frame> frames) noexcept {
       counters_.malformed += 1;
     } else if ((in.can_id & CAN_ERR_FLAG) != 0) {
       take_error_frame(in.can_id);
-    } else if ((in.can_id & CAN_EFF_FLAG) != 0 || ((in.can_id & CAN_RTR_FLAG) != 0 && (!remote_ || fd))) {
+    } else if (((in.can_id & CAN_EFF_FLAG) != 0 && !extended_) ||
+               ((in.can_id & CAN_RTR_FLAG) != 0 && (!remote_ || fd))) {
       counters_.malformed += 1;
     } else {
       Frame& out = frames[kept++];
-      out.id = in.can_id & CAN_SFF_MASK;
+      out.id = in.can_id & (extended_ ? CAN_EFF_MASK : CAN_SFF_MASK);
       out.remote = (in.can_id & CAN_RTR_FLAG) != 0;
       out.length = in.len;
       out.fd = fd;

@@ -16,6 +16,7 @@ class FrameSocket : public Transport {
   int send(std::span<const Frame> frames) noexcept override;
   int receive(std::span<Frame> frames) noexcept override;
   void accept_remote() noexcept override { remote_ = true; }
+  void accept_extended() noexcept override { extended_ = true; }
   void stamp_arrivals() noexcept override;
   TransportState state() const noexcept override { return state_; }
   const TransportCounters& counters() const noexcept override { return counters_; }
@@ -25,7 +26,7 @@ class FrameSocket : public Transport {
   void take_failure(int error) noexcept;
 
   int fd_;
-  bool remote_ = false, stamps_ = false;
+  bool remote_ = false, extended_ = false, stamps_ = false;
   TransportState state_ = TransportState::kUp;
   TransportCounters counters_;
   std::uint32_t last_overflow_ = 0;

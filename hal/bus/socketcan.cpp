@@ -65,8 +65,10 @@ std::string interface_problem(int fd, const std::string& name, bool need_fd) {
 
 bool set_options(int fd, const SocketCanOptions& options) {
   std::vector<can_filter> filters;
-  for (const std::uint32_t id : options.receive)  // the full mask is what makes the match exact
-    filters.push_back({id, CAN_EFF_FLAG | CAN_RTR_FLAG | CAN_SFF_MASK});
+  for (const std::uint32_t id : options.receive) {  // the full mask is what makes the match exact
+    if (id <= CAN_SFF_MASK) filters.push_back({id, CAN_EFF_FLAG | CAN_RTR_FLAG | CAN_SFF_MASK});
+    if (options.extended) filters.push_back({id | CAN_EFF_FLAG, CAN_EFF_FLAG | CAN_RTR_FLAG | CAN_EFF_MASK});
+  }
   const can_err_mask_t errors = CAN_ERR_MASK & ~CAN_ERR_BUSERROR;
   const int on = 1, off = 0;
   const bool filtered =

@@ -13,7 +13,8 @@ namespace palpate {
 struct SocketCanOptions {
   std::string interface;                   // "can0"
   bool fd = true;                          // CAN FD frames; refused if the interface is set up for classic CAN only
-  std::span<const std::uint32_t> receive;  // 11-bit identifiers to receive (exact match), at least one
+  std::span<const std::uint32_t> receive;  // identifiers to receive (exact match), at least one
+  bool extended = false;                   // those of 29 bits too, whatever their value
 };
 
 // Opens the interface, or returns null and says in `error` what is wrong and what to do: unknown interface, not a CAN

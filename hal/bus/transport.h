@@ -9,7 +9,7 @@
 namespace palpate {
 
 struct Frame {
-  std::uint32_t id = 0;     // 11-bit identifier
+  std::uint32_t id = 0;     // identifier; above 0x7FF one of 29 bits
   std::uint8_t length = 0;  // bytes of data: 0..8, or an FD length up to 64
   bool fd = false;
   bool remote = false;  // asks for the frame of this identifier; carries no data
@@ -47,6 +47,8 @@ class Transport {
   virtual int receive(std::span<Frame> frames) noexcept = 0;
   // Remote frames are handed out from now on; by default they are counted as malformed.
   virtual void accept_remote() noexcept {}
+  // Frames with identifiers of 29 bits are handed out from now on; by default they are counted as malformed.
+  virtual void accept_extended() noexcept {}
   // Received frames tell their age from now on, where the system knows it (sockets; hidraw does not).
   virtual void stamp_arrivals() noexcept {}
   virtual TransportState state() const noexcept = 0;

@@ -59,7 +59,7 @@ constexpr LinkageKind kKindOf[] = {LinkageKind::kCartesian, LinkageKind::kSerial
                                    LinkageKind::kDelta, LinkageKind::kFiveBar};
 constexpr int kGimbalKind = 2;
 constexpr const char* kCalibrations[] = {"home_pose", "absolute"};
-constexpr const char* kProtocols[] = {"odrive", "cia402"};
+constexpr const char* kProtocols[] = {"odrive", "cia402", "moteus"};
 
 bool has(const std::vector<std::string>& seen, const char* key) { return std::ranges::find(seen, key) != seen.end(); }
 bool whole(double value) { return value == static_cast<double>(static_cast<std::int64_t>(value)); }
@@ -124,10 +124,11 @@ std::string ArmReader::close_table() {
   } else if (table_ == Table::kDrives) {
     need("protocol", true);
     add_missing(kDrivesKeys, seen_, missing);
-    const bool odrive = protocol_ == static_cast<int>(DriveProtocol::kODrive);
-    for (const char* key : {"firmware", "endpoint_enable_watchdog", "endpoint_watchdog_timeout", "endpoint_direction"})
-      need(key, odrive);
-    for (const char* key : {"vendor_id", "product_code", "revision"}) need(key, !odrive);
+    const auto protocol = static_cast<DriveProtocol>(protocol_);
+    need("firmware", protocol != DriveProtocol::kCia402);
+    for (const char* key : {"endpoint_enable_watchdog", "endpoint_watchdog_timeout", "endpoint_direction"})
+      need(key, protocol == DriveProtocol::kODrive);
+    for (const char* key : {"vendor_id", "product_code", "revision"}) need(key, protocol == DriveProtocol::kCia402);
   } else if (table_ == Table::kAxis) {
     if (!linkage_given_ || !drives_given_) return "[[axis]] before [linkage] and [drives]; give these first";
     const bool slide = kind == LinkageKind::kCartesian;
@@ -154,9 +155,10 @@ std::string ArmReader::check_axis(const AxisProfile& a, std::size_t number) cons
       return axis + "node " + short_text(a.node) + " is that of axis " + std::to_string(i + 1);
     if (arm_.axes[i].serial == a.serial) return axis + "serial is that of axis " + std::to_string(i + 1);
   }
-  const bool odrive = protocol_ == static_cast<int>(DriveProtocol::kODrive);
-  if (odrive && a.node > 62) return axis + "node: an ODrive's is 1 to 62";
-  if (!odrive && a.torque_max_Nm > 10 * a.rated_Nm) return axis + "torque_max_Nm: more than ten times rated_Nm";
+  const auto protocol = static_cast<DriveProtocol>(protocol_);
+  if (protocol == DriveProtocol::kODrive && a.node > 62) return axis + "node: an ODrive's is 1 to 62";
+  if (protocol == DriveProtocol::kCia402 && a.torque_max_Nm > 10 * a.rated_Nm)
+    return axis + "torque_max_Nm: more than ten times rated_Nm";
   return "";
 }
 

@@ -26,7 +26,7 @@ struct LinkageProfile {
   double weight_x_N = 0, weight_y_N = 0, weight_z_N = 0;  // of handle and forearms, device frame; the motors hold it
 };
 
-enum class DriveProtocol : int { kODrive = 0, kCia402 };
+enum class DriveProtocol : int { kODrive = 0, kCia402, kMoteus };
 
 // [drives]; numbers of parameters depend on the firmware's version, so that the profile states both.
 struct DrivesProfile {

@@ -6,6 +6,8 @@
 #include "hal/bus/socketcan.h"
 #include "hal/drives/cia402_drives.h"
 #include "hal/drives/cia402_sim.h"
+#include "hal/drives/moteus_drives.h"
+#include "hal/drives/moteus_sim.h"
 #include "hal/drives/odrive_drives.h"
 #include "hal/drives/odrive_sim.h"
 
@@ -20,6 +22,8 @@ std::vector<std::uint32_t> replies(const ArmProfile& arm) {
     if (arm.protocol == DriveProtocol::kCia402) {
       using namespace canopen;
       for (const std::uint32_t cob : {kEmergency, kTpdo1, kSdoReply, kHeartbeat}) ids.push_back(cob + node);
+    } else if (arm.protocol == DriveProtocol::kMoteus) {
+      ids.push_back(moteus::reply_id(static_cast<int>(node)));
     } else {
       using namespace odrive;
       for (const Message message : {kGetVersion, odrive::kHeartbeat, kTxSdo, kAddress, kGetEncoderEstimates})
@@ -33,6 +37,7 @@ std::vector<std::uint32_t> replies(const ArmProfile& arm) {
 
 std::unique_ptr<AxisDrives> make_drives(Transport& transport, const ArmProfile& arm, double period_s) {
   if (arm.protocol == DriveProtocol::kCia402) return std::make_unique<Cia402Drives>(transport, arm, period_s);
+  if (arm.protocol == DriveProtocol::kMoteus) return std::make_unique<MoteusDrives>(transport, arm, period_s);
   return std::make_unique<ODriveDrives>(transport, arm, period_s);
 }
 
@@ -40,6 +45,8 @@ std::unique_ptr<DriveSim> make_drive_sim(Transport& transport, const ArmProfile&
                                          HandPath path) {
   if (arm.protocol == DriveProtocol::kCia402)
     return std::make_unique<Cia402Sim>(transport, arm, plant, std::move(path));
+  if (arm.protocol == DriveProtocol::kMoteus)
+    return std::make_unique<MoteusSim>(transport, arm, plant, std::move(path));
   return std::make_unique<ODriveSim>(transport, arm, plant, std::move(path));
 }
 
@@ -51,13 +58,14 @@ std::unique_ptr<Transport> open_drives(const DeviceAddress& address, const ArmPr
   }
   if (address.kind == TransportKind::kLoopback) return open_transport(address, side, timeout_ms, error);
   const std::vector<std::uint32_t> ids = side == DeviceSide::kDevice ? std::vector<std::uint32_t>{} : replies(arm);
-  return open_socketcan({address.name, false, ids}, error);
+  const bool moteus = arm.protocol == DriveProtocol::kMoteus;
+  return open_socketcan({address.name, moteus, ids, moteus}, error);
 }
 
 BusBudget drives_budget(const ArmProfile& arm, double period_s) {
   BusBudget budget;
   budget.rate.nominal_bit_per_s = arm.drives.bit_rate_Hz;
-  budget.rate.data_bit_per_s = 5 * arm.drives.bit_rate_Hz;  // no frame has a data phase of its own
+  budget.rate.data_bit_per_s = 5 * arm.drives.bit_rate_Hz;  // where frames have a data phase: moteus
   budget.period_us = 1e6 * period_s;
   const int axes = static_cast<int>(arm.axes.size());
   if (arm.protocol == DriveProtocol::kCia402) {
@@ -65,6 +73,8 @@ BusBudget drives_budget(const ArmProfile& arm, double period_s) {
                        {"TPDO position", 6, false, false, axes},
                        {"SYNC", 0, false, false, 1},
                        {"heartbeat", 1, false, false, 1}};
+  } else if (arm.protocol == DriveProtocol::kMoteus) {
+    budget.messages = {{"torque and question", 32, true, true, axes}, {"answer", 16, true, false, axes}};
   } else {
     budget.messages = {{"SetInputTorque", 4, false, false, axes}, {"GetEncoderEstimates", 8, false, false, axes}};
   }

@@ -38,6 +38,7 @@ class BadCable : public Transport {
     return static_cast<int>(out);
   }
   void accept_remote() noexcept override { inner_.accept_remote(); }
+  void accept_extended() noexcept override { inner_.accept_extended(); }
   TransportState state() const noexcept override {
     return fault_ == Fault::kBusOff ? TransportState::kBusOff : inner_.state();
   }

@@ -355,6 +355,28 @@ TEST(Loopback, ExtendedAndRemoteFramesAreCountedNotUsed) {
   ::close(fd[1]);
 }
 
+// For who asks: identifiers of 29 bits there and back, bit by bit as linux/can.h has them; short ones stay short.
+TEST(Loopback, ExtendedFramesAreHandedOutToWhoAsks) {
+  int fd[2];
+  ASSERT_EQ(::socketpair(AF_UNIX, SOCK_SEQPACKET, 0, fd), 0);
+  std::string error;
+  const auto transport = adopt_loopback(fd[0], error);
+  ASSERT_NE(transport, nullptr) << error;
+  transport->accept_extended();
+  for (const std::uint32_t id : {0x7FFu, 0x800u, 0x8001u, 0x1FFFFFFFu}) {
+    const Frame out{.id = id, .length = 8, .fd = true};
+    ASSERT_EQ(transport->send({&out, 1}), 1);
+    canfd_frame raw{};
+    ASSERT_EQ(::recv(fd[1], &raw, sizeof raw, 0), static_cast<ssize_t>(CANFD_MTU));
+    EXPECT_EQ(raw.can_id, id > 0x7FF ? id | CAN_EFF_FLAG : id);
+    ASSERT_EQ(::send(fd[1], &raw, CANFD_MTU, 0), static_cast<ssize_t>(CANFD_MTU));
+    Frame in[2];
+    ASSERT_EQ(transport->receive(in), 1);
+    EXPECT_EQ(in[0].id, id);
+  }
+  ::close(fd[1]);
+}
+
 TEST(Loopback, ForeignDatagramsAreCountedNotUsed) {
   int fd[2];
   ASSERT_EQ(::socketpair(AF_UNIX, SOCK_SEQPACKET, 0, fd), 0);

@@ -35,7 +35,7 @@ class RunDrives : public BallRun {
 // The hand feels what it feels of the plain simulated device with the same [device]: the positions of either differ by
 // less than an encoder step of 0.03 mm, times a coupling of 2 N/mm is 0.06 N.
 TEST_F(RunDrives, FeelLikeADeviceThatReportsItsPose) {
-  for (const char* name : {"example-arm-odrive.toml", "example-delta-cia402.toml"}) {
+  for (const char* name : {"example-arm-odrive.toml", "example-delta-cia402.toml", "example-arm-moteus.toml"}) {
     options_.profile = shipped(name);
     const RunResult drives = run_session(options_);
     const std::string whole = read(options_.profile);

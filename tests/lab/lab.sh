@@ -11,7 +11,7 @@ jobs=${PALPATE_JOBS:-$(nproc)}
 every='faults usb kvaser vcan vcan_classic:21 determinism cyclictest'
 standard="$every scene_grasp_cylinder_5 scene_ring"
 scenes=$(cd "$root/config/scenes" && printf 'scene_%s ' *.toml | sed 's/\.toml//g')
-thorough="$every scenes buses vcan_classic vcan_clock vcan_odrive vcan_cia402 vcan_two_hands vcan_two_tools usb_unplug host_chaos viewer vcan:60 kvaser:60 usb:60 vcan_classic:600"
+thorough="$every scenes buses vcan_classic vcan_clock vcan_odrive vcan_cia402 vcan_moteus vcan_two_hands vcan_two_tools usb_unplug host_chaos viewer vcan:60 kvaser:60 usb:60 vcan_classic:600"
 
 usage() {
   cat << TEXT
