@@ -25,12 +25,14 @@ constexpr ProfileKey<LinkageProfile> kLinkageKeys[] = {{&LinkageProfile::upper_m
                                                        {&LinkageProfile::fore_m, "fore_mm", 1, 1e4, 1e-3, true},
                                                        {&LinkageProfile::base_m, "base_mm", 1, 1e4, 1e-3, true},
                                                        {&LinkageProfile::plate_m, "plate_mm", 1, 1e4, 1e-3, true},
+                                                       {&LinkageProfile::hinge_m, "hinge_mm", 0, 1e4, 1e-3, true},
+                                                       {&LinkageProfile::aside_m, "aside_mm", -1e4, 1e4, 1e-3, true},
                                                        {&LinkageProfile::weight_x_N, "weight_x_N", -100, 100, 1, true},
                                                        {&LinkageProfile::weight_y_N, "weight_y_N", -100, 100, 1, true},
                                                        {&LinkageProfile::weight_z_N, "weight_z_N", -100, 100, 1, true}};
 constexpr ProfileKey<DrivesProfile> kDrivesKeys[] = {
     {&DrivesProfile::bit_rate_Hz, "bit_rate_kHz", 10, 1000, 1e3, true},
-    {&DrivesProfile::watchdog_s, "watchdog_ms", 5, 100, 1e-3, false},
+    {&DrivesProfile::watchdog_s, "watchdog_ms", 5, 100, 1e-3, true},
     {&DrivesProfile::vendor_id, "vendor_id", 0, kWord, 1, true},
     {&DrivesProfile::product_code, "product_code", 0, kWord, 1, true},
     {&DrivesProfile::revision, "revision", 0, kWord, 1, true},
@@ -38,7 +40,7 @@ constexpr ProfileKey<DrivesProfile> kDrivesKeys[] = {
     {&DrivesProfile::endpoint_watchdog_s, "endpoint_watchdog_timeout", 1, 65535, 1, true},
     {&DrivesProfile::endpoint_direction, "endpoint_direction", 1, 65535, 1, true}};
 constexpr ProfileKey<AxisProfile> kAxisKeys[] = {{&AxisProfile::node, "node", 1, 127, 1, false},
-                                                 {&AxisProfile::serial, "serial", 1, kSerial, 1, false},
+                                                 {&AxisProfile::serial, "serial", 1, kSerial, 1, true},
                                                  {&AxisProfile::counts_per_turn, "counts_per_turn", 1, 1e8, 1, false},
                                                  {&AxisProfile::ratio, "ratio", 0.01, 1000, 1, true},
                                                  {&AxisProfile::travel_m, "mm_per_turn", 0.01, 1e4, 1e-3, true},
@@ -59,7 +61,7 @@ constexpr LinkageKind kKindOf[] = {LinkageKind::kCartesian, LinkageKind::kSerial
                                    LinkageKind::kDelta, LinkageKind::kFiveBar};
 constexpr int kGimbalKind = 2;
 constexpr const char* kCalibrations[] = {"home_pose", "absolute"};
-constexpr const char* kProtocols[] = {"odrive", "cia402", "moteus"};
+constexpr const char* kProtocols[] = {"odrive", "cia402", "moteus", "falcon"};
 
 bool has(const std::vector<std::string>& seen, const char* key) { return std::ranges::find(seen, key) != seen.end(); }
 bool whole(double value) { return value == static_cast<double>(static_cast<std::int64_t>(value)); }
@@ -125,7 +127,8 @@ std::string ArmReader::close_table() {
     need("protocol", true);
     add_missing(kDrivesKeys, seen_, missing);
     const auto protocol = static_cast<DriveProtocol>(protocol_);
-    need("firmware", protocol != DriveProtocol::kCia402);
+    need("firmware", protocol == DriveProtocol::kODrive || protocol == DriveProtocol::kMoteus);
+    need("watchdog_ms", protocol != DriveProtocol::kFalcon);
     for (const char* key : {"endpoint_enable_watchdog", "endpoint_watchdog_timeout", "endpoint_direction"})
       need(key, protocol == DriveProtocol::kODrive);
     for (const char* key : {"vendor_id", "product_code", "revision"}) need(key, protocol == DriveProtocol::kCia402);
@@ -136,7 +139,9 @@ std::string ArmReader::close_table() {
     for (const char* key : {"mm_per_turn", "home_mm", "lowest_mm", "highest_mm"}) need(key, slide);
     for (const char* key : {"ratio", "home_deg", "lowest_deg", "highest_deg"}) need(key, !slide);
     need("home_turns", calibrate_ == 1);
-    need("rated_Nm", protocol_ == static_cast<int>(DriveProtocol::kCia402));
+    const auto protocol = static_cast<DriveProtocol>(protocol_);
+    need("rated_Nm", protocol == DriveProtocol::kCia402 || protocol == DriveProtocol::kFalcon);
+    need("serial", protocol != DriveProtocol::kFalcon);
     if (has(seen_, slide ? "ratio" : "mm_per_turn"))
       return slide ? "ratio: a slide has mm_per_turn" : "mm_per_turn: only a slide has it";
     if (missing.empty()) return check_axis(arm_.axes.back(), arm_.axes.size());
@@ -153,21 +158,27 @@ std::string ArmReader::check_axis(const AxisProfile& a, std::size_t number) cons
   for (std::size_t i = 0; i + 1 < number; ++i) {
     if (arm_.axes[i].node == a.node)
       return axis + "node " + short_text(a.node) + " is that of axis " + std::to_string(i + 1);
-    if (arm_.axes[i].serial == a.serial) return axis + "serial is that of axis " + std::to_string(i + 1);
+    if (a.serial > 0 && arm_.axes[i].serial == a.serial)
+      return axis + "serial is that of axis " + std::to_string(i + 1);
   }
   const auto protocol = static_cast<DriveProtocol>(protocol_);
   if (protocol == DriveProtocol::kODrive && a.node > 62) return axis + "node: an ODrive's is 1 to 62";
+  if (protocol == DriveProtocol::kFalcon && a.node > 3) return axis + "node: a Falcon's motors are 1 to 3";
+  if (protocol == DriveProtocol::kFalcon && a.torque_max_Nm > a.rated_Nm)
+    return axis + "torque_max_Nm: more than rated_Nm, the most a Falcon's motor can be sent";
   if (protocol == DriveProtocol::kCia402 && a.torque_max_Nm > 10 * a.rated_Nm)
     return axis + "torque_max_Nm: more than ten times rated_Nm";
   return "";
 }
 
 std::string ArmReader::check_linkage() {
-  arm_.linkage = {kKindOf[kind_],  kind_ == kGimbalKind, linkage_.upper_m,
-                  linkage_.fore_m, linkage_.base_m,      linkage_.plate_m};
+  arm_.linkage = {kKindOf[kind_],  kind_ == kGimbalKind, linkage_.upper_m, linkage_.fore_m,
+                  linkage_.base_m, linkage_.plate_m,     linkage_.hinge_m, linkage_.aside_m};
   arm_.weight_N = {linkage_.weight_x_N, linkage_.weight_y_N, linkage_.weight_z_N};
   arm_.home_pose = calibrate_ == 0;
   arm_.protocol = static_cast<DriveProtocol>(protocol_);
+  if (arm_.protocol == DriveProtocol::kFalcon && arm_.linkage.kind != LinkageKind::kDelta)
+    return "protocol = \"falcon\" goes with kind = \"delta\"";
   const auto joints = static_cast<std::size_t>(joint_count(arm_.linkage));
   if (arm_.axes.size() != joints)
     return std::string(kKinds[kind_]) + " has " + std::to_string(joints) + " axes, not " +

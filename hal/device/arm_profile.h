@@ -22,11 +22,11 @@ struct FrameProfile {
 
 // [linkage]; which lengths are needed depends on the kind.
 struct LinkageProfile {
-  double upper_m = 0, fore_m = 0, base_m = 0, plate_m = 0;
+  double upper_m = 0, fore_m = 0, base_m = 0, plate_m = 0, hinge_m = 0, aside_m = 0;
   double weight_x_N = 0, weight_y_N = 0, weight_z_N = 0;  // of handle and forearms, device frame; the motors hold it
 };
 
-enum class DriveProtocol : int { kODrive = 0, kCia402, kMoteus };
+enum class DriveProtocol : int { kODrive = 0, kCia402, kMoteus, kFalcon };
 
 // [drives]; numbers of parameters depend on the firmware's version, so that the profile states both.
 struct DrivesProfile {
@@ -49,7 +49,8 @@ struct AxisProfile {
   double home_turns = 0;           // calibrate = "absolute": what the drive says there
   double lowest = 0, highest = 0;  // joint limits
   double torque_max_Nm = 0;        // of the motor, held; 0: an encoder alone
-  double rated_Nm = 0;             // cia402: of the motor, object 0x6076, in whose thousandths torque is sent
+  double rated_Nm = 0;             // cia402: of the motor, object 0x6076, in whose thousandths torque is sent;
+                                   // falcon: at the largest number a motor can be sent, 4096
   double gravity_Nm = 0;           // of a link: what holds it level
 };
 

@@ -19,7 +19,8 @@ enum class LinkageKind : int {
   // second from the vertical): r = L1 cos B + L2 cos C, z = L1 sin B + L2 sin C. The elbow is up: C < B.
   kSerial3r,
   // Three arms at 0, 120 and 240 degrees about z turn a plate by three parallelograms, which keep it level (Clavel
-  // 1988; Tsai 1999, chapter 3.5). Angles from the plane of the motors towards +z, where the plate is.
+  // 1988; Tsai 1999, chapter 3.5). Angles from the plane of the motors towards +z, where the plate is. The hinges at
+  // both ends of a parallelogram may hold it off from its pivots (Stamper 1997, the arm of the University of Maryland).
   kDelta,
   // Two motors on the x axis, `base_m` apart, each with an arm; both forearms meet at the handle, on the side of +y.
   kFiveBar,
@@ -32,6 +33,8 @@ struct Linkage {
   double fore_m = 0;    // L2
   double base_m = 0;    // delta: radius of the motors' circle; five_bar: distance of the motors
   double plate_m = 0;   // delta: radius of the plate
+  double hinge_m = 0;   // delta: what the hinges of a parallelogram add to its length in the plane of its arm
+  double aside_m = 0;   // delta: how far the plate's pivot lies from that plane, to its left as seen from the middle
 };
 
 int joint_count(const Linkage& linkage) noexcept;

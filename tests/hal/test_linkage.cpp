@@ -29,6 +29,11 @@ std::vector<Case> cases() {
            {-1, 0.6, -1.2, -2, -1.2, -2},
            {1, 1.4, 0.2, 2, 1.2, 2}},
           {"delta", {LinkageKind::kDelta, false, 0.1, 0.2, 0.09, 0.03}, {-0.3, -0.3, -0.3}, {0.8, 0.8, 0.8}},
+          // A Falcon's lengths (libnifalcon, after Stamper 1997).
+          {"hinged delta",
+           {LinkageKind::kDelta, false, 0.06, 0.1025, 0.03723, 0.014, 0.0225, 0.00233},
+           {0, 0, 0},
+           {1.2, 1.2, 1.2}},
           {"five bar", {LinkageKind::kFiveBar, false, 0.1, 0.15, 0.1}, {1.6, 0.5}, {2.6, 1.5}}};
 }
 
