@@ -13,7 +13,8 @@ namespace palpate {
 namespace {
 
 constexpr const char* kAllowed =
-    "use auto, can:IFACE, usb:/dev/hidrawN or loopback[:NAME], with optional ,classic and ,node=1..15";
+    "use auto, can:IFACE, usb:/dev/hidrawN, usb:/dev/bus/usb/BUS/DEVICE or loopback[:NAME], with optional ,classic and "
+    ",node=1..15";
 
 bool parse_option(const std::string& option, DeviceAddress& address, std::string& error) {
   constexpr const char* kNode = "node=";
@@ -65,7 +66,7 @@ std::optional<DeviceAddress> parse_device_address(const std::string& text, std::
   } else if (where.rfind("usb:/", 0) == 0) {
     address.kind = TransportKind::kUsb;
     address.name = where.substr(4);
-    line = "device: USB HID " + address.name + " (as asked)";
+    line = "device: USB " + address.name + " (as asked)";
   } else if (where == "loopback" || (where.rfind("loopback:", 0) == 0 && where.size() > 9)) {
     if (where.size() > 9) address.name = where.substr(9);
     line = "device: loopback " + address.name + " (as asked)";

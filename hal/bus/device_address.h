@@ -13,14 +13,14 @@ enum class TransportKind : int { kLoopback = 0, kCan = 1, kUsb = 2 };
 
 struct DeviceAddress {
   TransportKind kind = TransportKind::kLoopback;
-  std::string name = "palpate";  // CAN interface; loopback socket name (abstract) or path; HID device file
+  std::string name = "palpate";  // CAN interface; loopback socket name (abstract) or path; USB device's file
   WireProfile profile = WireProfile::kFd;
   int node = 1;
 };
 
-// Reads "auto", "can:IFACE", "usb:/dev/hidrawN" or "loopback[:NAME]", each with optional ",classic" and ",node=N"
-// (1..15). "auto" takes a CAN interface if there is one, else the loopback. Empty on bad text, with `error` saying what
-// is allowed; otherwise `line` says in one line what was chosen and why.
+// Reads "auto", "can:IFACE", "usb:/dev/hidrawN" (or "usb:/dev/bus/usb/BUS/DEVICE", of a Falcon) or "loopback[:NAME]",
+// each with optional ",classic" and ",node=N" (1..15). "auto" takes a CAN interface if there is one, else the loopback.
+// Empty on bad text, with `error` saying what is allowed; otherwise `line` says in one line what was chosen and why.
 std::optional<DeviceAddress> parse_device_address(const std::string& text, std::string& line, std::string& error);
 
 // What tells it from every other device of this computer, for DeviceLock (hal/system/device_lock.h); "" for the

@@ -70,6 +70,7 @@ void AxisDevice::receive(DeviceSample& sample) noexcept {
   sample_.fresh = axes_.fresh;
   sample_.received = axes_.received;
   sample_.faults = axes_.faults;
+  sample_.buttons = axes_.buttons;
   if (axes_.fresh) {
     locate();
     sample_.sequence = (sample_.sequence + 1) & 0xFFFFu;

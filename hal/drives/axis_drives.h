@@ -13,6 +13,7 @@ namespace palpate {
 struct AxisSample {
   double turns[kMaxAxes] = {};   // of the motors, as the drives count them
   std::uint32_t flags = 0;       // DeviceFlag: kEnabled once every motor obeys
+  std::uint32_t buttons = 0;     // of the handle, where the drives read them
   std::uint32_t error_code = 0;  // of the first drive that reports one
   std::uint32_t faults = 0;      // Fault
   std::uint32_t received = 0;    // whole sets of positions since the last call

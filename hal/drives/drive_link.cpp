@@ -4,8 +4,12 @@
 
 #include "hal/bus/loopback.h"
 #include "hal/bus/socketcan.h"
+#include "hal/bus/usb_bulk.h"
+#include "hal/bus/usb_function.h"
 #include "hal/drives/cia402_drives.h"
 #include "hal/drives/cia402_sim.h"
+#include "hal/drives/falcon_drives.h"
+#include "hal/drives/falcon_sim.h"
 #include "hal/drives/moteus_drives.h"
 #include "hal/drives/moteus_sim.h"
 #include "hal/drives/odrive_drives.h"
@@ -38,6 +42,7 @@ std::vector<std::uint32_t> replies(const ArmProfile& arm) {
 std::unique_ptr<AxisDrives> make_drives(Transport& transport, const ArmProfile& arm, double period_s) {
   if (arm.protocol == DriveProtocol::kCia402) return std::make_unique<Cia402Drives>(transport, arm, period_s);
   if (arm.protocol == DriveProtocol::kMoteus) return std::make_unique<MoteusDrives>(transport, arm, period_s);
+  if (arm.protocol == DriveProtocol::kFalcon) return std::make_unique<FalconDrives>(transport, arm, period_s);
   return std::make_unique<ODriveDrives>(transport, arm, period_s);
 }
 
@@ -47,16 +52,24 @@ std::unique_ptr<DriveSim> make_drive_sim(Transport& transport, const ArmProfile&
     return std::make_unique<Cia402Sim>(transport, arm, plant, std::move(path));
   if (arm.protocol == DriveProtocol::kMoteus)
     return std::make_unique<MoteusSim>(transport, arm, plant, std::move(path));
+  if (arm.protocol == DriveProtocol::kFalcon)
+    return std::make_unique<FalconSim>(transport, arm, plant, std::move(path));
   return std::make_unique<ODriveSim>(transport, arm, plant, std::move(path));
 }
 
 std::unique_ptr<Transport> open_drives(const DeviceAddress& address, const ArmProfile& arm, DeviceSide side,
                                        int timeout_ms, std::string& error) {
-  if (address.kind == TransportKind::kUsb) {
-    error = "drives are spoken to over CAN: give --device can:IFACE, or loopback:NAME for simulated ones";
+  if (address.kind == TransportKind::kLoopback) return open_transport(address, side, timeout_ms, error);
+  const bool usb = arm.protocol == DriveProtocol::kFalcon;
+  if ((address.kind == TransportKind::kUsb) != usb) {
+    error = usb ? "a Falcon is spoken to over USB: give --device usb:/dev/bus/usb/BUS/DEVICE, as 'palpate doctor "
+                  "--device' tells it, or loopback:NAME for a simulated one"
+                : "drives are spoken to over CAN: give --device can:IFACE, or loopback:NAME for simulated ones";
     return nullptr;
   }
-  if (address.kind == TransportKind::kLoopback) return open_transport(address, side, timeout_ms, error);
+  if (usb)
+    return side == DeviceSide::kDevice ? open_usb_function(address.name, error)
+                                       : open_usb_bulk(address.name, falcon::kVendor, falcon::kProduct, error);
   const std::vector<std::uint32_t> ids = side == DeviceSide::kDevice ? std::vector<std::uint32_t>{} : replies(arm);
   const bool moteus = arm.protocol == DriveProtocol::kMoteus;
   return open_socketcan({address.name, moteus, ids, moteus}, error);
@@ -81,7 +94,18 @@ BusBudget drives_budget(const ArmProfile& arm, double period_s) {
   return budget;
 }
 
+// The serial line behind a Falcon's adapter carries both ways at once: 16 bytes of ten bits.
+BusVerdict check_serial_line(double period_s) {
+  constexpr double kBaud = 3e6 / falcon::kFastBaud;
+  BusVerdict verdict;
+  verdict.used_us = 1e6 * 10 * falcon::kPacketBytes / kBaud;
+  verdict.available_us = 0.9e6 * period_s;
+  verdict.fits = verdict.used_us <= verdict.available_us;
+  return verdict;
+}
+
 BusVerdict check_drives_budget(const ArmProfile& arm, double period_s) {
+  if (arm.protocol == DriveProtocol::kFalcon) return check_serial_line(period_s);
   BusVerdict verdict = check_bus_budget(drives_budget(arm, period_s));
   if (verdict.fits) return verdict;
   const bool slower = check_bus_budget(drives_budget(arm, 2 * period_s)).fits;

@@ -3,6 +3,8 @@
 #include <linux/audit.h>
 #include <linux/filter.h>
 #include <linux/seccomp.h>
+#include <linux/usbdevice_fs.h>
+#include <sys/ioctl.h>
 #include <sys/prctl.h>
 #include <sys/syscall.h>
 #include <ucontext.h>
@@ -45,6 +47,9 @@ void on_forbidden(int, siginfo_t* info, void* context) {
   set_result(static_cast<ucontext_t*>(context)->uc_mcontext, -ENOSYS);
 }
 
+// Of ioctl, handing a packet to a USB device and taking one back, and nothing else.
+constexpr std::array<unsigned, 2> kAllowedIoctls = {USBDEVFS_SUBMITURB, USBDEVFS_REAPURBNDELAY};
+
 sock_filter statement(unsigned code, unsigned k) { return {static_cast<__u16>(code), 0, 0, k}; }
 sock_filter jump(unsigned k, unsigned if_true, unsigned if_false) {
   return {static_cast<__u16>(BPF_JMP | BPF_JEQ | BPF_K), static_cast<__u8>(if_true), static_cast<__u8>(if_false), k};
@@ -58,14 +63,20 @@ bool install_syscall_filter(std::string& reason) {
   action.sa_flags = SA_SIGINFO | SA_NODEFER;
   if (sigaction(SIGSYS, &action, nullptr) != 0) return reason = std::strerror(errno), false;
 
-  std::array<sock_filter, kAllowed.size() + 6> program;
+  constexpr std::size_t kIoctls = kAllowedIoctls.size();
+  std::array<sock_filter, kAllowed.size() + kIoctls + 8> program;
   std::size_t at = 0;
   program[at++] = statement(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, arch));
   program[at++] = jump(kProcessor, 1, 0);
   program[at++] = statement(BPF_RET | BPF_K, SECCOMP_RET_TRAP);  // 32-bit entry: refused
   program[at++] = statement(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr));
   for (std::size_t i = 0; i < kAllowed.size(); ++i)  // a hit jumps over the remaining tests and the trap
-    program[at++] = jump(static_cast<unsigned>(kAllowed[i]), static_cast<unsigned>(kAllowed.size() - i), 0);
+    program[at++] =
+        jump(static_cast<unsigned>(kAllowed[i]), static_cast<unsigned>(kAllowed.size() - i + kIoctls + 2), 0);
+  program[at++] = jump(SYS_ioctl, 0, kIoctls + 1);
+  program[at++] = statement(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, args) + 8);  // the request's low half
+  for (std::size_t i = 0; i < kIoctls; ++i)
+    program[at++] = jump(kAllowedIoctls[i], static_cast<unsigned>(kIoctls - i), 0);
   program[at++] = statement(BPF_RET | BPF_K, SECCOMP_RET_TRAP);
   program[at++] = statement(BPF_RET | BPF_K, SECCOMP_RET_ALLOW);
 

@@ -121,16 +121,29 @@ void find_hid(const fs::path& root, std::vector<DoctorItem>& items) {
   }
 }
 
-// Devices known by their numbers alone: no driver here speaks to them yet.
+// /dev/bus/usb/BUS/DEVICE, as usbfs names it.
+std::string usb_path(const fs::path& device) {
+  const auto number = [&](const char* name) {
+    return doctor::number(first_line(device / name).value_or("")).value_or(0);
+  };
+  return fmt::format("/dev/bus/usb/{:03}/{:03}", number("busnum"), number("devnum"));
+}
+
+// Devices known by their numbers alone.
 void find_usb(const fs::path& root, std::vector<DoctorItem>& items) {
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(root / "sys/bus/usb/devices", error)) {
     const auto vendor = first_line(entry.path() / "idVendor"), product = first_line(entry.path() / "idProduct");
     if (vendor != "0403" || !product) continue;  // FTDI
-    const bool falcon = product == "cb48";
-    items.push_back(
-        {"USB " + *vendor + ":" + *product, Verdict::kUnknown,
-         falcon ? "Novint Falcon: no driver of Palpate speaks to it" : "FTDI serial adapter: no driver uses one", ""});
+    if (product != "cb48") {
+      items.push_back(
+          {"USB " + *vendor + ":" + *product, Verdict::kUnknown, "FTDI serial adapter: no driver uses one", ""});
+      continue;
+    }
+    const std::string address = "usb:" + usb_path(entry.path());
+    items.push_back({address + ": Novint Falcon", Verdict::kPass,
+                     "profile: a copy of config/devices/example-falcon.toml",
+                     "palpate device-test " + address + " --profile FILE"});
   }
 }
 

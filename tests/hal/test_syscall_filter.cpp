@@ -1,7 +1,9 @@
 // The real-time thread's allow-list: what the loop needs passes, anything else is refused, recorded and survivable.
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <linux/usbdevice_fs.h>
 #include <signal.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
@@ -49,6 +51,34 @@ TEST(SyscallFilter, LoopCallsPassAndAnythingElseIsRefusedAndRecorded) {
   close(pair[1]);
   clear_forbidden_syscall();
   EXPECT_EQ(forbidden_syscall(), -1);
+}
+
+// Of ioctl, USB packets in and out pass (and are refused by what is no USB device); nothing else does.
+TEST(SyscallFilter, UsbPacketsPassAndNoOtherIoctl) {
+  const int fd = open("/dev/null", O_RDWR);
+  ASSERT_GE(fd, 0);
+  int packet_errno[2] = {}, after_packets = -2, other_errno = 0, after_other = -2;
+  std::thread loop([&] {
+    std::string reason;
+    if (!install_syscall_filter(reason)) return;
+    int at = 0;
+    for (const unsigned long request : {USBDEVFS_SUBMITURB, USBDEVFS_REAPURBNDELAY}) {
+      ioctl(fd, request, nullptr);
+      packet_errno[at++] = errno;
+    }
+    after_packets = forbidden_syscall();
+    ioctl(fd, USBDEVFS_CONTROL, nullptr);
+    other_errno = errno;
+    after_other = forbidden_syscall();
+  });
+  loop.join();
+  close(fd);
+  EXPECT_EQ(packet_errno[0], ENOTTY);
+  EXPECT_EQ(packet_errno[1], ENOTTY);
+  EXPECT_EQ(after_packets, -1);
+  EXPECT_EQ(other_errno, ENOSYS);
+  EXPECT_EQ(after_other, SYS_ioctl);
+  clear_forbidden_syscall();
 }
 
 // A sanitizer's library maps memory whenever it likes, and in a filtered thread that ends the process.

@@ -161,15 +161,18 @@ TEST_F(FindDevices, TheHidNodeIsKnownByItsDescriptorAlone) {
   EXPECT_EQ(items[0].remedy, "palpate device-test usb:/dev/hidraw1");
 }
 
-TEST_F(FindDevices, AFalconIsNamedAndNoDriverPromised) {
+TEST_F(FindDevices, AFalconIsFoundByItsNumbers) {
   put("sys/bus/usb/devices/1-1/idVendor", "0403\n");
   put("sys/bus/usb/devices/1-1/idProduct", "cb48\n");
+  put("sys/bus/usb/devices/1-1/busnum", "1\n");
+  put("sys/bus/usb/devices/1-1/devnum", "12\n");
   put("sys/bus/usb/devices/1-2/idVendor", "046d\n");
   put("sys/bus/usb/devices/1-2/idProduct", "c077\n");
   const auto items = find();
   ASSERT_EQ(items.size(), 1u);
-  EXPECT_EQ(items[0].verdict, Verdict::kUnknown);
-  EXPECT_NE(items[0].found.find("Novint Falcon: no driver"), std::string::npos);
+  EXPECT_EQ(items[0].verdict, Verdict::kPass);
+  EXPECT_EQ(items[0].name, "usb:/dev/bus/usb/001/012: Novint Falcon");
+  EXPECT_EQ(items[0].remedy, "palpate device-test usb:/dev/bus/usb/001/012 --profile FILE");
 }
 
 // CANopen's node 1 sends its first process data object with identifier 0x181, which is ODrive 12's heartbeat.

@@ -7,7 +7,7 @@ cache=$(mkdir -p "$1" && cd "$1" && pwd) out=$(mkdir -p "$2" && cd "$2" && pwd)
 shift 2
 here=$(cd "$(dirname "$0")" && pwd)
 modules="can can-raw can-dev vcan sja1000 kvaser_pci usb-common usbcore udc-core dummy_hcd configfs libcomposite hid usbhid
-         hid-generic usb_f_hid virtio_pci virtio_blk qemu_fw_cfg"
+         hid-generic usb_f_hid usb_f_fs virtio_pci virtio_blk qemu_fw_cfg"
 tools="rt-tests can-utils libnuma1"
 
 say() { printf 'lab: %s\n' "$*" >&2; }

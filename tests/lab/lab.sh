@@ -11,7 +11,7 @@ jobs=${PALPATE_JOBS:-$(nproc)}
 every='faults usb kvaser vcan vcan_classic:21 determinism cyclictest'
 standard="$every scene_grasp_cylinder_5 scene_ring"
 scenes=$(cd "$root/config/scenes" && printf 'scene_%s ' *.toml | sed 's/\.toml//g')
-thorough="$every scenes buses vcan_classic vcan_clock vcan_odrive vcan_cia402 vcan_moteus vcan_two_hands vcan_two_tools usb_unplug host_chaos viewer vcan:60 kvaser:60 usb:60 vcan_classic:600"
+thorough="$every scenes buses vcan_classic vcan_clock vcan_odrive vcan_cia402 vcan_moteus falcon vcan_two_hands vcan_two_tools usb_unplug host_chaos viewer vcan:60 kvaser:60 usb:60 vcan_classic:600"
 
 usage() {
   cat << TEXT
@@ -104,7 +104,7 @@ default_seconds() { # SCENARIO
 replay_outside() { # SCENARIO RESULT_DIR: what was computed inside must be what a real processor computes
   local scene=ellipsoid_mallet
   [ -e "$2/run.plr" ] || return
-  case $1 in scene_*) scene=${1#scene_} ;; vcan_two_hands) scene=two_hands ;; vcan_two_tools) scene=two_tools ;; esac
+  case $1 in scene_*) scene=${1#scene_} ;; vcan_two_hands) scene=two_hands ;; vcan_two_tools) scene=two_tools ;; falcon) scene=falcon ;; esac
   "$out/palpate" replay "$2/run.plr" --image "$out/scenes/$scene.pal" > "$2/replay.txt" 2>&1
   rm "$2/run.plr"
 }
@@ -259,6 +259,9 @@ bake() { # NAME SCENE [OPTION...]: a scene that is not shipped as it is
 }
 case " ${scenarios[*]} " in # the mallet in one hand, the body in the other
   *" vcan_two_hands"*) bake two_hands ellipsoid_mallet --set device.holds=both --set 'device.grip_mm=[0, 0, 0]' ;;
+esac
+case " ${scenarios[*]} " in
+  *" falcon"*) bake falcon ellipsoid_mallet --with "$root/config/devices/example-falcon.toml" ;;
 esac
 case " ${scenarios[*]} " in
   *" vcan_two_tools"*) bake two_tools ring --with "$root/config/scenes/hands/two_tools.toml" ;;
