@@ -34,6 +34,7 @@ class Compiler {
     check_scene(scene_);
     report_.name = image_.name = scene_.name;
     report_.warnings = weak_keys(scene_);
+    if (!scene_.default_model.empty()) report_.model.push_back(scene_.default_model);
     add_laws();
     add_tool();
     refuse(scene_, check_method(model_of(image_)));  // before the long computations

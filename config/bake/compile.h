@@ -65,7 +65,8 @@ struct CompileReport {
   std::int32_t joints = 0, parts_touching = 0;  // of a hand: parts in contact when closed
   double clearance_m = 0;                       // of the open hand on its way in
   TickCost cost;
-  std::vector<std::string> model;  // with error_target: which models were tried and which was taken, line by line
+  std::vector<std::string>
+      model;  // which model was taken for one left open, and with error_target which were tried; a line each
   std::vector<std::string> warnings;
 };
 // The report as lines for a terminal.

@@ -289,7 +289,8 @@ struct SceneSource {
 struct SceneDesc {
   std::string name = "scene";
   std::int32_t budget_instructions = 0;
-  std::string error_target;  // "3 %"; empty: none
+  std::string error_target;   // "3 %"; empty: none
+  std::string default_model;  // what was taken for a law that the scene leaves open, in words; empty: it names one
   BodyDesc body;
   FemDesc fem;
   MaterialDesc material;

@@ -21,6 +21,7 @@
 #include <iterator>
 
 #include "config/scene/config_error.h"
+#include "config/scene/default_model.h"
 #include "config/scene/scene.h"
 #include "config/scene/schema.h"
 #include "config/tool/tool_mesh.h"
@@ -387,22 +388,8 @@ SceneDesc scene_from(toml::table&& root, const std::string& file, const SceneOve
   Reader(scene).read(root);
   if (!scene.source.has("body.shape"))
     throw ConfigError(file + ": body.shape: missing; add a [body] table with a shape");
-  // The elastic body is what the presses are made of, and the dearest of the models that are tried.
-  if (const double target = error_target_share(scene); !is_auto(target) && !scene.source.has("contact.law")) {
-    constexpr std::int32_t kPresses = 5;
-    if (!scene.source.has("contact.backend")) scene.contact.backend = Backend::kElastic;
-    scene.elastic.check_error = target;
-    if (scene.elastic.check_presses < 0) scene.elastic.check_presses = kPresses;
-  }
-  // An elastic body has no other tips than those of the pieces' shapes, one a piece.
-  if (scene.contact.backend == Backend::kElastic) {
-    if (!scene.source.has("contact.law")) scene.contact.law = ContactLaw::kTool;
-    if (!scene.source.has("hand.points_per_part")) scene.hand.points_per_part = 1;
-  }
-  // Whole tips have no points' springs: of the laws they take, the default is the one without a constant to choose.
-  if (!scene.source.has("friction.law") && scene.contact.backend != Backend::kNodal && is_tip_law(scene.contact.law))
-    scene.friction.law = FrictionLaw::kMindlin;
   cut_tool_meshes(scene);
+  choose_default_model(scene);
   check_scene(scene);
   check_effects(scene);
   return scene;

@@ -42,10 +42,11 @@ const KeySpec kSkeleton[] = {
                                             "circular: epsilon, added to the radius of curvature of the surface"),
 };
 const KeySpec kContact[] = {
-    choice<&ContactDesc::law>("law",
-                              "force per unit weight of each tool point, f = k1 D + k3 D^3: from Duffing parameters, "
-                              "given directly, or fitted to Hertz' contact; or the response of the whole tip: of the "
-                              "piece's own shape (tool), or curves of presses (table)"),
+    choice<&ContactDesc::law>(
+        "law",
+        "force per unit weight of each tool point, f = k1 D + k3 D^3: from Duffing parameters, "
+        "given directly, or fitted to Hertz' contact; or the response of the whole tip: of the "
+        "piece's own shape (tool), or curves of presses (table). Another default where E is stated: above"),
     choice<&ContactDesc::weight>("weight",
                                  "weight of a tool point: area / reference area (force continuous as points enter and "
                                  "leave), share of the area in contact, or 1/n"),

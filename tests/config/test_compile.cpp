@@ -83,6 +83,7 @@ density_kg_per_m3 = 1200
 law = "paper"
 section_radius_mm = 6
 [contact]
+law = "duffing"
 weight = "area"
 max_depth_mm = 3
 cluster_distance_mm = 7

@@ -48,10 +48,12 @@ struct Idle {
 
 const char* const kNoSkeleton = "[contact]\nlaw = \"tool\"\n[skeleton]\nlaw = \"none\"\n";
 const Idle kIdle[] = {
-    {"modulus_of_numbers", "[skeleton]\nlaw = \"none\"\n[coupling]\nlaw = \"none\"\n",
+    {"modulus_of_numbers", "[contact]\nlaw = \"duffing\"\n[skeleton]\nlaw = \"none\"\n[coupling]\nlaw = \"none\"\n",
      "body.material.youngs_modulus_Pa=2e5", "given by numbers of its own", ""},
-    {"modulus_of_nothing_carried", "[skeleton]\nlaw = \"none\"\n[coupling]\nlaw = \"none\"\n",
-     "body.material.youngs_modulus_Pa=3e5", "given by numbers of its own", "[coupling]\nlaw = \"temporal_paper\"\n"},
+    {"modulus_of_nothing_carried",
+     "[contact]\nlaw = \"duffing\"\n[skeleton]\nlaw = \"none\"\n[coupling]\nlaw = \"none\"\n",
+     "body.material.youngs_modulus_Pa=3e5", "given by numbers of its own",
+     "[contact]\nlaw = \"duffing\"\n[coupling]\nlaw = \"temporal_paper\"\n"},
     {"modulus_under_a_table", "[contact]\nlaw = \"table\"\n[contact.table]\nfile = \"press.csv\"\n",
      "body.material.youngs_modulus_Pa=2e5", "contact.backend = \"elastic\"",
      "[contact]\nlaw = \"table\"\n[contact.table]\nsource = \"fem\"\n"},
@@ -150,8 +152,9 @@ TEST(SceneEffect, WhatAnOverlayPutsOutOfWorkIsWarnedOf) {
 TEST(SceneEffect, AModulusThatNoPressFollowsIsWarnedOf) {
   const std::string modulus = "[body.material]\nyoungs_modulus_Pa = 2e5\n";
   const auto warned = [&](const std::string& more) { return weak_keys(parse_scene(kBall + modulus + more, "s.toml")); };
-  EXPECT_THAT(warned(""), testing::ElementsAre(AllOf(StartsWith("s.toml:9: body.material.youngs_modulus_Pa"),
-                                                     HasSubstr("law = \"duffing\""), HasSubstr("\"elastic\""))));
+  EXPECT_THAT(warned("[contact]\nlaw = \"duffing\"\n"),
+              testing::ElementsAre(AllOf(StartsWith("s.toml:9: body.material.youngs_modulus_Pa"),
+                                         HasSubstr("law = \"duffing\""), HasSubstr("\"elastic\""))));
   EXPECT_THAT(warned("[contact]\nlaw = \"hertz\"\n"), testing::IsEmpty());
   EXPECT_THAT(weak_keys(parse_scene(kBall, "s.toml")), testing::IsEmpty());
 }
