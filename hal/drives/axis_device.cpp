@@ -12,6 +12,7 @@ AxisDevice::AxisDevice(AxisDrives& drives, const ArmProfile& arm, const Cartesia
     : drives_(drives),
       arm_(arm),
       back_(conjugate(frame.orientation_w)),
+      period_s_(period_s),
       share_per_tick_(0.1 * 1e3 * period_s),
       count_(joint_count(arm.linkage)),
       turns_handle_(arm.linkage.gimbal) {
@@ -32,7 +33,7 @@ std::string AxisDevice::find_home(const AxisDrives::Pause& pause) {
   int samples = 0;
   for (int ms = 0; ms < kWatched_ms; ++ms) {
     pause();
-    drives_.transmit({});
+    if (ms % pauses_in(period_s_) == 0) drives_.transmit({});
     drives_.receive(axes_);
     if (!axes_.fresh) continue;
     for (int i = 0; i < count_; ++i) {

@@ -30,6 +30,7 @@ class AxisDevice {
   std::uint64_t limited_ticks() const noexcept { return limited_ticks_; }  // enabled, but beyond a limit
   double joint(int axis) const noexcept { return joint_[axis]; }
   double torque_Nm(int axis) const noexcept { return torque_Nm_[axis]; }  // of the motor, as last sent
+  std::string remarks() const { return drives_.remarks(); }
 
  private:
   std::string find_home(const AxisDrives::Pause& pause);
@@ -39,7 +40,8 @@ class AxisDevice {
 
   AxisDrives& drives_;
   const ArmProfile& arm_;
-  Quat back_;              // F^-1
+  Quat back_;  // F^-1
+  double period_s_;
   double share_per_tick_;  // of a motor's limit
   int count_;
   bool turns_handle_;  // motors on the gimbal
