@@ -54,7 +54,8 @@ constexpr ProfileKey<AxisProfile> kAxisKeys[] = {{&AxisProfile::node, "node", 1,
                                                  {&AxisProfile::highest, "highest_mm", -1e4, 1e4, 1e-3, true},
                                                  {&AxisProfile::torque_max_Nm, "torque_max_Nm", 0, 1000, 1, false},
                                                  {&AxisProfile::rated_Nm, "rated_Nm", 1e-3, 1000, 1, true},
-                                                 {&AxisProfile::gravity_Nm, "gravity_Nm", -100, 100, 1, true}};
+                                                 {&AxisProfile::gravity_Nm, "gravity_Nm", -100, 100, 1, true},
+                                                 {&AxisProfile::friction_Nm, "friction_Nm", 0, 100, 1, true}};
 
 constexpr const char* kKinds[] = {"cartesian", "serial_3r", "serial_3r_gimbal", "delta", "five_bar"};
 constexpr LinkageKind kKindOf[] = {LinkageKind::kCartesian, LinkageKind::kSerial3r, LinkageKind::kSerial3r,
@@ -162,6 +163,8 @@ std::string ArmReader::check_axis(const AxisProfile& a, std::size_t number) cons
     if (a.serial > 0 && arm_.axes[i].serial == a.serial)
       return axis + "serial is that of axis " + std::to_string(i + 1);
   }
+  if (a.friction_Nm > 0 && !(a.friction_Nm < a.torque_max_Nm))
+    return axis + "friction_Nm: must be below torque_max_Nm, the torque the motor compensates it with";
   const auto protocol = static_cast<DriveProtocol>(protocol_);
   if (protocol == DriveProtocol::kODrive && a.node > 62) return axis + "node: an ODrive's is 1 to 62";
   if (protocol == DriveProtocol::kFalcon && a.node > 3) return axis + "node: a Falcon's motors are 1 to 3";

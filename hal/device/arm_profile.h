@@ -52,6 +52,7 @@ struct AxisProfile {
   double rated_Nm = 0;             // cia402: of the motor, object 0x6076, in whose thousandths torque is sent;
                                    // falcon: at the largest number a motor can be sent, 4096
   double gravity_Nm = 0;           // of a link: what holds it level
+  double friction_Nm = 0;          // of the motor: the torque at which it just moves; 0: not compensated
 };
 
 struct ArmProfile {

@@ -171,6 +171,9 @@ TEST(DeviceProfile, AnArmThatCannotBeIsRefused) {
   EXPECT_THAT(arm_with("watchdog_ms = 20", "watchdog_ms = 0"), HasSubstr("range 5 to 100"));
   EXPECT_THAT(arm_with("watchdog_ms = 20\n", ""), HasSubstr("missing in the table above: watchdog_ms"));
   EXPECT_THAT(arm_with("calibrate = \"home_pose\"", "calibrate = \"absolute\""), HasSubstr("home_turns"));
+  EXPECT_THAT(arm_with("home_deg = -20", "home_deg = -20\nfriction_Nm = 0.1"),
+              HasSubstr("axis 3: friction_Nm: must be below torque_max_Nm"));
+  EXPECT_THAT(arm_with("home_deg = -20", "home_deg = -20\nfriction_Nm = -1"), HasSubstr("range 0 to 100"));
   EXPECT_THAT(arm_with("calibrate = \"home_pose\"", "calibrate = \"index\""), HasSubstr("home_turns"));
   EXPECT_THAT(arm_with("protocol = \"odrive\"", "protocol = \"cia402\""), HasSubstr("vendor_id"));
   EXPECT_THAT(arm_with("scale = 2", "scale = 2\nscale = 2"), HasSubstr("arm.toml:20: scale: given twice"));
