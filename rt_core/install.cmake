@@ -50,7 +50,7 @@ install(FILES ${PROJECT_BINARY_DIR}/palpate.bash DESTINATION ${CMAKE_INSTALL_DAT
 install(DIRECTORY config/scenes config/devices DESTINATION ${CMAKE_INSTALL_DATADIR}/palpate/config COMPONENT programs)
 install(PROGRAMS docs/examples/device.py docs/examples/device_kit.py DESTINATION ${CMAKE_INSTALL_DATADIR}/palpate/examples
   COMPONENT programs)
-install(FILES docs/palpate.dbc DESTINATION ${CMAKE_INSTALL_DATADIR}/palpate COMPONENT programs)
+install(FILES docs/palpate.dbc docs/odrive.dbc DESTINATION ${CMAKE_INSTALL_DATADIR}/palpate COMPONENT programs)
 install(FILES docs/examples/device.c docs/examples/organ.toml sim_host/python/palpate_wire.py DESTINATION ${CMAKE_INSTALL_DATADIR}/palpate/examples COMPONENT programs)
 install(DIRECTORY rt_core DESTINATION include/palpate COMPONENT core FILES_MATCHING PATTERN "*.h")
 install(DIRECTORY hal config sim_host DESTINATION include/palpate COMPONENT host FILES_MATCHING PATTERN "*.h")

@@ -54,13 +54,15 @@ constexpr ProfileKey<AxisProfile> kAxisKeys[] = {{&AxisProfile::node, "node", 1,
                                                  {&AxisProfile::highest, "highest_mm", -1e4, 1e4, 1e-3, true},
                                                  {&AxisProfile::torque_max_Nm, "torque_max_Nm", 0, 1000, 1, false},
                                                  {&AxisProfile::rated_Nm, "rated_Nm", 1e-3, 1000, 1, true},
-                                                 {&AxisProfile::gravity_Nm, "gravity_Nm", -100, 100, 1, true}};
+                                                 {&AxisProfile::gravity_Nm, "gravity_Nm", -100, 100, 1, true},
+                                                 {&AxisProfile::friction_Nm, "friction_Nm", 0, 100, 1, true}};
 
 constexpr const char* kKinds[] = {"cartesian", "serial_3r", "serial_3r_gimbal", "delta", "five_bar"};
 constexpr LinkageKind kKindOf[] = {LinkageKind::kCartesian, LinkageKind::kSerial3r, LinkageKind::kSerial3r,
                                    LinkageKind::kDelta, LinkageKind::kFiveBar};
 constexpr int kGimbalKind = 2;
-constexpr const char* kCalibrations[] = {"home_pose", "absolute"};
+constexpr const char* kCalibrations[] = {"home_pose", "absolute", "index"};
+constexpr int kHomePose = 0, kIndex = 2;
 constexpr const char* kProtocols[] = {"odrive", "cia402", "moteus", "falcon"};
 
 bool has(const std::vector<std::string>& seen, const char* key) { return std::ranges::find(seen, key) != seen.end(); }
@@ -138,7 +140,7 @@ std::string ArmReader::close_table() {
     add_missing(kAxisKeys, seen_, missing);
     for (const char* key : {"mm_per_turn", "home_mm", "lowest_mm", "highest_mm"}) need(key, slide);
     for (const char* key : {"ratio", "home_deg", "lowest_deg", "highest_deg"}) need(key, !slide);
-    need("home_turns", calibrate_ == 1);
+    need("home_turns", calibrate_ != kHomePose);
     const auto protocol = static_cast<DriveProtocol>(protocol_);
     need("rated_Nm", protocol == DriveProtocol::kCia402 || protocol == DriveProtocol::kFalcon);
     need("serial", protocol != DriveProtocol::kFalcon);
@@ -161,6 +163,8 @@ std::string ArmReader::check_axis(const AxisProfile& a, std::size_t number) cons
     if (a.serial > 0 && arm_.axes[i].serial == a.serial)
       return axis + "serial is that of axis " + std::to_string(i + 1);
   }
+  if (a.friction_Nm > 0 && !(a.friction_Nm < a.torque_max_Nm))
+    return axis + "friction_Nm: must be below torque_max_Nm, the torque the motor compensates it with";
   const auto protocol = static_cast<DriveProtocol>(protocol_);
   if (protocol == DriveProtocol::kODrive && a.node > 62) return axis + "node: an ODrive's is 1 to 62";
   if (protocol == DriveProtocol::kFalcon && a.node > 3) return axis + "node: a Falcon's motors are 1 to 3";
@@ -175,10 +179,17 @@ std::string ArmReader::check_linkage() {
   arm_.linkage = {kKindOf[kind_],  kind_ == kGimbalKind, linkage_.upper_m, linkage_.fore_m,
                   linkage_.base_m, linkage_.plate_m,     linkage_.hinge_m, linkage_.aside_m};
   arm_.weight_N = {linkage_.weight_x_N, linkage_.weight_y_N, linkage_.weight_z_N};
-  arm_.home_pose = calibrate_ == 0;
+  arm_.home_pose = calibrate_ == kHomePose;
+  arm_.index = calibrate_ == kIndex;
   arm_.protocol = static_cast<DriveProtocol>(protocol_);
-  if (arm_.protocol == DriveProtocol::kFalcon && arm_.linkage.kind != LinkageKind::kDelta)
-    return "protocol = \"falcon\" goes with kind = \"delta\"";
+  const bool falcon = arm_.protocol == DriveProtocol::kFalcon;
+  if (falcon && !arm_.index)
+    return "calibrate: a Falcon's encoders count from their index marks: calibrate = \"index\"";
+  if (arm_.index && !falcon && arm_.protocol != DriveProtocol::kCia402)
+    return "calibrate = \"index\": of CiA 402 drives and of a Falcon alone; " + std::string(kProtocols[protocol_]) +
+           " drives are not asked for their index marks: let the drive itself search its index when it is switched on "
+           "and state \"absolute\", or state \"home_pose\"";
+  if (falcon && arm_.linkage.kind != LinkageKind::kDelta) return "protocol = \"falcon\" goes with kind = \"delta\"";
   const auto joints = static_cast<std::size_t>(joint_count(arm_.linkage));
   if (arm_.axes.size() != joints)
     return std::string(kKinds[kind_]) + " has " + std::to_string(joints) + " axes, not " +

@@ -46,18 +46,20 @@ struct AxisProfile {
   double travel_m = 0;             // of a slide, per motor turn; a slide has no ratio
   double direction = 1;            // -1: the motor turns against the joint
   double home_joint = 0;           // rad or m, in the home pose or at home_turns
-  double home_turns = 0;           // calibrate = "absolute": what the drive says there
+  double home_turns = 0;           // what the drive counts there, from its own zero or its index mark
   double lowest = 0, highest = 0;  // joint limits
   double torque_max_Nm = 0;        // of the motor, held; 0: an encoder alone
   double rated_Nm = 0;             // cia402: of the motor, object 0x6076, in whose thousandths torque is sent;
                                    // falcon: at the largest number a motor can be sent, 4096
   double gravity_Nm = 0;           // of a link: what holds it level
+  double friction_Nm = 0;          // of the motor: the torque at which it just moves; 0: not compensated
 };
 
 struct ArmProfile {
   Linkage linkage;
   Vec3 weight_N;
-  bool home_pose = true;  // the handle rests in a known pose at start; otherwise drives are absolute
+  bool home_pose = true;  // the handle rests in a known pose at start; otherwise drives are absolute, or
+  bool index = false;     // each encoder counts from its index mark, which it must pass before the pose is believed
   DriveProtocol protocol = DriveProtocol::kODrive;
   std::string firmware;  // "0.6.10": of every drive; "" asks for none
   DrivesProfile drives;

@@ -12,6 +12,7 @@ AxisDevice::AxisDevice(AxisDrives& drives, const ArmProfile& arm, const Cartesia
     : drives_(drives),
       arm_(arm),
       back_(conjugate(frame.orientation_w)),
+      period_s_(period_s),
       share_per_tick_(0.1 * 1e3 * period_s),
       count_(joint_count(arm.linkage)),
       turns_handle_(arm.linkage.gimbal) {
@@ -32,7 +33,7 @@ std::string AxisDevice::find_home(const AxisDrives::Pause& pause) {
   int samples = 0;
   for (int ms = 0; ms < kWatched_ms; ++ms) {
     pause();
-    drives_.transmit({});
+    if (ms % pauses_in(period_s_) == 0) drives_.transmit({});
     drives_.receive(axes_);
     if (!axes_.fresh) continue;
     for (int i = 0; i < count_; ++i) {
@@ -49,6 +50,7 @@ std::string AxisDevice::find_home(const AxisDrives::Pause& pause) {
       return "axis " + std::to_string(i + 1) +
              " moved while its home was taken: lay the handle into its home pose and start again";
     home_turns_[i] = arm_.home_pose ? axes_.turns[i] : axis.home_turns;
+    turns_[i] = axes_.turns[i];
   }
   return "";
 }
@@ -65,13 +67,38 @@ void AxisDevice::locate() noexcept {
   within_limits_ = within_limits_ && state_.place == LinkagePlace::kGood;
 }
 
+// An encoder's counts come one at a time: over 5 ms they make a speed. No number, or one beyond all bounds, is none.
+void AxisDevice::observe_speeds() noexcept {
+  constexpr double kSmoothed_s = 5e-3;
+  const double elapsed_s = periods_ * period_s_, share = elapsed_s / (elapsed_s + kSmoothed_s);
+  for (int i = 0; i < count_; ++i) {
+    const double speed = (axes_.turns[i] - turns_[i]) / elapsed_s;
+    speed_[i] = is_finite(speed) ? speed_[i] + share * (speed - speed_[i]) : 0.0;
+    turns_[i] = axes_.turns[i];
+  }
+}
+
+// Torque of the motor against its own Coulomb friction f: kFrictionShare of it at most, whatever the speed told. At the
+// true speed v friction takes f |v| and this gives kFrictionShare f |v| at most, so the two together never give energy,
+// and a motor at rest is held by more than this pushes with: neither delay nor noise of the speed can make the handle
+// move by itself. Around rest, where the speed is the encoder's steps and would make it buzz, it grows with the speed.
+double AxisDevice::against_friction_Nm(int axis) const noexcept {
+  constexpr double kFull_counts_per_s = 500;
+  const AxisProfile& a = arm_.axes[static_cast<std::size_t>(axis)];
+  if (!(a.friction_Nm > 0)) return 0;
+  return kFrictionShare * a.friction_Nm * clamp_to(speed_[axis] * a.counts_per_turn / kFull_counts_per_s, -1, 1);
+}
+
 void AxisDevice::receive(DeviceSample& sample) noexcept {
   drives_.receive(axes_);
+  periods_ += 1;
   sample_.fresh = axes_.fresh;
   sample_.received = axes_.received;
   sample_.faults = axes_.faults;
   sample_.buttons = axes_.buttons;
   if (axes_.fresh) {
+    observe_speeds();
+    periods_ = 0;
     locate();
     sample_.sequence = (sample_.sequence + 1) & 0xFFFFu;
     if (state_.place != LinkagePlace::kUnreachable) {
@@ -99,7 +126,7 @@ void AxisDevice::wanted_torques(const DeviceCommand& command, double* torque_Nm)
   for (int i = 0; i < count_; ++i) {
     const AxisProfile& axis = arm_.axes[static_cast<std::size_t>(i)];
     const double held_Nm = axis.gravity_Nm != 0 ? axis.gravity_Nm * math::cos(joint_[i]) : 0.0;
-    torque_Nm[i] = axis.torque_max_Nm > 0 ? motor_torque(axis, joint_Nm[i] + held_Nm) : 0.0;
+    torque_Nm[i] = axis.torque_max_Nm > 0 ? motor_torque(axis, joint_Nm[i] + held_Nm) + against_friction_Nm(i) : 0.0;
   }
 }
 

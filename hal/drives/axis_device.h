@@ -30,20 +30,29 @@ class AxisDevice {
   std::uint64_t limited_ticks() const noexcept { return limited_ticks_; }  // enabled, but beyond a limit
   double joint(int axis) const noexcept { return joint_[axis]; }
   double torque_Nm(int axis) const noexcept { return torque_Nm_[axis]; }  // of the motor, as last sent
+  std::string remarks() const { return drives_.remarks(); }
+
+  // Of a motor's friction so much is compensated at most.
+  static constexpr double kFrictionShare = 0.8;
 
  private:
   std::string find_home(const AxisDrives::Pause& pause);
   void locate() noexcept;
   void wanted_torques(const DeviceCommand& command, double* torque_Nm) noexcept;
   void bound_torques(double* torque_Nm) noexcept;
+  void observe_speeds() noexcept;
+  double against_friction_Nm(int axis) const noexcept;
 
   AxisDrives& drives_;
   const ArmProfile& arm_;
-  Quat back_;              // F^-1
+  Quat back_;  // F^-1
+  double period_s_;
   double share_per_tick_;  // of a motor's limit
   int count_;
   bool turns_handle_;  // motors on the gimbal
   double home_turns_[kMaxAxes] = {}, joint_[kMaxAxes] = {}, torque_Nm_[kMaxAxes] = {};
+  double turns_[kMaxAxes] = {}, speed_[kMaxAxes] = {};  // of the motors: last, and turns/s, smoothed
+  int periods_ = 0;                                     // since the last set of positions
   AxisSample axes_;
   LinkageState state_;
   DeviceSample sample_;

@@ -37,6 +37,15 @@ class AxisDrives {
   // In the loop, once a period each; bounded, no allocation.
   virtual void receive(AxisSample& sample) noexcept = 0;
   virtual bool transmit(const AxisCommand& command) noexcept = 0;
+  // What a person should know, a line each, "" for nothing: after start() what could not be compared, after a run what
+  // the drives reported in it.
+  virtual std::string remarks() const { return ""; }
 };
+
+// Pauses in a period, at least one: at start, too, commands come no faster than the bus budget counts with.
+inline int pauses_in(double period_s) {
+  const int whole = static_cast<int>(1e3 * period_s + 0.5);
+  return whole > 1 ? whole : 1;
+}
 
 }  // namespace palpate

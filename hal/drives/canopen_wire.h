@@ -49,6 +49,9 @@ enum Object : std::uint32_t {
   kPolarity = 0x607E00,
   kEncoderIncrements = 0x608F01,
   kEncoderTurns = 0x608F02,
+  kProbeFunction = 0x60B800,  // touch probe 1
+  kProbeStatus = 0x60B900,
+  kProbePosition = 0x60BA00,  // where it was caught, rising edge
   kPeriodValue = 0x60C201,
   kPeriodExponent = 0x60C202,  // 10^n s
   kSupportedModes = 0x650200,
@@ -59,6 +62,9 @@ inline constexpr std::uint32_t kPdoOff = 0x80000000u, kNoRemote = 0x40000000u;
 inline constexpr std::uint8_t kTorqueMode = 10;           // cyclic synchronous torque
 inline constexpr std::uint32_t kTorqueModeBit = 1u << 9;  // in kSupportedModes
 inline constexpr std::uint8_t kAbortByFault = 1;          // of kAbortOption: malfunction
+// Of kProbeFunction: on, the first event alone, of the encoder's index mark, its rising edge.
+inline constexpr std::uint16_t kCatchIndex = 0x0001 | 0x0004 | 0x0010;
+inline constexpr std::uint16_t kCaught = 0x0002;  // of kProbeStatus
 
 enum class DriveState : int { kNotReady, kDisabled, kReady, kSwitchedOn, kEnabled, kQuickStop, kFaultReaction, kFault };
 inline DriveState drive_state(std::uint32_t statusword) noexcept {
@@ -90,6 +96,12 @@ inline DriveState drive_state(std::uint32_t statusword) noexcept {
 inline constexpr std::uint16_t kDisableVoltage = 0x00, kShutdown = 0x06, kSwitchOn = 0x07, kEnableOperation = 0x0F,
                                kFaultReset = 0x80;
 inline constexpr std::uint16_t kHeartbeatLost = 0x8130;  // emergency code of a heartbeat or life guard that failed
+inline const char* state_name(DriveState state) noexcept {
+  constexpr const char* kNames[] = {
+      "not ready to switch on", "switch on disabled", "ready to switch on",    "switched on",
+      "operation enabled",      "quick stop active",  "fault reaction active", "fault"};
+  return kNames[static_cast<int>(state)];
+}
 
 // SDO: 8 bytes each way; u8 specifier, u16 index, u8 subindex, up to four of data.
 inline constexpr std::uint8_t kUpload = 0x40, kDownloaded = 0x60, kAborted = 0x80;
@@ -104,6 +116,7 @@ inline Frame sdo_frame(std::uint32_t id, std::uint8_t specifier, std::uint32_t o
 // Specifiers of 1 to 4 bytes in an expedited transfer with its size stated.
 constexpr std::uint8_t download_of(int bytes) noexcept { return static_cast<std::uint8_t>(0x23 | (4 - bytes) << 2); }
 constexpr std::uint8_t uploaded_of(int bytes) noexcept { return static_cast<std::uint8_t>(0x43 | (4 - bytes) << 2); }
+inline constexpr std::uint32_t kNoObject = 0x06020000;  // abort code: not in the dictionary
 inline std::uint32_t sdo_object(const Frame& frame) noexcept {
   return static_cast<std::uint32_t>(get_bytes<std::uint16_t>(frame, 1)) << 8 | frame.data[3];
 }

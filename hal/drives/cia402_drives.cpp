@@ -3,6 +3,7 @@
 #include "hal/device/device.h"
 #include "hal/device/kinematics.h"
 #include "hal/device/profile_key.h"
+#include "hal/drives/cia402_emergency.h"
 #include "rt_core/status.h"
 
 namespace palpate {
@@ -67,6 +68,9 @@ void Cia402Drives::take(const Frame& frame) noexcept {
       drive.state = state;
     } else if (kind == kEmergency && frame.length == 8) {
       drive.emergency = get_bytes<std::uint16_t>(frame, 0);  // 0: over
+      if (drive.emergency == 0) continue;
+      drive.told = drive.emergency;
+      drive.told_register = frame.data[2];
     } else if (kind == kHeartbeat && frame.length == 1 && frame.data[0] == kBoot) {
       drive.restarted = true;
     }
@@ -149,15 +153,28 @@ std::string Cia402Drives::identify(int axis, const Pause& pause) {
          " is not that of the profile: another drive than the one measured";
 }
 
+// Signs. A polarity that is not in the dictionary reverses nothing, which remarks() tells; one that is there and cannot
+// be read may.
+std::string Cia402Drives::check_polarity(int axis, const Pause& pause) {
+  std::uint32_t polarity = 0;
+  const std::string what = axis_text(axis) + "its polarity (object 607Eh) ";
+  if (read(axis, kPolarity, polarity, pause))
+    return polarity == 0 ? ""
+                         : what + "is reversed: " + hex(polarity) + "; the profile's direction was measured with 0";
+  if (!replied_ || reply_.data[0] != kAborted)
+    return what + "cannot be read: no answer; a reversed sign would not show";
+  const auto abort = get_bytes<std::uint32_t>(reply_, 4);
+  drive_[axis].no_polarity = abort == kNoObject;
+  return abort == kNoObject ? "" : what + "cannot be read: abort " + hex(abort) + "; a reversed sign would not show";
+}
+
 // What turns numbers into torque and angle, and their signs.
 std::string Cia402Drives::check_motor(int axis, const Pause& pause) {
   const AxisProfile& a = arm_.axes[static_cast<std::size_t>(axis)];
-  std::uint32_t modes = 0, turns = 1, polarity = 0;
+  std::uint32_t modes = 0, turns = 1;
   if (!read(axis, kSupportedModes, modes, pause) || (modes & kTorqueModeBit) == 0)
     return axis_text(axis) + "has no cyclic synchronous torque (object 6502h, bit 9)";
-  if (read(axis, kPolarity, polarity, pause) && polarity != 0)
-    return axis_text(axis) + "its polarity is reversed (object 607Eh is " + hex(polarity) +
-           "); the profile's direction was measured with 0";
+  if (std::string wrong = check_polarity(axis, pause); !wrong.empty()) return wrong;
   if (!read(axis, kEncoderTurns, turns, pause) || turns == 0) turns = 1;
   std::string wrong = demand(axis, kEncoderIncrements, a.counts_per_turn * turns, "encoder increments", pause);
   if (wrong.empty())
@@ -221,6 +238,73 @@ std::string Cia402Drives::map_pdos(int axis, const Pause& pause) {
   return "";
 }
 
+// A period without torque, as the loop will have them. Its heartbeat is not waited for: questions come in between, and
+// the drives count the time these take.
+void Cia402Drives::pass_period(const Pause& pause) {
+  for (int i = 0; i < pauses_in(period_s_); ++i) {
+    pause();
+    drain();
+  }
+  beat_ = static_cast<std::uint32_t>(arm_.drives.watchdog_s / period_s_);
+  transmit({});
+}
+
+std::string Cia402Drives::seek_mark(int axis, const Pause& pause) {
+  std::uint32_t position = 0;
+  if (!read(axis, kPosition, position, pause))
+    return axis_text(axis) + "does not tell its position (" + object_text(kPosition) + ")";
+  drive_[axis].at_home = static_cast<std::int32_t>(position);
+  std::string wrong = write(axis, kProbeFunction, 2, 0, pause);  // what it caught before is forgotten
+  if (wrong.empty()) wrong = write(axis, kProbeFunction, 2, kCatchIndex, pause);
+  return wrong.empty() ? "" : wrong + ": it cannot tell an index mark; use calibrate = \"home_pose\"";
+}
+
+// A mark was caught: which of those that a geared motor passes? The handle lay in its home pose, roughly, when the
+// search began, which told where the mark of that pose is; whole turns from there are taken off. More than a quarter of
+// a turn beside a whole one could be either neighbour's.
+std::string Cia402Drives::take_mark(int axis, std::int32_t caught) {
+  constexpr double kSurely_turns = 0.25;
+  const AxisProfile& a = arm_.axes[static_cast<std::size_t>(axis)];
+  const auto since =
+      static_cast<std::int32_t>(static_cast<std::uint32_t>(caught) - static_cast<std::uint32_t>(drive_[axis].at_home));
+  const double turns = since / a.counts_per_turn + a.home_turns;
+  const double whole = static_cast<double>(static_cast<std::int64_t>(turns < 0 ? turns - 0.5 : turns + 0.5));
+  if (!(abs_of(turns - whole) <= kSurely_turns))
+    return axis_text(axis) + "lay " + short_text(abs_of(turns - whole)) +
+           " motor turns from its home pose, which leaves open which of its index marks was passed; lay the handle "
+           "into "
+           "that pose, start again, and only then move it";
+  const auto counts = static_cast<std::int64_t>(whole * a.counts_per_turn);
+  drive_[axis].origin =
+      static_cast<std::int32_t>(static_cast<std::uint32_t>(caught) - static_cast<std::uint32_t>(counts));
+  return "";
+}
+
+// Encoders that count from wherever they were switched on: their count at the index mark becomes the zero. The hand
+// brings each past its mark; the drive's touch probe catches the count there, so that no motor need turn.
+std::string Cia402Drives::find_marks(const Pause& pause) {
+  constexpr int kWait_ms = 10'000;
+  bool found[kMaxAxes] = {};
+  int left = count_;
+  for (int ms = 0, axis = 0; ms < kWait_ms && left > 0; ms += pauses_in(period_s_) + 1, axis = (axis + 1) % count_) {
+    pass_period(pause);
+    std::uint32_t status = 0, position = 0;
+    if (found[axis] || !read(axis, kProbeStatus, status, pause) || (status & kCaught) == 0) continue;
+    if (!read(axis, kProbePosition, position, pause))
+      return axis_text(axis) + "does not tell where its index mark was (object 60BAh)";
+    if (std::string wrong = take_mark(axis, static_cast<std::int32_t>(position)); !wrong.empty()) return wrong;
+    found[axis] = true;
+    left -= 1;
+  }
+  std::string which;
+  for (int i = 0; i < count_; ++i)
+    if (!found[i]) which += (which.empty() ? "" : ", ") + std::to_string(i + 1);
+  return which.empty() ? ""
+                       : "the encoders of axes " + which +
+                             " have not passed their index marks in 10 s: move the handle through its whole reach "
+                             "while the drives are looked for";
+}
+
 std::string Cia402Drives::start(const Pause& pause) {
   if (1e3 * period_s_ != static_cast<double>(static_cast<int>(1e3 * period_s_)))
     return "CiA 402 drives take whole milliseconds as a period; bake the scene with device.period_ms = 1 or 2";
@@ -234,21 +318,39 @@ std::string Cia402Drives::start(const Pause& pause) {
   for (int i = 0; i < count_; ++i) {
     if (std::string wrong = guard(i, pause); !wrong.empty()) return wrong;
     if (std::string wrong = map_pdos(i, pause); !wrong.empty()) return wrong;
+    if (std::string wrong = arm_.index ? seek_mark(i, pause) : ""; !wrong.empty()) return wrong;
   }
   for (int i = 0; i < count_; ++i) command_network(kStart, drive_[i].node);
   constexpr int kFirst_ms = 50;
-  for (int ms = 0; ms < kFirst_ms; ++ms) {
-    pause();
-    drain();
-    transmit({});
-  }
+  for (int ms = 0; ms < kFirst_ms; ms += pauses_in(period_s_)) pass_period(pause);
   for (int i = 0; i < count_; ++i) {
     drive_[i].restarted = false;
     if (!drive_[i].moved) return axis_text(i) + "sends no position at SYNC";
     if (drive_[i].state == DriveState::kFault && drive_[i].emergency != kHeartbeatLost)
-      return axis_text(i) + "is in fault, emergency code " + hex(drive_[i].emergency);
+      return axis_text(i) + "is in fault, emergency " + emergency_text(drive_[i].told, drive_[i].told_register);
+  }
+  if (arm_.index)
+    if (std::string wrong = find_marks(pause); !wrong.empty()) return wrong;
+  for (int i = 0; i < count_; ++i) {
+    drive_[i].told = 0;
+    drive_[i].late = false;
   }
   return "";
+}
+
+std::string Cia402Drives::remarks() const {
+  std::string text;
+  for (int i = 0; i < count_; ++i) {
+    const Drive& drive = drive_[i];
+    const auto add = [&](const std::string& what) { text += axis_text(i) + what + "\n"; };
+    if (drive.no_polarity) add("has no polarity object (607Eh): its sign was not compared");
+    if (drive.restarted) add("started anew and has lost its set-up: its supply, or its own watchdog");
+    if (drive.told != 0) add("emergency " + emergency_text(drive.told, drive.told_register));
+    if (drive.late)
+      add("did not confirm a step to \"operation enabled\" within 0.25 s; it says \"" +
+          std::string(state_name(drive.state)) + "\"");
+  }
+  return text;
 }
 
 bool Cia402Drives::wanted(int axis) const noexcept {
@@ -259,9 +361,12 @@ void Cia402Drives::judge(AxisSample& sample) noexcept {
   sample.flags = sample.error_code = 0;
   bool all = true, late = false;
   for (int i = 0; i < count_; ++i) {
-    const Drive& drive = drive_[i];
+    Drive& drive = drive_[i];
     all = all && (drive.state == DriveState::kEnabled || !wanted(i));
-    late = late || (wanted(i) && drive.state != DriveState::kEnabled && drive.in_state * period_s_ > kTransition_s);
+    const bool stays = enable_ && !was_enabled_ && wanted(i) && drive.state != DriveState::kEnabled &&
+                       drive.in_state * period_s_ > kTransition_s;
+    drive.late = drive.late || stays;
+    late = late || stays;
     const bool fault = drive.state == DriveState::kFault || drive.state == DriveState::kFaultReaction;
     if (drive.restarted) sample.error_code = kRestarted;
     if (fault && sample.error_code == 0) sample.error_code = drive.emergency;
@@ -273,7 +378,7 @@ void Cia402Drives::judge(AxisSample& sample) noexcept {
   if (all && enable_) sample.flags |= DeviceFlag::kEnabled;
   was_enabled_ = enable_ && (was_enabled_ || all);
   if (was_enabled_ && !all) sample.flags |= DeviceFlag::kWatchdog;
-  if (enable_ && !was_enabled_ && late) {
+  if (late && !was_enabled_) {
     sample.flags |= DeviceFlag::kError;
     sample.error_code = kNotEnabled;
   }
@@ -291,7 +396,10 @@ void Cia402Drives::receive(AxisSample& sample) noexcept {
   judge(sample);
   if (!sample.fresh) return;
   for (int i = 0; i < count_; ++i) {
-    sample.turns[i] = drive_[i].position / arm_.axes[static_cast<std::size_t>(i)].counts_per_turn;
+    // Counts wrap, and so does their difference.
+    const std::uint32_t from_mark =
+        static_cast<std::uint32_t>(drive_[i].position) - static_cast<std::uint32_t>(drive_[i].origin);
+    sample.turns[i] = static_cast<std::int32_t>(from_mark) / arm_.axes[static_cast<std::size_t>(i)].counts_per_turn;
     drive_[i].moved = false;
   }
 }

@@ -18,6 +18,7 @@ class Cia402Drives : public AxisDrives {
   std::string start(const Pause& pause) override;
   void receive(AxisSample& sample) noexcept override;
   bool transmit(const AxisCommand& command) noexcept override;
+  std::string remarks() const override;
 
   // Error codes beyond an emergency's 16 bits.
   static constexpr std::uint32_t kNotEnabled = 0x10000;  // a transition was not confirmed in time
@@ -31,6 +32,10 @@ class Cia402Drives : public AxisDrives {
     canopen::DriveState state = canopen::DriveState::kNotReady;
     std::uint32_t in_state = 0;  // periods
     bool moved = false, restarted = false;
+    std::uint32_t told = 0, told_register = 0;  // last emergency since start()
+    bool late = false;                          // a transition was not confirmed in time
+    bool no_polarity = false;                   // it has no such object
+    std::int32_t at_home = 0, origin = 0;       // calibrate = "index": what it counted at start, and at the mark
   };
   void drain() noexcept;
   void take(const Frame& frame) noexcept;
@@ -41,8 +46,13 @@ class Cia402Drives : public AxisDrives {
   // Start-up: "" or what is wrong.
   std::string identify(int axis, const Pause& pause);
   std::string check_motor(int axis, const Pause& pause);
+  std::string check_polarity(int axis, const Pause& pause);
   std::string guard(int axis, const Pause& pause);
   std::string map_pdos(int axis, const Pause& pause);
+  void pass_period(const Pause& pause);
+  std::string seek_mark(int axis, const Pause& pause);
+  std::string find_marks(const Pause& pause);
+  std::string take_mark(int axis, std::int32_t caught);
   std::string write(int axis, std::uint32_t object, int bytes, std::uint32_t value, const Pause& pause);
   std::string demand(int axis, std::uint32_t object, double expected, const char* what, const Pause& pause);
   bool exchange(int axis, const Frame& request, const Pause& pause);

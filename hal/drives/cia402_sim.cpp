@@ -1,5 +1,7 @@
 #include "hal/drives/cia402_sim.h"
 
+#include <iterator>
+
 namespace palpate {
 
 using namespace canopen;
@@ -7,7 +9,7 @@ using namespace canopen;
 namespace {
 
 // Abort codes (CiA 301, table 22).
-constexpr std::uint32_t kNoObject = 0x06020000, kReadOnly = 0x06010002, kWrongLength = 0x06070010, kNotNow = 0x08000022;
+constexpr std::uint32_t kReadOnly = 0x06010002, kWrongLength = 0x06070010, kNotNow = 0x08000022, kGeneral = 0x08000000;
 
 // The bytes of an SDO download by its specifier.
 int length_of(std::uint8_t specifier) noexcept { return 4 - (specifier >> 2 & 3); }
@@ -25,7 +27,7 @@ void Cia402Sim::make_dictionary(int axis) {
   d.node = static_cast<int>(a.node);
   const auto word = [](double value) { return static_cast<std::uint32_t>(value + 0.5); };
   const auto put = [&](std::uint32_t object, int bytes, std::uint32_t value, bool writable) {
-    d.object[object] = {bytes, value, writable, false};
+    d.object[object] = {bytes, value, writable, false, false};
   };
   put(kDeviceType, 4, 0x00020192, false);
   put(kConsumerHeartbeat, 4, 0, true);
@@ -50,6 +52,10 @@ void Cia402Sim::make_dictionary(int axis) {
   put(kPolarity, 1, 0, true);
   put(kEncoderIncrements, 4, word(a.counts_per_turn), false);
   put(kEncoderTurns, 4, 1, false);
+  put(kPosition, 4, 0, false);
+  put(kProbeFunction, 2, 0, true);
+  put(kProbeStatus, 2, 0, false);
+  put(kProbePosition, 4, 0, false);
   put(kPeriodValue, 1, 1, true);
   put(kPeriodExponent, 1, 0xFD, true);
   put(kSupportedModes, 4, kTorqueModeBit | 1u << 7, false);
@@ -72,6 +78,10 @@ std::uint32_t Cia402Sim::store(int axis, std::uint32_t object, std::uint32_t val
   if (mapping && object != count && get(axis, count) != 0) return kNotNow;
   if (!d.object[object].frozen) d.object[object].value = value;
   if (object == kMode && !d.object[kModeDisplay].frozen) d.object[kModeDisplay].value = value;
+  if (object == kProbeFunction) {
+    d.object[kProbeStatus].value = value & 1;
+    d.sought = 0;
+  }
   return 0;
 }
 
@@ -79,7 +89,9 @@ void Cia402Sim::take_sdo(int axis, const Frame& frame) noexcept {
   Drive& d = drive_[axis];
   const std::uint32_t object = sdo_object(frame), id = kSdoReply + static_cast<std::uint32_t>(d.node);
   const auto found = d.object.find(object);
-  std::uint32_t abort = found == d.object.end() ? kNoObject : 0;
+  if (object == kPosition && found != d.object.end())
+    found->second.value = static_cast<std::uint32_t>(static_cast<std::int32_t>(counts(axis)));
+  std::uint32_t abort = found == d.object.end() ? kNoObject : found->second.hidden ? kGeneral : 0;
   Frame reply;
   if (abort == 0 && frame.data[0] == kUpload) {
     reply = sdo_frame(id, uploaded_of(found->second.bytes), object, found->second.value);
@@ -99,7 +111,11 @@ void Cia402Sim::take_sdo(int axis, const Frame& frame) noexcept {
 void Cia402Sim::send_emergency(int axis, std::uint16_t code) noexcept {
   Frame frame = classic_frame(kEmergency + static_cast<std::uint32_t>(drive_[axis].node), 8);
   put_bytes(frame, 0, code);
-  frame.data[2] = code != 0 ? 1 : 0;
+  // The error register: generic, and the bit of the code's class.
+  constexpr std::uint8_t kOfClass[] = {0, 0, 0x02, 0x04, 0x08, 0x20, 0x20, 0x20, 0x10};
+  const unsigned kind = code >> 12;
+  frame.data[2] =
+      code == 0 ? 0 : static_cast<std::uint8_t>(0x01 | (kind < std::size(kOfClass) ? kOfClass[kind] : 0x80));
   send_frames(transport_, &frame, 1);
 }
 
@@ -156,17 +172,38 @@ std::uint32_t Cia402Sim::statusword(int axis) const noexcept {
   }
 }
 
+// Of an encoder with index: what it counts at the mark that home_turns counts from; it was switched on anywhere.
+std::int32_t Cia402Sim::mark(int axis) const noexcept { return arm_.index ? -123456 * (axis + 1) : 0; }
+
+// Until its mark was passed the handle is about where it lay when the drives were switched on: in its home pose.
+double Cia402Sim::counts(int axis) const noexcept {
+  const AxisProfile& a = arm_.axes[static_cast<std::size_t>(axis)];
+  const bool waits = arm_.index && (get(axis, kProbeStatus) & kCaught) == 0;
+  const double turns = waits ? a.home_turns + drive_[axis].beside_turns : plant_.turns(axis);
+  return turns * a.counts_per_turn + mark(axis);
+}
+
+// The hand brings the encoders past a mark, one after another; not always past the same one of those at every turn.
+void Cia402Sim::probe(int axis) noexcept {
+  Drive& d = drive_[axis];
+  if (get(axis, kProbeFunction) != kCatchIndex || d.stays || ++d.sought != 10 * (axis + 1)) return;
+  const double counts_per_turn = arm_.axes[static_cast<std::size_t>(axis)].counts_per_turn;
+  const int turn = axis % 3 - 1;
+  d.object[kProbePosition].value =
+      static_cast<std::uint32_t>(mark(axis) + turn * static_cast<std::int32_t>(counts_per_turn));
+  d.object[kProbeStatus].value |= kCaught;
+}
+
 // The TPDO as it was mapped.
 void Cia402Sim::send_position(int axis) noexcept {
   const Drive& d = drive_[axis];
   const std::uint32_t cob = get(axis, kTpdoCob);
   if ((cob & kPdoOff) != 0 || get(axis, kTpdoType) != 1) return;
   Frame frame = classic_frame(cob & 0x7FF, 0);
-  const double turns = plant_.turns(axis) * arm_.axes[static_cast<std::size_t>(axis)].counts_per_turn;
   for (std::uint32_t i = 1; i <= get(axis, kTpdoCount); ++i) {
     const std::uint32_t entry = get(axis, kTpdoCount + i);
     if (entry == mapped(kStatusword, 16)) put_bytes(frame, frame.length, static_cast<std::uint16_t>(statusword(axis)));
-    if (entry == mapped(kPosition, 32)) put_bytes(frame, frame.length, static_cast<std::int32_t>(turns));
+    if (entry == mapped(kPosition, 32)) put_bytes(frame, frame.length, static_cast<std::int32_t>(counts(axis)));
     frame.length = static_cast<std::uint8_t>(frame.length + (entry & 0xFF) / 8);
   }
   if (!d.mute) send_frames(transport_, &frame, 1);
@@ -224,7 +261,10 @@ void Cia402Sim::watch(int axis) noexcept {
 
 void Cia402Sim::step_bus() noexcept {
   take_frames(transport_, [this](const Frame& frame) noexcept { take(frame); });
-  for (int i = 0; i < plant_.count(); ++i) watch(i);
+  for (int i = 0; i < plant_.count(); ++i) {
+    watch(i);
+    probe(i);
+  }
 }
 
 void Cia402Sim::step() noexcept {

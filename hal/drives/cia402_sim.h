@@ -34,7 +34,12 @@ class Cia402Sim : public DriveSim {
   }
   // Acknowledges writes to it and keeps what it has.
   void freeze_object(int axis, std::uint32_t object) noexcept { drive_[axis].object[object].frozen = true; }
-  void stick(int axis) noexcept { drive_[axis].stuck = true; }  // ready, but not switched on
+  void remove_object(int axis, std::uint32_t object) { drive_[axis].object.erase(object); }
+  // Answers every question for it with an abort.
+  void hide_object(int axis, std::uint32_t object) noexcept { drive_[axis].object[object].hidden = true; }
+  void lay_beside_home(int axis, double turns) noexcept { drive_[axis].beside_turns = turns; }  // when switched on
+  void stay_off_mark(int axis) noexcept { drive_[axis].stays = true; }  // the hand does not bring it past its index
+  void stick(int axis) noexcept { drive_[axis].stuck = true; }          // ready, but not switched on
   void fail(int axis, std::uint16_t emergency) noexcept { enter_fault(axis, emergency); }
   void restart(int axis) noexcept;
 
@@ -46,7 +51,7 @@ class Cia402Sim : public DriveSim {
   struct Object {
     int bytes = 4;
     std::uint32_t value = 0;
-    bool writable = true, frozen = false;
+    bool writable = true, frozen = false, hidden = false;
   };
   struct Drive {
     int node = 0;
@@ -58,6 +63,9 @@ class Cia402Sim : public DriveSim {
     Frame pending;            // RPDO until the next SYNC
     bool has_pending = false, beating = false, mute = false, stuck = false;
     double beat_s = 0;  // since the controller's heartbeat
+    int sought = 0;     // periods that the touch probe has waited
+    bool stays = false;
+    double beside_turns = 0;
   };
   void take(const Frame& frame) noexcept;
   void take_sdo(int axis, const Frame& frame) noexcept;
@@ -68,6 +76,9 @@ class Cia402Sim : public DriveSim {
   void enter_fault(int axis, std::uint16_t emergency) noexcept;
   void send_emergency(int axis, std::uint16_t code) noexcept;
   void watch(int axis) noexcept;
+  void probe(int axis) noexcept;
+  std::int32_t mark(int axis) const noexcept;
+  double counts(int axis) const noexcept;
   void make_dictionary(int axis);
   std::uint32_t get(int axis, std::uint32_t object) const noexcept;
   std::uint32_t statusword(int axis) const noexcept;

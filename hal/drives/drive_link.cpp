@@ -1,5 +1,6 @@
 #include "hal/drives/drive_link.h"
 
+#include <cstdio>
 #include <vector>
 
 #include "hal/bus/loopback.h"
@@ -94,6 +95,15 @@ BusBudget drives_budget(const ArmProfile& arm, double period_s) {
   return budget;
 }
 
+BusBudget packed_drives_budget(const ArmProfile& arm, double period_s) {
+  constexpr int kSharing = 3;
+  BusBudget budget = drives_budget(arm, period_s);
+  const int axes = static_cast<int>(arm.axes.size());
+  budget.messages[0] = {"RPDO of three", 8, false, false, (axes + kSharing - 1) / kSharing};
+  budget.messages[1] = {"TPDO position", 4, false, false, axes};
+  return budget;
+}
+
 // The serial line behind a Falcon's adapter carries both ways at once: 16 bytes of ten bits.
 BusVerdict check_serial_line(double period_s) {
   constexpr double kBaud = 3e6 / falcon::kFastBaud;
@@ -108,9 +118,21 @@ BusVerdict check_drives_budget(const ArmProfile& arm, double period_s) {
   if (arm.protocol == DriveProtocol::kFalcon) return check_serial_line(period_s);
   BusVerdict verdict = check_bus_budget(drives_budget(arm, period_s));
   if (verdict.fits) return verdict;
-  const bool slower = check_bus_budget(drives_budget(arm, 2 * period_s)).fits;
+  const BusVerdict slower = check_bus_budget(drives_budget(arm, 2 * period_s));
   const BusVerdict node = check_bus_budget(haptic_node_budget(true));
-  verdict.text += slower ? "  half the rate fits: bake the scene with device.period_ms doubled\n" : "";
+  char text[160];
+  if (slower.fits) {
+    std::snprintf(text, sizeof text,
+                  "  half the rate fits, %.0f of %.0f us: bake the scene with device.period_ms = %g\n", slower.used_us,
+                  slower.available_us, 2e3 * period_s);
+    verdict.text += text;
+  }
+  if (arm.protocol == DriveProtocol::kCia402) {
+    const BusVerdict packed = check_bus_budget(packed_drives_budget(arm, period_s));
+    std::snprintf(text, sizeof text, "  packed objects would take %.0f of %.0f us%s\n", packed.used_us,
+                  packed.available_us, packed.fits ? "; no driver here speaks them" : ": no way out either");
+    verdict.text += text;
+  }
   verdict.text += node.fits ? "  one node on CAN FD that drives all axes fits at 1 kHz (docs/wire_protocol.md)\n" : "";
   return verdict;
 }

@@ -26,6 +26,9 @@ std::unique_ptr<Transport> open_drives(const DeviceAddress& address, const ArmPr
 // What goes over the bus in every period. Heartbeats and frames of set-up come beside it now and then: the allowance
 // for one error and its repeat has room for one of them.
 BusBudget drives_budget(const ArmProfile& arm, double period_s);
+// The same CiA 402 drives with packed objects, which no driver here speaks: one command of 8 bytes to every three of
+// them (three torques and a controlword in common), and of each a position of 4 bytes alone.
+BusBudget packed_drives_budget(const ArmProfile& arm, double period_s);
 // The verdict; where it is refused, with what would fit.
 BusVerdict check_drives_budget(const ArmProfile& arm, double period_s);
 

@@ -237,8 +237,11 @@ std::string MoteusDrives::watch_rate(const Pause& pause) {
   constexpr int kWatched_ms = 200;
   std::uint32_t before[kMaxAxes];
   for (int i = 0; i < count_; ++i) before[i] = drive_[i].replies;
+  int asked = 0;
   for (int ms = 0; ms < kWatched_ms; ++ms) {
-    for (int i = 0; i < count_; ++i) {
+    const bool due = ms % pauses_in(period_s_) == 0;
+    asked += due;
+    for (int i = 0; i < count_ && due; ++i) {
       const Frame stop = stop_frame(i);
       send_frames(transport_, &stop, 1);
     }
@@ -246,7 +249,7 @@ std::string MoteusDrives::watch_rate(const Pause& pause) {
     drain();
   }
   for (int i = 0; i < count_; ++i) {
-    const double share = (drive_[i].replies - before[i]) / static_cast<double>(kWatched_ms);
+    const double share = (drive_[i].replies - before[i]) / static_cast<double>(asked);
     if (share < 0.9)
       return axis_text(i) + "answers " + short_text(100 * share) + " of 100 questions: bus load, termination, cable";
     if (drive_[i].mode == kFaulted) return axis_text(i) + "reports fault " + fault_text(drive_[i].fault);
@@ -267,17 +270,25 @@ std::string MoteusDrives::start(const Pause& pause) {
   return wrong;
 }
 
+std::string MoteusDrives::remarks() const {
+  std::string text;
+  for (int i = 0; i < count_; ++i)
+    if (drive_[i].told != 0) text += axis_text(i) + "reported fault " + fault_text(drive_[i].told) + "\n";
+  return text;
+}
+
 void MoteusDrives::judge(AxisSample& sample) noexcept {
   sample.flags = sample.error_code = 0;
   bool all = true;
   for (int i = 0; i < count_; ++i) {
-    const Drive& drive = drive_[i];
+    Drive& drive = drive_[i];
     all = all && (drive.mode == kPositionMode || !may_move(i));
     const bool enabling = enable_ && !was_enabled_;
     if (drive.mode == kTimedOut && !enabling) sample.flags |= DeviceFlag::kWatchdog;
     // Enabling stops it first, which clears a fault: until that was answered, an old one is told.
     if (drive.mode != kFaulted || (enabling && waited_ * period_s_ <= kEnableTimeout_s)) continue;
     sample.flags |= DeviceFlag::kError;
+    drive.told = drive.fault;
     if (sample.error_code == 0) sample.error_code = static_cast<std::uint32_t>(drive.fault);
   }
   if (all && enable_) sample.flags |= DeviceFlag::kEnabled;

@@ -21,6 +21,7 @@ class MoteusDrives : public AxisDrives {
   std::string start(const Pause& pause) override;
   void receive(AxisSample& sample) noexcept override;
   bool transmit(const AxisCommand& command) noexcept override;
+  std::string remarks() const override;
 
   // Error code where drives do not reach the mode asked for in time.
   static constexpr std::uint32_t kNotEnabled = 0xFFFFFFFF;
@@ -29,7 +30,7 @@ class MoteusDrives : public AxisDrives {
   struct Drive {
     int node = 0;
     double turns = 0;
-    int mode = 0, fault = 0;
+    int mode = 0, fault = 0, told = 0;  // told: fault that let go of the hand
     std::uint32_t replies = 0;
     bool moved = false;  // a position since the last whole set
     double model = 0, firmware = 0, map = 0, serial[3] = {}, timeout_s = 0;

@@ -86,6 +86,7 @@ void ODriveDrives::take(const Frame& frame) noexcept {
     const std::uint32_t command = frame.id & kMessageMask;
     if (command == kHeartbeat && frame.length >= 5) {
       drive.error = get_bytes<std::uint32_t>(frame, 0);
+      if (drive.error != 0) drive.told = drive.error;
       drive.state = get_bytes<std::uint8_t>(frame, 4);
       drive.heard = true;
     } else if (command == kGetEncoderEstimates && frame.length == 8) {
@@ -192,10 +193,11 @@ std::string ODriveDrives::watch_rate(const Pause& pause) {
   std::uint32_t before[kMaxAxes];
   for (int i = 0; i < count_; ++i) before[i] = drive_[i].estimates;
   for (int ms = 0; ms < kWatched_ms; ++ms) {
-    for (int i = 0; i < count_; ++i) {  // keeps the watchdogs content
+    for (int i = 0; i < count_ && ms % pauses_in(period_s_) == 0; ++i) {  // keeps the watchdogs content
       const Frame zero = torque_frame(drive_[i].node, 0), clear = make(drive_[i].node, kClearErrors, 1);
       send_frames(transport_, &zero, 1);
-      if (ms == 1) send_frames(transport_, &clear, 1);  // they may have expired while the others were asked
+      // They may have expired while the others were asked.
+      if (ms == pauses_in(period_s_)) send_frames(transport_, &clear, 1);
     }
     pause();
     drain();
@@ -219,7 +221,16 @@ std::string ODriveDrives::start(const Pause& pause) {
     if (std::string wrong = identify(i, pause); !wrong.empty()) return wrong;
   for (int i = 0; i < count_; ++i)
     if (std::string wrong = prepare(i, pause); !wrong.empty()) return wrong;
-  return watch_rate(pause);
+  std::string wrong = watch_rate(pause);
+  for (int i = 0; i < count_; ++i) drive_[i].told = 0;
+  return wrong;
+}
+
+std::string ODriveDrives::remarks() const {
+  std::string text;
+  for (int i = 0; i < count_; ++i)
+    if (drive_[i].told != 0) text += axis_text(i) + "reported error " + error_text(drive_[i].told) + "\n";
+  return text;
 }
 
 void ODriveDrives::judge(AxisSample& sample) noexcept {

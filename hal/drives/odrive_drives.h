@@ -19,6 +19,7 @@ class ODriveDrives : public AxisDrives {
   std::string start(const Pause& pause) override;
   void receive(AxisSample& sample) noexcept override;
   bool transmit(const AxisCommand& command) noexcept override;
+  std::string remarks() const override;
 
   // Error code where drives do not reach the state asked for in time.
   static constexpr std::uint32_t kNotEnabled = 0xFFFFFFFF;
@@ -28,6 +29,7 @@ class ODriveDrives : public AxisDrives {
     int node = 0;
     double turns = 0;
     std::uint32_t error = 0, state = 0, estimates = 0;
+    std::uint32_t told = 0;             // last error since start()
     bool heard = false, moved = false;  // a heartbeat ever; a position since the last whole set
     Frame answer;                       // newest of what start() waits for
     bool answered = false;

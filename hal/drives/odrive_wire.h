@@ -37,4 +37,56 @@ enum Error : std::uint32_t {
   kEstopRequested = 0x2000000,
 };
 
+// What is in the messages that go over the bus here, for odrive.dbc. Little-endian; start in bits.
+enum class Number : int { kUnsigned, kFloat };
+struct Signal {
+  Message message;
+  const char* name;
+  int start, bits;
+  Number number;
+  const char* unit;
+};
+struct MessageShape {
+  Message message;
+  const char* name;
+  int bytes;
+  bool from_drive;
+};
+inline constexpr MessageShape kShapes[] = {{kGetVersion, "GetVersion", 8, true},
+                                           {kHeartbeat, "Heartbeat", 8, true},
+                                           {kRxSdo, "RxSdo", 8, false},
+                                           {kTxSdo, "TxSdo", 8, true},
+                                           {kAddress, "Address", 8, true},
+                                           {kSetAxisState, "SetAxisState", 4, false},
+                                           {kGetEncoderEstimates, "GetEncoderEstimates", 8, true},
+                                           {kSetControllerMode, "SetControllerMode", 8, false},
+                                           {kSetInputTorque, "SetInputTorque", 4, false},
+                                           {kClearErrors, "ClearErrors", 1, false}};
+inline constexpr Signal kSignals[] = {{kGetVersion, "Protocol", 0, 8, Number::kUnsigned, ""},
+                                      {kGetVersion, "HardwareLine", 8, 8, Number::kUnsigned, ""},
+                                      {kGetVersion, "HardwareVersion", 16, 8, Number::kUnsigned, ""},
+                                      {kGetVersion, "HardwareVariant", 24, 8, Number::kUnsigned, ""},
+                                      {kGetVersion, "FirmwareMajor", 32, 8, Number::kUnsigned, ""},
+                                      {kGetVersion, "FirmwareMinor", 40, 8, Number::kUnsigned, ""},
+                                      {kGetVersion, "FirmwareRevision", 48, 8, Number::kUnsigned, ""},
+                                      {kHeartbeat, "Error", 0, 32, Number::kUnsigned, ""},
+                                      {kHeartbeat, "State", 32, 8, Number::kUnsigned, ""},
+                                      {kHeartbeat, "ProcedureResult", 40, 8, Number::kUnsigned, ""},
+                                      {kHeartbeat, "TrajectoryDone", 48, 8, Number::kUnsigned, ""},
+                                      {kRxSdo, "Opcode", 0, 8, Number::kUnsigned, ""},
+                                      {kRxSdo, "Endpoint", 8, 16, Number::kUnsigned, ""},
+                                      {kRxSdo, "Value", 32, 32, Number::kUnsigned, ""},
+                                      {kTxSdo, "Endpoint", 8, 16, Number::kUnsigned, ""},
+                                      {kTxSdo, "Value", 32, 32, Number::kUnsigned, ""},
+                                      {kAddress, "Node", 0, 8, Number::kUnsigned, ""},
+                                      {kAddress, "SerialNumber", 8, 48, Number::kUnsigned, ""},
+                                      {kAddress, "Connection", 56, 8, Number::kUnsigned, ""},
+                                      {kSetAxisState, "State", 0, 32, Number::kUnsigned, ""},
+                                      {kGetEncoderEstimates, "Position", 0, 32, Number::kFloat, "turns"},
+                                      {kGetEncoderEstimates, "Velocity", 32, 32, Number::kFloat, "turns/s"},
+                                      {kSetControllerMode, "ControlMode", 0, 32, Number::kUnsigned, ""},
+                                      {kSetControllerMode, "InputMode", 32, 32, Number::kUnsigned, ""},
+                                      {kSetInputTorque, "Torque", 0, 32, Number::kFloat, "Nm"},
+                                      {kClearErrors, "Identify", 0, 8, Number::kUnsigned, ""}};
+
 }  // namespace palpate::odrive

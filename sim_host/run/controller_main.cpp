@@ -276,6 +276,7 @@ void start_drives(AxisDevice& arm, C& clock) {
   std::fprintf(stderr, "drives: looking for them\n");
   const std::string wrong = arm.start([&clock] { clock.wait_until(clock.now_ns() + 1'000'000); });
   if (!wrong.empty()) throw Failure{kUnavailable, "refused, and no motor was enabled: " + wrong};
+  std::fprintf(stderr, "%s", arm.remarks().c_str());
 }
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -460,6 +461,7 @@ int run(int argc, char** argv) {
     print_run(summary);
     std::fprintf(stderr, "drives: %llu ticks without force beyond a limit of joints or linkage\n",
                  static_cast<unsigned long long>(device.limited_ticks()));
+    if (summary.faults != 0) std::fprintf(stderr, "%s", device.remarks().c_str());
   } else {
     DeviceBus bus(*connection.transport, connection.address.profile, connection.address.node);
     summary = run_on(arguments, model, core, host, bus, connection, interrupted, usage);

@@ -64,26 +64,31 @@ inline HandPath pressing_arm_hand(Vec3 origin_w_m) {
 template <class Drives, class Sim>
 class WiredArm {
  public:
+  // The period is the plant's.
   WiredArm(const std::string& tables, const VirtualClock& clock, const PlantOptions& plant = {})
       : clock_(clock),
+        period_s_(plant.period_s),
         profile_(arm_profile(tables)),
         frame_(frame_of(*profile_.arm, pressing_hand())),
         ends_(open_loopback_pair(error_)),
         cable_(*ends_.first),
         far_cable_(*ends_.second),
-        drives_(cable_, *profile_.arm, 1e-3),
+        drives_(cable_, *profile_.arm, period_s_),
         sim_(far_cable_, *profile_.arm, plant, pressing_arm_hand(frame_.position_w)),
-        device_(drives_, *profile_.arm, frame_, 1e-3) {}
+        device_(drives_, *profile_.arm, frame_, period_s_) {}
 
   // The hand stands still while the drives are set up: simulated time of the hand begins with the loop's.
   std::string start() {
-    return device_.start([this] { sim_.step_bus(); });
+    return device_.start([this, ms = 0]() mutable {
+      if (++ms % pauses_in(period_s_) == 0) sim_.step_bus();
+    });
   }
   void receive(DeviceSample& sample) noexcept {
     while (due_ns_ <= clock_.now_ns()) {
       sim_.step();
-      rendered_N_.push_back(sim_.plant().plant().motor().force_N);
-      due_ns_ += 1'000'000;
+      rendered_.push_back(sim_.plant().plant().motor());
+      rendered_N_.push_back(rendered_.back().force_N);
+      due_ns_ += period_ns();
     }
     device_.receive(sample);
     last_ = sample;
@@ -101,9 +106,13 @@ class WiredArm {
   const DeviceCommand& last_sent() const { return last_sent_; }
   const DeviceSample& last() const { return last_; }
   const std::vector<Vec3>& rendered_N() const { return rendered_N_; }  // in each period
+  const std::vector<Wrench>& rendered() const { return rendered_; }
 
  private:
+  std::int64_t period_ns() const { return static_cast<std::int64_t>(1e9 * period_s_ + 0.5); }
+
   const VirtualClock& clock_;
+  double period_s_;
   std::string error_;
   DeviceProfile profile_;
   CartesianKinematics frame_;
@@ -115,8 +124,9 @@ class WiredArm {
   DeviceCommand last_sent_;
   DeviceSample last_;
   std::vector<Vec3> rendered_N_;
+  std::vector<Wrench> rendered_;
   bool silent_ = false;
-  std::int64_t due_ns_ = 1'000'000;
+  std::int64_t due_ns_ = period_ns();
 };
 
 }  // namespace palpate::test

@@ -137,13 +137,15 @@ struct FaultRun {
   std::vector<Vec3> motor_N;  // rendered in each period of the device
 };
 
-// The real tick and loop on `device`, whose time `clock` is.
+// The real tick and loop on `device`, whose time `clock` is. `change`: of the scene.
 template <class D>
 FaultRun run_on(D& device, VirtualClock& clock, std::uint64_t ticks, double rate_max_N_per_s = 2e4,
                 const Meddle& meddle = {}, std::uint32_t ride_through_ticks = 0,
-                const CartesianKinematics& kinematics = {}, std::uint32_t clutch_buttons = 0) {
+                const CartesianKinematics& kinematics = {}, std::uint32_t clutch_buttons = 0,
+                const std::function<void(ImageBytes&)>& change = {}) {
   ImageBytes image = tiny_image();
   image.params().force_rate_max_N_per_s = rate_max_N_per_s;
+  if (change) change(image);
   image.seal();
   Model model;
   if (open_image(image.bytes(), model).error != ImageError::kNone) ADD_FAILURE() << "the tiny scene is refused";
@@ -160,6 +162,7 @@ FaultRun run_on(D& device, VirtualClock& clock, std::uint64_t ticks, double rate
   HostPort port(&host.region, kHostSilenceTicks, interrupted, stop);
   SupervisedDevice supervised(device, port);
   LoopOptions options;
+  options.deadline.period_ns = deadline_limits(model.params).period_ns;
   options.ticks = ticks;
   options.ride_through_ticks = ride_through_ticks;
   options.clutch_buttons = clutch_buttons;

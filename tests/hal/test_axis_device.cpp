@@ -12,6 +12,7 @@
 namespace palpate {
 namespace {
 
+using test::replaced;
 using testing::HasSubstr;
 
 struct FakeDrives : AxisDrives {
@@ -27,13 +28,13 @@ struct FakeDrives : AxisDrives {
 };
 
 struct Bench {
-  Bench() {
+  explicit Bench(const std::string& tables = test::kArm) : profile(test::arm_profile(tables)) {
     drives.now.fresh = true;
     drives.now.received = 1;
     drives.now.flags = DeviceFlag::kEnabled;
     EXPECT_EQ(device.start([] {}), "");
   }
-  DeviceProfile profile = test::arm_profile(test::kArm);
+  DeviceProfile profile;
   const ArmProfile& arm = *profile.arm;
   FakeDrives drives;
   AxisDevice device{drives, arm, profile.frame, 1e-3};
@@ -84,6 +85,37 @@ TEST(AxisDevice, HoldsTheWeight) {
   EXPECT_NEAR(bench.drives.last.torque_Nm[0], 0, 1e-15);
   EXPECT_NEAR(bench.drives.last.torque_Nm[1], -(0.5 * 0.205 + 0.2) * std::cos(b) / 12, 1e-15);
   EXPECT_NEAR(bench.drives.last.torque_Nm[2], 0.5 * 0.245 * std::cos(c) / 12, 1e-15);
+}
+
+// Against a motor's friction: 0.8 of it when it turns, nothing when it stands, and never more, whatever its encoder
+// says: what holds a motor at rest is stronger, and what brakes one that turns takes more than this gives.
+TEST(AxisDevice, FrictionIsCompensatedByLessThanItIs) {
+  const auto friction = [](const std::string& text) {
+    return replaced(text, "home_deg = 0\n", "home_deg = 0\nfriction_Nm = 0.004\n");
+  };
+  Bench bench(replaced(replaced(friction(test::kArm), "weight_z_N = -0.5\n", ""), "gravity_Nm = 0.2\n", ""));
+  DeviceCommand nothing;
+  nothing.flags = CommandFlag::kEnable;
+  const auto after = [&](double turns) {
+    bench.drives.now.turns[0] = turns;
+    bench.device.receive(bench.sample);
+    bench.device.transmit(nothing);
+    EXPECT_LE(std::abs(bench.drives.last.torque_Nm[0]), 0.8 * 0.004 + 1e-15);
+    EXPECT_EQ(bench.drives.last.torque_Nm[1], 0.0);
+    return bench.drives.last.torque_Nm[0];
+  };
+  double turns = 0, torque_Nm = 0;
+  for (int i = 0; i < 50; ++i) EXPECT_EQ(after(0), 0.0) << "at rest";
+  for (int i = 0; i < 50; ++i) torque_Nm = after(turns += 2e-3);  // 2 turns/s
+  EXPECT_NEAR(torque_Nm, 0.8 * 0.004, 1e-12);
+  for (int i = 0; i < 100; ++i) torque_Nm = after(turns -= 2e-3);
+  EXPECT_NEAR(torque_Nm, -0.8 * 0.004, 1e-12);
+  for (int i = 0; i < 100; ++i) torque_Nm = after(turns);
+  EXPECT_NEAR(torque_Nm, 0, 1e-7) << "a motor that stands is not pushed";
+  // An encoder that flutters by a count: a sixth of that in a millisecond is a third of full speed's half a count.
+  for (int i = 0; i < 100; ++i) EXPECT_LT(std::abs(after(turns + i % 2 / 8192.0)), 0.34 * 0.8 * 0.004);
+  for (const double garbage : {1e300, -1e300, std::numeric_limits<double>::infinity(), 0.0, std::nan(""), 0.0})
+    EXPECT_TRUE(std::isfinite(after(garbage)));
 }
 
 TEST(AxisDevice, NoTorqueBeyondAJointsLimit) {

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "hal/drives/cia402_drives.h"
+#include "hal/drives/cia402_emergency.h"
 #include "hal/drives/cia402_sim.h"
 #include "hal/drives/drive_link.h"
 #include "tests/hal/cable_judge.h"
@@ -36,9 +37,9 @@ std::string tables() {
 }
 
 template <class Meddle>
-std::string refusal(Meddle meddle) {
+std::string refusal(Meddle meddle, const std::string& text = tables()) {
   VirtualClock clock;
-  Cia402Arm arm(tables(), clock);
+  Cia402Arm arm(text, clock);
   meddle(arm.sim());
   const std::string wrong = arm.start();
   for (int i = 0; i < 3; ++i) EXPECT_FALSE(arm.sim().enabled(i)) << "enabled before it was proved";
@@ -120,7 +121,10 @@ TEST(Cia402, WhatIsWrongIsSaidBeforeAMotorIsEnabled) {
   EXPECT_THAT(refusal([](Cia402Sim& s) { s.set_object(1, kSerial, 7); }), HasSubstr("serial number 7 is not that"));
   EXPECT_THAT(refusal([](Cia402Sim& s) { s.set_object(1, kSerial, 102); }),
               HasSubstr("of axis 3: the axes are swapped"));
-  EXPECT_THAT(refusal([](Cia402Sim& s) { s.set_object(0, kPolarity, 0x80); }), HasSubstr("polarity is reversed"));
+  EXPECT_THAT(refusal([](Cia402Sim& s) { s.set_object(0, kPolarity, 0x80); }),
+              HasSubstr("polarity (object 607Eh) is reversed: 0x80"));
+  EXPECT_THAT(refusal([](Cia402Sim& s) { s.hide_object(0, kPolarity); }),
+              HasSubstr("polarity (object 607Eh) cannot be read: abort 0x8000000; a reversed sign would not show"));
   EXPECT_THAT(refusal([](Cia402Sim& s) { s.set_object(0, kEncoderIncrements, 4096); }),
               HasSubstr("encoder increments is 4096, the profile says 8192"));
   EXPECT_THAT(refusal([](Cia402Sim& s) { s.set_object(0, kRatedTorque, 250); }),
@@ -133,7 +137,73 @@ TEST(Cia402, WhatIsWrongIsSaidBeforeAMotorIsEnabled) {
   EXPECT_THAT(refusal([](Cia402Sim& s) { s.freeze_object(2, kAbortOption); }), HasSubstr("its watchdog is off"));
   EXPECT_THAT(refusal([](Cia402Sim& s) { s.freeze_object(2, kTpdoCount + 2); }), HasSubstr("object 1A00h:2 holds 0x0"));
   EXPECT_THAT(refusal([](Cia402Sim& s) { s.freeze_object(2, kMaxTorque); }), HasSubstr("object 6072h:0 holds 0x3E8"));
-  EXPECT_THAT(refusal([](Cia402Sim& s) { s.fail(0, 0x4210); }), HasSubstr("axis 1 (CANopen node 1): is in fault"));
+  EXPECT_THAT(refusal([](Cia402Sim& s) { s.fail(0, 0x4210); }),
+              HasSubstr("axis 1 (CANopen node 1): is in fault, emergency 0x4210 (device too hot; error register 0x09: "
+                        "generic, temperature)"));
+}
+
+// A drive without that object can reverse nothing; the person is told that nothing was compared.
+TEST(Cia402, ADriveWithoutPolarityIsToldOf) {
+  VirtualClock clock;
+  Cia402Arm arm(tables(), clock);
+  arm.sim().remove_object(1, kPolarity);
+  EXPECT_EQ(arm.start(), "");
+  EXPECT_EQ(arm.axes().remarks(),
+            "axis 2 (CANopen node 2): has no polarity object (607Eh): its sign was not compared\n");
+}
+
+// Codes and classes as CiA 301 and the drive profile number them, register bits as object 1001h has them.
+TEST(Cia402, EmergenciesAreToldInWords) {
+  EXPECT_EQ(emergency_text(0x2310, 0x03),
+            "0x2310 (continuous over-current at the motor; error register 0x03: generic, current)");
+  EXPECT_THAT(emergency_text(0x2311, 0x03), HasSubstr("0x2311 (continuous over-current at the motor;"));
+  EXPECT_THAT(emergency_text(0x3210, 0x05), HasSubstr("DC link voltage too high"));
+  EXPECT_THAT(emergency_text(0x3220, 0x05), HasSubstr("DC link voltage too low"));
+  EXPECT_THAT(emergency_text(0x7300, 0x21),
+              HasSubstr("sensor: encoder or its cable; error register 0x21: generic, of "));
+  EXPECT_THAT(emergency_text(0x8130, 0x11), HasSubstr("heartbeat: the controller was not heard in time"));
+  EXPECT_THAT(emergency_text(0x8130, 0x11), HasSubstr("generic, communication)"));
+  EXPECT_THAT(emergency_text(0x8250, 0x10), HasSubstr("an RPDO did not come in time"));
+  EXPECT_THAT(emergency_text(0x5FFF, 0x00), HasSubstr("hardware of the drive; error register 0x00)"));
+  EXPECT_THAT(emergency_text(0xFF07, 0x80),
+              HasSubstr("maker's own: its manual tells; error register 0x80: the maker's"));
+  EXPECT_THAT(emergency_text(0xA000, 0xFF), HasSubstr("no known class"));
+}
+
+// calibrate = "index": the drives were switched on anywhere, and the joints are right all the same.
+std::string indexed() {
+  std::string text = replaced(tables(), "calibrate = \"home_pose\"", "calibrate = \"index\"");
+  for (const char* home : {"home_deg = 0\n", "home_deg = 80\n", "home_deg = -20\n"})
+    text = replaced(text, home, std::string(home) + "home_turns = 0\n");
+  return text;
+}
+
+TEST(Cia402, EncodersCountFromTheirIndexMarks) {
+  VirtualClock clock;
+  Cia402Arm arm(indexed(), clock);
+  ASSERT_EQ(arm.start(), "");
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(arm.sim().object(i, kProbeFunction), 0x15u);
+    // Caught a turn before, at and a turn behind the mark that home_turns counts from.
+    EXPECT_EQ(arm.sim().object(i, kProbePosition), static_cast<std::uint32_t>(-123456 * (i + 1) + 8192 * (i - 1)));
+    EXPECT_FALSE(arm.sim().enabled(i));
+  }
+  const test::FaultRun run = test::run_on(arm, clock, 1500, 2e4, {}, 0, arm.frame());
+  EXPECT_EQ(run.summary.faults, 0u);
+  EXPECT_GT(norm(arm.rendered_N()[1400]), 1.0);
+  // Half a count of 8192 behind 1:12.
+  for (int i = 0; i < 3; ++i) EXPECT_NEAR(arm.axes().joint(i), arm.sim().plant().joint(i), 1e-3) << i;
+}
+
+TEST(Cia402, AnEncoderThatDoesNotPassItsIndexIsRefused) {
+  EXPECT_EQ(refusal([](Cia402Sim& s) { s.lay_beside_home(1, -0.24); }, indexed()), "");
+  EXPECT_THAT(refusal([](Cia402Sim& s) { s.lay_beside_home(1, 0.3125); }, indexed()),
+              HasSubstr("axis 2 (CANopen node 2): lay 0.3125 motor turns from its home pose, which leaves open"));
+  EXPECT_THAT(refusal([](Cia402Sim& s) { s.stay_off_mark(1); }, indexed()),
+              HasSubstr("encoders of axes 2 have not passed their index marks in 10 s: move the handle"));
+  EXPECT_THAT(
+      refusal([](Cia402Sim& s) { s.remove_object(2, kProbeFunction); }, indexed()),
+      HasSubstr("axis 3 (CANopen node 3): object 60B8h:0 refuses 0x0: abort 0x6020000: it cannot tell an index"));
 }
 
 // As for ODrives; torque goes out in thousandths of 0.125 N m: half a step over the lever of 0.2 m, geared up by 12, is
@@ -192,7 +262,8 @@ TEST(Cia402, ALongSilenceEndsInTheDrivesFaultState) {
   EXPECT_EQ(run.summary.faults & Fault::kDeviceSilent, Fault::kDeviceSilent);
 }
 
-std::uint32_t fault_after(const std::function<void(Cia402Sim&)>& meddle, std::uint32_t& code) {
+std::uint32_t fault_after(const std::function<void(Cia402Sim&)>& meddle, std::uint32_t& code,
+                          std::string* remarks = nullptr) {
   VirtualClock clock;
   Cia402Arm arm(tables(), clock);
   EXPECT_EQ(arm.start(), "");
@@ -203,20 +274,26 @@ std::uint32_t fault_after(const std::function<void(Cia402Sim&)>& meddle, std::ui
       },
       0, arm.frame());
   code = arm.last().error_code;
+  if (remarks != nullptr) *remarks = arm.axes().remarks();
   EXPECT_EQ(arm.rendered_N().back(), Vec3{}) << "the hand is free";
   return run.summary.faults;
 }
 
 TEST(Cia402, AnEmergencyIsAFaultWithItsCode) {
   std::uint32_t code = 0;
-  EXPECT_EQ(fault_after([](Cia402Sim& s) { s.fail(1, 0x4210); }, code) & Fault::kDeviceReported,
+  std::string remarks;
+  EXPECT_EQ(fault_after([](Cia402Sim& s) { s.fail(1, 0x4210); }, code, &remarks) & Fault::kDeviceReported,
             Fault::kDeviceReported);
   EXPECT_EQ(code, 0x4210u);
+  EXPECT_EQ(remarks,
+            "axis 2 (CANopen node 2): emergency 0x4210 (device too hot; error register 0x09: generic, temperature)\n");
 }
 
 TEST(Cia402, ADriveThatStartsAnewIsAFault) {
   std::uint32_t code = 0;
-  const std::uint32_t faults = fault_after([](Cia402Sim& s) { s.restart(2); }, code);
+  std::string remarks;
+  const std::uint32_t faults = fault_after([](Cia402Sim& s) { s.restart(2); }, code, &remarks);
+  EXPECT_THAT(remarks, HasSubstr("axis 3 (CANopen node 3): started anew and has lost its set-up"));
   EXPECT_EQ(faults & Fault::kDeviceReported, Fault::kDeviceReported);
   EXPECT_EQ(code, Cia402Drives::kRestarted);
 }
@@ -229,6 +306,7 @@ TEST(Cia402, ATransitionThatIsNotConfirmedIsAFault) {
   const test::FaultRun run = test::run_on(arm, clock, 1500, 2e4, {}, 0, arm.frame());
   EXPECT_EQ(run.summary.faults & Fault::kDeviceReported, Fault::kDeviceReported);
   for (const Vec3 force : arm.rendered_N()) ASSERT_EQ(force, Vec3{}) << "torque before all axes obey";
+  EXPECT_THAT(arm.axes().remarks(), HasSubstr("axis 2 (CANopen node 2): did not confirm a step"));
 }
 
 TEST(Cia402, BadCablesAreBorneOrNoticed) { test::expect_bad_cables_are_borne<Cia402Arm>(tables()); }

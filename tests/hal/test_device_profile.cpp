@@ -171,11 +171,32 @@ TEST(DeviceProfile, AnArmThatCannotBeIsRefused) {
   EXPECT_THAT(arm_with("watchdog_ms = 20", "watchdog_ms = 0"), HasSubstr("range 5 to 100"));
   EXPECT_THAT(arm_with("watchdog_ms = 20\n", ""), HasSubstr("missing in the table above: watchdog_ms"));
   EXPECT_THAT(arm_with("calibrate = \"home_pose\"", "calibrate = \"absolute\""), HasSubstr("home_turns"));
+  EXPECT_THAT(arm_with("home_deg = -20", "home_deg = -20\nfriction_Nm = 0.1"),
+              HasSubstr("axis 3: friction_Nm: must be below torque_max_Nm"));
+  EXPECT_THAT(arm_with("home_deg = -20", "home_deg = -20\nfriction_Nm = -1"), HasSubstr("range 0 to 100"));
+  EXPECT_THAT(arm_with("calibrate = \"home_pose\"", "calibrate = \"index\""), HasSubstr("home_turns"));
   EXPECT_THAT(arm_with("protocol = \"odrive\"", "protocol = \"cia402\""), HasSubstr("vendor_id"));
   EXPECT_THAT(arm_with("scale = 2", "scale = 2\nscale = 2"), HasSubstr("arm.toml:20: scale: given twice"));
   EXPECT_THAT(arm_with("[linkage]", "[frame]"), HasSubstr("a second [frame]"));
   EXPECT_THAT(refusal(std::string(kGood) + "[linkage]\nkind = \"cartesian\"\ncalibrate = \"absolute\"\n"),
               HasSubstr("[drives]"));
+}
+
+// Index marks are asked of the drives that can tell them.
+TEST(DeviceProfile, AnIndexIsReadWhereTheDriverReadsIt) {
+  std::string text = std::string(kGood) + test::kArm;
+  const auto put = [&text](const std::string& old, const std::string& fresh) {
+    text.replace(text.find(old), old.size(), fresh);
+  };
+  put("calibrate = \"home_pose\"", "calibrate = \"index\"");
+  for (const char* home : {"home_deg = 0\n", "home_deg = 80\n", "home_deg = -20\n"})
+    put(home, std::string(home) + "home_turns = 0\n");
+  EXPECT_THAT(refusal(text), HasSubstr("of CiA 402 drives and of a Falcon alone; odrive drives are not asked"));
+  put("protocol = \"odrive\"", "protocol = \"moteus\"");
+  for (const char* key :
+       {"endpoint_enable_watchdog = 182\n", "endpoint_watchdog_timeout = 183\n", "endpoint_direction = 396\n"})
+    put(key, "");
+  EXPECT_THAT(refusal(text), HasSubstr("moteus drives are not asked"));
 }
 
 TEST(DeviceProfile, ASceneAtTheDevicesLimitsFits) { EXPECT_EQ(profile_contradictions(good(), scene()), ""); }

@@ -105,6 +105,8 @@ TEST(Falcon, ProfilesThatNoFalconHasAreRefused) {
   EXPECT_THAT(error_of(replaced(tables(), "torque_max_Nm = 0.053", "torque_max_Nm = 0.06")),
               HasSubstr("more than rated_Nm"));
   EXPECT_THAT(error_of(replaced(tables(), "rated_Nm = 0.053", "")), HasSubstr("rated_Nm"));
+  EXPECT_THAT(error_of(replaced(tables(), "calibrate = \"index\"", "calibrate = \"absolute\"")),
+              HasSubstr("calibrate = \"index\""));
   std::string serial = replaced(tables(), "kind = \"delta\"", "kind = \"serial_3r\"");
   for (const char* key : {"base_mm = 37.23\n", "plate_mm = 14\n", "hinge_mm = 22.5\n", "aside_mm = 2.33\n"})
     serial = replaced(serial, key, "");

@@ -3,9 +3,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <iterator>
+#include <map>
+
+#include "hal/drives/odrive_dbc.h"
 #include "hal/drives/odrive_drives.h"
 #include "hal/drives/odrive_sim.h"
 #include "tests/hal/cable_judge.h"
+#include "tests/hal/dissector.h"
 
 namespace palpate {
 namespace {
@@ -13,6 +19,8 @@ namespace {
 using test::replaced;
 using testing::HasSubstr;
 using ODriveArm = test::WiredArm<ODriveDrives, ODriveSim>;
+
+constexpr int kNodes[] = {1, 2, 3};
 
 // Without the frame of kArm, which test_device_profile reads: the bench has its own.
 std::string tables() { return replaced(test::kArm, "scale = 2\n", ""); }
@@ -114,6 +122,61 @@ TEST(ODrive, ADriveThatTakesNoClosedLoopIsAFault) {
   const test::FaultRun run = test::run_on(arm, clock, 1500, 2e4, {}, 0, arm.frame());
   EXPECT_EQ(run.summary.faults & Fault::kDeviceReported, Fault::kDeviceReported);
   for (const Vec3 force : arm.rendered_N()) ASSERT_EQ(force, Vec3{}) << "torque before all axes obey";
+}
+
+TEST(ODriveDbc, IsWhatTheTableSays) {
+  std::ifstream file(std::string(PALPATE_SOURCE_DIR) + "/docs/odrive.dbc");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_EQ(text, odrive::dbc_text(kNodes)) << "the table changed: write dbc_text({1, 2, 3}) to docs/odrive.dbc";
+}
+
+// A whole start and half a second of force, as candump writes them, read by python-can and canmatrix: each torque is
+// what was sent, each position what the joint was, serial number and firmware those of the profile; nothing is unknown.
+TEST(ODriveDbc, OtherProgramsReadTheBus) {
+  VirtualClock clock;
+  ODriveArm arm(tables(), clock);
+  std::vector<Frame> frames;
+  arm.cable().tap(frames);
+  ASSERT_EQ(arm.start(), "");
+  std::vector<double> sent_Nm[3], counted[3];
+  DeviceCommand command;
+  command.flags = CommandFlag::kEnable;
+  DeviceSample sample;
+  for (int i = 0; i < 500; ++i) {
+    command.force_N = {1.0 - 0.002 * i, 0.5, -1};
+    arm.axes().transmit(command);
+    for (int k = 0; k < 3; ++k) sent_Nm[k].push_back(arm.axes().torque_Nm(k));
+    arm.sim().step_bus();
+    arm.axes().receive(sample);
+    for (int k = 0; k < 3; ++k) counted[k].push_back(arm.sim().plant().turns(k));
+  }
+  const std::string log = testing::TempDir() + "odrive.log";
+  test::write_candump(log, frames);
+  std::map<std::string, std::vector<test::DecodedFrame>> seen;
+  for (const test::DecodedFrame& frame : test::decode(PALPATE_SOURCE_DIR, "docs/odrive.dbc", log))
+    seen[frame.name].push_back(frame);
+  ASSERT_FALSE(seen.empty()) << "python3-can or python3-canmatrix is missing: apt-get install both";
+  EXPECT_EQ(seen.count("unknown"), 0u);
+  for (int k = 0; k < 3; ++k) {
+    const std::string node = "Node" + std::to_string(k + 1) + "_";
+    const auto& torque = seen[node + "SetInputTorque"];
+    const auto& estimate = seen[node + "GetEncoderEstimates"];
+    ASSERT_GE(torque.size(), sent_Nm[k].size());
+    ASSERT_GE(estimate.size(), counted[k].size());
+    for (std::size_t i = 1; i <= 500; ++i) {
+      EXPECT_EQ((torque.end() - static_cast<long>(i))->value.at("Torque"),
+                static_cast<double>(static_cast<float>(sent_Nm[k][500 - i])));
+      EXPECT_EQ((estimate.end() - static_cast<long>(i))->value.at("Position"),
+                static_cast<double>(static_cast<float>(counted[k][500 - i])));
+    }
+    EXPECT_NE(sent_Nm[k].back(), 0.0);
+    EXPECT_EQ(seen[node + "Address"].at(0).value.at("SerialNumber"), 61925406831665.0 + k);
+    EXPECT_EQ(seen[node + "GetVersion"].at(0).value.at("FirmwareRevision"), 10.0);
+    EXPECT_EQ(seen[node + "SetAxisState"].back().value.at("State"), 8.0);
+    EXPECT_EQ(seen[node + "SetControllerMode"].back().value.at("ControlMode"), 1.0);
+    EXPECT_EQ(seen[node + "Heartbeat"].back().value.at("State"), 8.0);
+    EXPECT_EQ(seen[node + "RxSdo"].at(0).value.at("Endpoint"), 396.0) << "the direction is asked first";
+  }
 }
 
 TEST(ODrive, BadCablesAreBorneOrNoticed) { test::expect_bad_cables_are_borne<ODriveArm>(tables()); }

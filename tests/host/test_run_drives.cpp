@@ -30,23 +30,70 @@ class RunDrives : public BallRun {
     std::ofstream(file) << text;
     return file;
   }
+  // A run of the profile's drives, and one of the simulated device that its [device] describes.
+  void expect_like_its_plain_device() {
+    const RunResult drives = run_session(options_);
+    const std::string whole = read(options_.profile);
+    options_.profile = write("plain.toml", whole.substr(0, whole.find("[frame]")));
+    const RunResult plain = run_session(options_);
+    for (const RunResult* run : {&drives, &plain}) {
+      EXPECT_EQ(run->summary.fault, 0u);
+      EXPECT_EQ(run->summary.armed_stale_ticks + run->summary.missed_ticks, 0u);
+      EXPECT_GT(run->summary.device_force_max_N, 0.5);
+    }
+    EXPECT_NEAR(drives.summary.device_force_max_N, plain.summary.device_force_max_N, 0.06);
+  }
 };
 
 // The hand feels what it feels of the plain simulated device with the same [device]: the positions of either differ by
 // less than an encoder step of 0.03 mm, times a coupling of 2 N/mm is 0.06 N.
 TEST_F(RunDrives, FeelLikeADeviceThatReportsItsPose) {
   for (const char* name : {"example-arm-odrive.toml", "example-delta-cia402.toml", "example-arm-moteus.toml"}) {
+    SCOPED_TRACE(name);
     options_.profile = shipped(name);
-    const RunResult drives = run_session(options_);
-    const std::string whole = read(options_.profile);
-    options_.profile = write("plain.toml", whole.substr(0, whole.find("[frame]")));
-    const RunResult plain = run_session(options_);
-    for (const RunResult* run : {&drives, &plain}) {
-      EXPECT_EQ(run->summary.fault, 0u) << name;
-      EXPECT_EQ(run->summary.armed_stale_ticks + run->summary.missed_ticks, 0u) << name;
-      EXPECT_GT(run->summary.device_force_max_N, 0.5) << name;
-    }
-    EXPECT_NEAR(drives.summary.device_force_max_N, plain.summary.device_force_max_N, 0.06) << name;
+    expect_like_its_plain_device();
+  }
+}
+
+// Six drives at the rate their bus has room for, each found by its index mark; the ball is pressed beside the handle's
+// axis, so that they hold a moment, too.
+TEST_F(RunDrives, ASixDriveArmFeelsLikeADeviceThatReportsItsPose) {
+  options_.profile = shipped("example-gimbal-cia402.toml");
+  options_.overlays.setting = {"device.period_ms=2"};
+  std::string scene = kBallScene;
+  scene.insert(scene.find("[path]"), "position_mm = [15, 0, 0]\n");
+  for (const auto& [at, beside] : {std::pair{"[0, 75", "[-15, 75"}, {"[0, 65", "[-15, 65"}, {"[5, 65", "[-10, 65"}})
+    scene.replace(scene.find(at), 6, beside);
+  options_.scene = write("beside.toml", scene);
+  options_.overlays.file = {options_.profile};
+  options_.duration_s = 3.5;
+  expect_like_its_plain_device();
+}
+
+// The linkages no shipped profile has: slides, and two motors in the plane that the hand stays in. Numbers of no
+// device.
+TEST_F(RunDrives, SlidesAndAFiveBarFeelLikeADeviceThatReportsItsPose) {
+  const std::string whole = read(shipped("example-arm-odrive.toml"));
+  const std::string device = whole.substr(0, whole.find("[frame]"));
+  const auto from_drives = whole.substr(whole.find("[drives]"));
+  const std::string drives_table = from_drives.substr(0, from_drives.find("[[axis]]"));
+  const auto axis = [](int node, const std::string& joint) {
+    return "[[axis]]\nnode = " + std::to_string(node) + "\nserial = " + std::to_string(100 + node) +
+           "\ncounts_per_turn = 16384\ndirection = -1\nhome_turns = 0\ntorque_max_Nm = 0.25\n" + joint;
+  };
+  const std::string slide = "mm_per_turn = 20\nhome_mm = 0\nlowest_mm = -150\nhighest_mm = 150\n";
+  const std::string left = "ratio = 12\nhome_deg = 120\nlowest_deg = 45\nhighest_deg = 200\n";
+  const std::string right = "ratio = 12\nhome_deg = 60\nlowest_deg = -20\nhighest_deg = 135\n";
+  const std::string slides = "[frame]\n[linkage]\nkind = \"cartesian\"\ncalibrate = \"absolute\"\n" + drives_table +
+                             axis(1, slide) + axis(2, slide) + axis(3, slide);
+  const std::string five_bar =
+      "[frame]\nposition_y_mm = -110\n[linkage]\nkind = \"five_bar\"\ncalibrate = \"absolute\"\nupper_mm = 100\n"
+      "fore_mm = 150\nbase_mm = 100\n" +
+      drives_table + axis(1, left) + axis(2, right);
+  for (const std::string& tables : {slides, five_bar}) {
+    SCOPED_TRACE(tables);
+    options_.profile = write("drives.toml", device + tables);
+    expect_like_its_plain_device();
   }
 }
 
@@ -56,16 +103,7 @@ TEST_F(RunDrives, AFalconFeelsLikeADeviceThatReportsItsPose) {
   options_.profile = shipped("example-falcon.toml");
   EXPECT_THAT([this] { run_session(options_); }, testing::ThrowsMessage<std::runtime_error>(HasSubstr("--with")));
   options_.overlays.file = {options_.profile};
-  const RunResult drives = run_session(options_);
-  const std::string whole = read(options_.profile);
-  options_.profile = write("plain.toml", whole.substr(0, whole.find("[frame]")));
-  const RunResult plain = run_session(options_);
-  for (const RunResult* run : {&drives, &plain}) {
-    EXPECT_EQ(run->summary.fault, 0u);
-    EXPECT_EQ(run->summary.armed_stale_ticks + run->summary.missed_ticks, 0u);
-    EXPECT_GT(run->summary.device_force_max_N, 0.5);
-  }
-  EXPECT_NEAR(drives.summary.device_force_max_N, plain.summary.device_force_max_N, 0.06);
+  expect_like_its_plain_device();
 }
 
 // The same bytes in the same order, whatever the machine does meanwhile.

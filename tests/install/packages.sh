@@ -27,7 +27,7 @@ done
 usr=$work/root/usr
 for file in bin/palpate bin/palpate-rt bin/palpate-device lib/systemd/system/palpate@.service lib/udev/rules.d/70-palpate.rules \
   share/bash-completion/completions/palpate share/man/man1/palpate.1 share/man/man1/palpate-rt.1 \
-  share/palpate/config/scenes/ellipsoid_mallet.toml share/palpate/examples/device.py share/palpate/examples/palpate_wire.py share/palpate/palpate.dbc \
+  share/palpate/config/scenes/ellipsoid_mallet.toml share/palpate/examples/device.py share/palpate/examples/palpate_wire.py share/palpate/palpate.dbc share/palpate/odrive.dbc \
   include/palpate/rt_core/palpate_core.h lib/libpalpate_core.a; do
   [ -s "$usr/$file" ] || wrong "no package has $file"
 done

@@ -6,6 +6,8 @@ root=$(cd "${1:?usage: board.sh ROOT}" && pwd)
 steps=20000 traced=1500
 # The longest step may take half of a period at 10 kHz and 168 MHz, a common Cortex-M4; the other half is the board's.
 most_cycles=8400
+# What Arm's start-up files give a program by default (Stack_Size 0x400), and the controller's whole RAM.
+most_stack=1024 most_ram=16384
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 for program in arm-none-eabi-gcc qemu-system-arm; do
@@ -40,4 +42,6 @@ read -r calls instructions cycles < <(python3 "$here/cycles.py" "$work/code" "$w
 echo "same bits as here in $steps steps: $expected"
 echo "flash $((text + data)) bytes, RAM $((data + bss)) bytes and $stack of stack, the exercise included"
 echo "longest of $calls steps (a command, its model, control and a status): $instructions instructions, at most $cycles cycles"
+[ "$stack" -gt 0 ] && [ "$stack" -le "$most_stack" ] || { echo "$stack bytes of stack: allowed are 1 to $most_stack"; exit 1; }
+[ $((data + bss + stack)) -le "$most_ram" ] || { echo "more than $most_ram bytes of RAM with the stack"; exit 1; }
 [ "$cycles" -le "$most_cycles" ] || { echo "more than $most_cycles cycles, half of a period of 10 kHz at 168 MHz"; exit 1; }
