@@ -29,7 +29,6 @@ class AxisPlant {
   // What a drive counts, in turns; whole counts.
   double turns(int axis) noexcept;
   void set_fault(int axis, const AxisFault& fault) noexcept { fault_[axis] = fault; }
-  const AxisFault& fault(int axis) const noexcept { return fault_[axis]; }
   double joint(int axis) const noexcept { return joint_[axis]; }
   DevicePlant& plant() noexcept { return plant_; }
   int count() const noexcept { return count_; }

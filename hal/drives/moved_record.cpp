@@ -29,4 +29,10 @@ bool is_moved(const std::string& profile) {
   return now && now == text_of(record_of(profile));
 }
 
+std::string text_if_unmoved(const std::string& device, const std::string& profile) {
+  if (is_moved(profile)) return "";
+  return "signs and axes were not checked with this profile: palpate device-test " + device + " --profile " + profile +
+         " --move";
+}
+
 }  // namespace palpate

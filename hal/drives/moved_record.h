@@ -10,5 +10,7 @@ namespace palpate {
 // "" or why it cannot be written.
 std::string record_moved(const std::string& profile);
 bool is_moved(const std::string& profile);
+// What is missing and the command that mends it; "" where is_moved.
+std::string text_if_unmoved(const std::string& device, const std::string& profile);
 
 }  // namespace palpate

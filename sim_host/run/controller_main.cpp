@@ -275,13 +275,10 @@ void drain(D& device) {
 template <Clock C>
 void start_drives(AxisDevice& arm, const Arguments& arguments, const Connection& connection, C& clock) {
   const bool asked = connection.profile.arm->drives.moved_by_hand > 0;
-  if (const bool real = connection.address.kind != TransportKind::kLoopback;
-      (real || asked) && !is_moved(arguments.profile)) {
-    const std::string wrong = "signs and axes were not checked with this profile: palpate device-test " +
-                              arguments.device + " --profile " + arguments.profile + " --move";
-    if (asked) throw Failure{kUnavailable, "refused, and no motor was enabled: " + wrong};
-    std::fprintf(stderr, "drives: %s\n", wrong.c_str());
-  }
+  const bool matters = asked || connection.address.kind != TransportKind::kLoopback;
+  const std::string unmoved = matters ? text_if_unmoved(arguments.device, arguments.profile) : "";
+  if (asked && !unmoved.empty()) throw Failure{kUnavailable, "refused, and no motor was enabled: " + unmoved};
+  if (!unmoved.empty()) std::fprintf(stderr, "drives: %s\n", unmoved.c_str());
   std::fprintf(stderr, "drives: looking for them\n");
   const std::string wrong = arm.start([&clock] { clock.wait_until(clock.now_ns() + 1'000'000); });
   if (!wrong.empty()) throw Failure{kUnavailable, "refused, and no motor was enabled: " + wrong};
