@@ -36,6 +36,13 @@ double AxisPlant::turns(int axis) noexcept {
   return told_turns_[axis];
 }
 
+void AxisPlant::shift_handle(Vec3 by_m) noexcept {
+  double there[kMaxAxes] = {};
+  if (!linkage_to(arm_.linkage, {plant_.pose().position_m + by_m, plant_.pose().orientation}, there)) return;
+  for (int i = 0; i < count_; ++i)
+    fault_[i].shift_turns += (there[i] - joint_[i]) / joint_per_turn(arm_.axes[static_cast<std::size_t>(i)]);
+}
+
 // F = (dq/dx)^T tau, M = (dq/dw)^T tau, by central differences of the inverse.
 Wrench AxisPlant::on_handle(const double* joint_Nm) const noexcept {
   constexpr double kStep = 1e-6;

@@ -29,6 +29,11 @@ class AxisPlant {
   // What a drive counts, in turns; whole counts.
   double turns(int axis) noexcept;
   void set_fault(int axis, const AxisFault& fault) noexcept { fault_[axis] = fault; }
+  void freeze_encoders(bool frozen) noexcept {
+    for (AxisFault& fault : fault_) fault.frozen = frozen;
+  }
+  // Counts are lost by which the handle seems to stand elsewhere, so far away; nothing where it cannot.
+  void shift_handle(Vec3 by_m) noexcept;
   double joint(int axis) const noexcept { return joint_[axis]; }
   DevicePlant& plant() noexcept { return plant_; }
   int count() const noexcept { return count_; }
