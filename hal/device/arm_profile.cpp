@@ -38,7 +38,8 @@ constexpr ProfileKey<DrivesProfile> kDrivesKeys[] = {
     {&DrivesProfile::revision, "revision", 0, kWord, 1, true},
     {&DrivesProfile::endpoint_watchdog, "endpoint_enable_watchdog", 1, 65535, 1, true},
     {&DrivesProfile::endpoint_watchdog_s, "endpoint_watchdog_timeout", 1, 65535, 1, true},
-    {&DrivesProfile::endpoint_direction, "endpoint_direction", 1, 65535, 1, true}};
+    {&DrivesProfile::endpoint_direction, "endpoint_direction", 1, 65535, 1, true},
+    {&DrivesProfile::moved_by_hand, "moved_by_hand", 0, 1, 1, true}};
 constexpr ProfileKey<AxisProfile> kAxisKeys[] = {{&AxisProfile::node, "node", 1, 127, 1, false},
                                                  {&AxisProfile::serial, "serial", 1, kSerial, 1, true},
                                                  {&AxisProfile::counts_per_turn, "counts_per_turn", 1, 1e8, 1, false},
@@ -204,6 +205,7 @@ std::string ArmReader::check_linkage() {
 std::string ArmReader::finish() {
   if (const std::string wrong = close_table(); !wrong.empty()) return wrong;
   if (!whole(frame_.clutch_button)) return "clutch_button: a whole number";
+  if (!whole(arm_.drives.moved_by_hand)) return "moved_by_hand: 0 or 1";
   if (!given()) return "";
   if (!linkage_given_ || !drives_given_) return "drives need [linkage], [drives] and one [[axis]] for each joint";
   return check_linkage();

@@ -35,6 +35,7 @@ struct DrivesProfile {
   double vendor_id = 0, product_code = 0, revision = 0;   // cia402: object 0x1018
   double endpoint_watchdog = 0, endpoint_watchdog_s = 0;  // odrive: enable_watchdog, watchdog_timeout
   double endpoint_direction = 0;                          // odrive: the sign of its position mapper
+  double moved_by_hand = 0;                               // 1: refused unless device-test --move found it right
 };
 
 // [[axis]], in the order of the joints. "Motor turns" are what the drive counts.

@@ -20,9 +20,31 @@ AxisDevice::AxisDevice(AxisDrives& drives, const ArmProfile& arm, const Cartesia
     turns_handle_ = turns_handle_ && arm.axes[static_cast<std::size_t>(i)].torque_max_Nm > 0;
 }
 
-std::string AxisDevice::start(const AxisDrives::Pause& pause) {
+std::string AxisDevice::find(const AxisDrives::Pause& pause) {
   if (std::string wrong = drives_.start(pause); !wrong.empty()) return wrong;
   return find_home(pause);
+}
+
+std::string AxisDevice::start(const AxisDrives::Pause& pause) {
+  std::string wrong = find(pause);
+  return wrong.empty() ? beyond_limits() : wrong;
+}
+
+// Of where the joints are now.
+std::string AxisDevice::beyond_limits() const {
+  for (int i = 0; i < count_; ++i) {
+    const AxisProfile& axis = arm_.axes[static_cast<std::size_t>(i)];
+    if (joint_[i] >= axis.lowest && joint_[i] <= axis.highest) continue;
+    const bool slide = axis.travel_m > 0;
+    const double unit = slide ? 1e-3 : kPi / 180;
+    char text[160];
+    std::snprintf(text, sizeof text, "axis %d stands at %.4g %s, its limits are %.4g to %.4g: ", i + 1,
+                  joint_[i] / unit, slide ? "mm" : "degrees", axis.lowest / unit, axis.highest / unit);
+    return text + std::string(
+                      "bring the handle within them and start again; if it is, home, direction or ratio are "
+                      "wrong or axes are swapped: palpate device-test ADDRESS --profile FILE --move");
+  }
+  return "";
 }
 
 // A tenth of a second of positions: there must be some, and in the home pose the handle must lie still.
@@ -52,6 +74,7 @@ std::string AxisDevice::find_home(const AxisDrives::Pause& pause) {
     home_turns_[i] = arm_.home_pose ? axes_.turns[i] : axis.home_turns;
     turns_[i] = axes_.turns[i];
   }
+  locate();
   return "";
 }
 

@@ -19,7 +19,11 @@ class AxisDevice {
   // sample says R F^-1, of which the loop makes F R F^-1, the handle's turn as the world sees it.
   AxisDevice(AxisDrives& drives, const ArmProfile& arm, const CartesianKinematics& frame, double period_s) noexcept;
 
-  // drives.start(), then where the joints are: from the home pose the handle must rest in, or the drives' own zeros.
+  // drives.start(), then where the joints are: from the home pose the handle must rest in, or the drives' own zeros. ""
+  // or why not.
+  std::string find(const AxisDrives::Pause& pause);
+  // The same, and every joint must lie within its limits: with the wrong zero, a reversed or another axis it often does
+  // not.
   std::string start(const AxisDrives::Pause& pause);
   void receive(DeviceSample& sample) noexcept;
   bool transmit(const DeviceCommand& command) noexcept;
@@ -37,6 +41,7 @@ class AxisDevice {
 
  private:
   std::string find_home(const AxisDrives::Pause& pause);
+  std::string beyond_limits() const;
   void locate() noexcept;
   void wanted_torques(const DeviceCommand& command, double* torque_Nm) noexcept;
   void bound_torques(double* torque_Nm) noexcept;

@@ -22,10 +22,25 @@ AxisPlant::AxisPlant(const ArmProfile& arm, const PlantOptions& options, HandPat
     start_[i] = arm.home_pose ? joint_[i] : arm.axes[static_cast<std::size_t>(i)].home_joint;
 }
 
-double AxisPlant::turns(int axis) const noexcept {
+double AxisPlant::since_home(int axis) const noexcept {
+  return (joint_[axis] - start_[axis]) / joint_per_turn(arm_.axes[static_cast<std::size_t>(axis)]);
+}
+
+double AxisPlant::turns(int axis) noexcept {
   const AxisProfile& a = arm_.axes[static_cast<std::size_t>(axis)];
-  const double turns = (joint_[axis] - start_[axis]) / joint_per_turn(a) + (arm_.home_pose ? 0.0 : a.home_turns);
-  return std::floor(turns * a.counts_per_turn + 0.5) / a.counts_per_turn;
+  const AxisFault& f = fault_[axis];
+  if (f.frozen) return told_turns_[axis];
+  const double turns =
+      f.scale * since_home(f.reads < 0 ? axis : f.reads) + f.shift_turns + (arm_.home_pose ? 0.0 : a.home_turns);
+  told_turns_[axis] = std::floor(turns * a.counts_per_turn + 0.5) / a.counts_per_turn;
+  return told_turns_[axis];
+}
+
+void AxisPlant::shift_handle(Vec3 by_m) noexcept {
+  double there[kMaxAxes] = {};
+  if (!linkage_to(arm_.linkage, {plant_.pose().position_m + by_m, plant_.pose().orientation}, there)) return;
+  for (int i = 0; i < count_; ++i)
+    fault_[i].shift_turns += (there[i] - joint_[i]) / joint_per_turn(arm_.axes[static_cast<std::size_t>(i)]);
 }
 
 // F = (dq/dx)^T tau, M = (dq/dw)^T tau, by central differences of the inverse.
@@ -50,7 +65,7 @@ Wrench AxisPlant::on_handle(const double* joint_Nm) const noexcept {
 void AxisPlant::step(const double* motor_Nm, const bool* on) noexcept {
   double joint_Nm[kMaxAxes] = {};
   for (int i = 0; i < count_; ++i)
-    joint_Nm[i] = on[i] ? joint_torque(arm_.axes[static_cast<std::size_t>(i)], motor_Nm[i]) : 0.0;
+    joint_Nm[i] = on[i] ? fault_[i].motor * joint_torque(arm_.axes[static_cast<std::size_t>(i)], motor_Nm[i]) : 0.0;
   const Wrench wrench = on_handle(joint_Nm);
   DeviceCommand command{wrench.force_N, wrench.torque_Nm, CommandFlag::kEnable};
   plant_.step(command);

@@ -17,6 +17,8 @@ using namespace moteus;
 constexpr int kFindWait_ms = 500;
 constexpr int kAnswerWait_ms = 100;
 constexpr double kEnableTimeout_s = 0.5;
+constexpr double kSilent_s = 0.1;        // above any silence that passes by itself
+constexpr double kSilentAlone_s = 0.01;  // while others answer: no cable does that
 
 // What every answer tells: mode and position as floats (one sub-frame), the fault code.
 void ask_state(Writer& writer) noexcept {
@@ -74,6 +76,7 @@ void MoteusDrives::apply(Drive& drive, const Part& part) const noexcept {
     if (reg == kFault) drive.fault = static_cast<int>(clamp_to(value, -128, 255));
     if (reg == kPosition) {
       drive.turns = value;
+      drive.silent = 0;
       drive.moved = true;
     }
     if (reg == kModel) drive.model = value;
@@ -267,6 +270,8 @@ std::string MoteusDrives::start(const Pause& pause) {
   for (int i = 0; i < count_ && wrong.empty(); ++i) wrong = prepare(i, pause);
   if (wrong.empty()) wrong = watch_rate(pause);
   starting_ = false;
+  for (Drive& drive : drive_) drive.silent = 0;
+  restarted_ = false;
   return wrong;
 }
 
@@ -279,10 +284,13 @@ std::string MoteusDrives::remarks() const {
 
 void MoteusDrives::judge(AxisSample& sample) noexcept {
   sample.flags = sample.error_code = 0;
-  bool all = true;
+  bool all = true, others_answer = false;
+  for (int i = 0; i < count_; ++i) others_answer = others_answer || drive_[i].silent == 0;
   for (int i = 0; i < count_; ++i) {
     Drive& drive = drive_[i];
     all = all && (drive.mode == kPositionMode || !may_move(i));
+    restarted_ = restarted_ || (was_enabled_ && may_move(i) && drive.mode == kStopped) ||
+                 drive.silent * period_s_ > (others_answer ? kSilentAlone_s : kSilent_s);
     const bool enabling = enable_ && !was_enabled_;
     if (drive.mode == kTimedOut && !enabling) sample.flags |= DeviceFlag::kWatchdog;
     // Enabling stops it first, which clears a fault: until that was answered, an old one is told.
@@ -290,6 +298,10 @@ void MoteusDrives::judge(AxisSample& sample) noexcept {
     sample.flags |= DeviceFlag::kError;
     drive.told = drive.fault;
     if (sample.error_code == 0) sample.error_code = static_cast<std::uint32_t>(drive.fault);
+  }
+  if (restarted_) {
+    sample.flags |= DeviceFlag::kError;
+    sample.error_code = kRestarted;
   }
   if (all && enable_) sample.flags |= DeviceFlag::kEnabled;
   was_enabled_ = enable_ && (was_enabled_ || all);
@@ -303,7 +315,10 @@ void MoteusDrives::judge(AxisSample& sample) noexcept {
 void MoteusDrives::receive(AxisSample& sample) noexcept {
   drain();
   sample.fresh = true;
-  for (int i = 0; i < count_; ++i) sample.fresh = sample.fresh && drive_[i].moved;
+  for (int i = 0; i < count_; ++i) {
+    drive_[i].silent += drive_[i].moved ? 0 : 1;
+    sample.fresh = sample.fresh && drive_[i].moved;
+  }
   sample.received = sample.fresh ? 1 : 0;
   sample.faults = transport_.state() == TransportState::kBusOff ? std::uint32_t{Fault::kBusOff} : 0u;
   judge(sample);
@@ -317,8 +332,8 @@ void MoteusDrives::receive(AxisSample& sample) noexcept {
 // One frame an axis: stopped, or (after a stop, which clears what was before) a torque, zero until all are ready.
 bool MoteusDrives::transmit(const AxisCommand& command) noexcept {
   constexpr std::uint32_t kStops = 2;
-  if (command.enable != enable_) {
-    enable_ = command.enable;
+  if (const bool enable = command.enable && !restarted_; enable != enable_) {
+    enable_ = enable;
     was_enabled_ = false;
     waited_ = 0;
   }

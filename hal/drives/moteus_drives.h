@@ -25,6 +25,11 @@ class MoteusDrives : public AxisDrives {
 
   // Error code where drives do not reach the mode asked for in time.
   static constexpr std::uint32_t kNotEnabled = 0xFFFFFFFF;
+  // A drive that was silent for too long, or stopped by itself without a fault, has most likely started anew: what
+  // start() set is gone, and its position may count from elsewhere. It is not enabled any more; only a new start ends
+  // this. (It obeys the next command at once: one away for a few milliseconds does not show, but no computer starts so
+  // fast.)
+  static constexpr std::uint32_t kRestarted = 0xFFFFFFFE;
 
  private:
   struct Drive {
@@ -32,7 +37,8 @@ class MoteusDrives : public AxisDrives {
     double turns = 0;
     int mode = 0, fault = 0, told = 0;  // told: fault that let go of the hand
     std::uint32_t replies = 0;
-    bool moved = false;  // a position since the last whole set
+    std::uint32_t silent = 0;  // periods since the last position
+    bool moved = false;        // a position since the last whole set
     double model = 0, firmware = 0, map = 0, serial[3] = {}, timeout_s = 0;
     bool known = false, numbered = false, timed = false;  // the above was told
     char text[256] = {};                                  // of the diagnostic stream; start-up alone
@@ -60,7 +66,7 @@ class MoteusDrives : public AxisDrives {
   int count_;
   Drive drive_[kMaxAxes];
   bool starting_ = false;  // text is collected
-  bool enable_ = false, was_enabled_ = false;
+  bool enable_ = false, was_enabled_ = false, restarted_ = false;
   std::uint32_t waited_ = 0;  // periods since `enable_` changed
 };
 

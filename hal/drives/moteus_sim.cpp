@@ -87,7 +87,7 @@ void MoteusSim::write(int axis, const Part& part) noexcept {
   }
 }
 
-double MoteusSim::value_of(int axis, std::uint32_t reg) const noexcept {
+double MoteusSim::value_of(int axis, std::uint32_t reg) noexcept {
   const Drive& drive = drive_[axis];
   const auto profile = static_cast<std::uint64_t>(arm_.axes[static_cast<std::size_t>(axis)].serial);
   const std::uint64_t serial =
@@ -167,13 +167,20 @@ void MoteusSim::answer(int axis, const Frame& frame) {
 
 void MoteusSim::take(const Frame& frame) noexcept {
   for (int i = 0; i < plant_.count(); ++i)
-    if (frame.fd && (frame.id & 0xFF) == static_cast<std::uint32_t>(drive_[i].node) && !(fault_of(i) && fault_.mute))
-      answer(i, frame);
+    if (frame.fd && (frame.id & 0xFF) == static_cast<std::uint32_t>(drive_[i].node) && !silent(i)) answer(i, frame);
+}
+
+void MoteusSim::restart(int axis, int periods) noexcept {
+  Drive fresh;
+  fresh.node = drive_[axis].node;
+  fresh.off_periods = periods;
+  drive_[axis] = fresh;
 }
 
 void MoteusSim::watch() noexcept {
   for (int i = 0; i < plant_.count(); ++i) {
     Drive& drive = drive_[i];
+    if (drive.off_periods > 0) drive.off_periods -= 1;
     drive.fed_s += plant_.plant().options().period_s;
     if (fault_of(i) && fault_.fault != 0) {
       drive.mode = kFaulted;

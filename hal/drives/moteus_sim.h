@@ -29,6 +29,8 @@ class MoteusSim : public DriveSim {
   void step() noexcept override;
   void step_bus() noexcept override;
   void set_fault(const MoteusFault& fault) noexcept { fault_ = fault; }
+  // Without power for so many periods, then as it came: stopped, braking after its time-out.
+  void restart(int axis, int periods) noexcept;
   bool any_enabled() const noexcept override;
   AxisPlant& plant() noexcept override { return plant_; }
   bool enabled(int axis) const noexcept { return drive_[axis].mode == moteus::kPositionMode; }
@@ -45,14 +47,16 @@ class MoteusSim : public DriveSim {
     Command command;
     int timeout_mode = 12;
     double fed_s = 0;
+    int off_periods = 0;      // without power yet
     std::string heard, said;  // of the diagnostic stream
   };
   bool fault_of(int axis) const noexcept { return fault_.axis == axis; }
+  bool silent(int axis) const noexcept { return drive_[axis].off_periods > 0 || (fault_of(axis) && fault_.mute); }
   void take(const Frame& frame) noexcept;
   void answer(int axis, const Frame& frame);
   void write(int axis, const moteus::Part& part) noexcept;
   void set_mode(int axis, int mode) noexcept;
-  double value_of(int axis, std::uint32_t reg) const noexcept;
+  double value_of(int axis, std::uint32_t reg) noexcept;
   void obey(int axis, const std::string& line);
   void watch() noexcept;
 

@@ -17,6 +17,8 @@ constexpr int kAnswerWait_ms = 100;
 constexpr int kEnableFrames = 3, kDisableFrames = 1;  // of each axis
 constexpr int kDisableAtOnce = 2;                     // a period: six axes within the five commands that end a run
 constexpr double kEnableTimeout_s = 0.5;              // heartbeats of 100 ms, and the current loop's start
+constexpr double kSilent_s = 0.1;                     // above any silence that passes by itself
+constexpr double kSilentAlone_s = 0.01;               // while others speak: no cable does that
 
 Frame make(int node, Message message, int length) noexcept { return classic_frame(frame_id(node, message), length); }
 
@@ -222,7 +224,8 @@ std::string ODriveDrives::start(const Pause& pause) {
   for (int i = 0; i < count_; ++i)
     if (std::string wrong = prepare(i, pause); !wrong.empty()) return wrong;
   std::string wrong = watch_rate(pause);
-  for (int i = 0; i < count_; ++i) drive_[i].told = 0;
+  for (Drive& drive : drive_) drive.silent = 0, drive.told = 0;
+  restarted_ = false;
   return wrong;
 }
 
@@ -235,10 +238,15 @@ std::string ODriveDrives::remarks() const {
 
 void ODriveDrives::judge(AxisSample& sample) noexcept {
   sample.flags = sample.error_code = 0;
-  bool all = true;
+  bool all = !enable_ || setup_ >= count_ * kEnableFrames, others_speak = false;
+  for (int i = 0; i < count_; ++i) others_speak = others_speak || drive_[i].silent == 0;
   for (int i = 0; i < count_; ++i) {
-    const Drive& drive = drive_[i];
-    all = all && (drive.state == kClosedLoop || !(arm_.axes[static_cast<std::size_t>(i)].torque_max_Nm > 0));
+    Drive& drive = drive_[i];
+    const bool may_move = arm_.axes[static_cast<std::size_t>(i)].torque_max_Nm > 0;
+    all = all && (drive.state == kClosedLoop || !may_move);
+    // One that lets go by itself says why.
+    const bool left = was_enabled_ && may_move && drive.state != kClosedLoop && drive.error == 0;
+    restarted_ = restarted_ || left || drive.silent * period_s_ > (others_speak ? kSilentAlone_s : kSilent_s);
     if (drive.error == 0) continue;
     if (sample.error_code == 0) sample.error_code = drive.error;
     if ((drive.error & kEstopRequested) != 0) {
@@ -251,6 +259,10 @@ void ODriveDrives::judge(AxisSample& sample) noexcept {
       if (drive.error == kWatchdogExpired && !enabling) sample.flags |= DeviceFlag::kWatchdog;
     }
   }
+  if (restarted_) {
+    sample.flags |= DeviceFlag::kError;
+    sample.error_code = kRestarted;
+  }
   if (all && enable_) sample.flags |= DeviceFlag::kEnabled;
   was_enabled_ = enable_ && (was_enabled_ || all);
   if (was_enabled_ && !all) sample.flags |= DeviceFlag::kWatchdog;
@@ -260,18 +272,24 @@ void ODriveDrives::judge(AxisSample& sample) noexcept {
   }
 }
 
+// Drives send unasked, each by its own clock: one whose position is still under way is taken where it was a period
+// before. Otherwise three that slip past the loop's slots at once, with jitter, leave too few whole sets.
 void ODriveDrives::receive(AxisSample& sample) noexcept {
+  constexpr std::uint32_t kOldest = 1;
   drain();
-  sample.fresh = true;
-  for (int i = 0; i < count_; ++i) sample.fresh = sample.fresh && drive_[i].moved;
+  bool any = false, recent = true;
+  for (int i = 0; i < count_; ++i) {
+    Drive& drive = drive_[i];
+    drive.silent = drive.moved ? 0 : drive.silent + 1;
+    any = any || drive.moved;
+    recent = recent && drive.silent <= kOldest;
+    drive.moved = false;
+  }
+  sample.fresh = any && recent;
   sample.received = sample.fresh ? 1 : 0;
   sample.faults = transport_.state() == TransportState::kBusOff ? std::uint32_t{Fault::kBusOff} : 0u;
   judge(sample);
-  if (!sample.fresh) return;
-  for (int i = 0; i < count_; ++i) {
-    sample.turns[i] = drive_[i].turns;
-    drive_[i].moved = false;
-  }
+  for (int i = 0; i < count_ && sample.fresh; ++i) sample.turns[i] = drive_[i].turns;
 }
 
 // Enabling: for each axis its errors cleared, its mode, its state; disabling: its state.
@@ -286,8 +304,8 @@ Frame ODriveDrives::next_setup() noexcept {
 }
 
 bool ODriveDrives::transmit(const AxisCommand& command) noexcept {
-  if (command.enable != enable_) {
-    enable_ = command.enable;
+  if (const bool enable = command.enable && !restarted_; enable != enable_) {
+    enable_ = enable;
     was_enabled_ = false;
     setup_ = 0;
     waited_ = 0;
@@ -300,7 +318,11 @@ bool ODriveDrives::transmit(const AxisCommand& command) noexcept {
     frames[count] = torque_frame(drive_[count].node, is_finite(torque_Nm) ? torque_Nm : 0.0);
   }
   const int due = count_ * (enable_ ? kEnableFrames : kDisableFrames);
-  for (int i = 0; i < (enable_ ? 1 : kDisableAtOnce) && setup_ < due; ++i) frames[count++] = next_setup();
+  for (int i = 0; i < (enable_ ? 1 : kDisableAtOnce) && setup_ < due; ++i) {
+    frames[count++] = next_setup();
+    // What heartbeats told before is of another enabling.
+    for (int k = 0; k < count_ && enable_ && setup_ == due; ++k) drive_[k].state = 0;
+  }
   return send_frames(transport_, frames, count) == count;
 }
 

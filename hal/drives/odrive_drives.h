@@ -23,6 +23,10 @@ class ODriveDrives : public AxisDrives {
 
   // Error code where drives do not reach the state asked for in time.
   static constexpr std::uint32_t kNotEnabled = 0xFFFFFFFF;
+  // A drive that was silent for too long, or left closed loop without an error, has most likely started anew: what
+  // start() set, its watchdog above all, may be gone, and its position may count from elsewhere. It is not enabled any
+  // more; only a new start ends this.
+  static constexpr std::uint32_t kRestarted = 0xFFFFFFFE;
 
  private:
   struct Drive {
@@ -30,7 +34,8 @@ class ODriveDrives : public AxisDrives {
     double turns = 0;
     std::uint32_t error = 0, state = 0, estimates = 0;
     std::uint32_t told = 0;             // last error since start()
-    bool heard = false, moved = false;  // a heartbeat ever; a position since the last whole set
+    std::uint32_t silent = 0;           // periods since the last position
+    bool heard = false, moved = false;  // a heartbeat ever; a position since the last call
     Frame answer;                       // newest of what start() waits for
     bool answered = false;
   };
@@ -54,7 +59,7 @@ class ODriveDrives : public AxisDrives {
   Drive drive_[kMaxAxes];
   std::uint32_t awaited_id_ = 0;  // of the answer start() waits for; 0: none
   int awaiting_ = 0;
-  bool enable_ = false, was_enabled_ = false;
+  bool enable_ = false, was_enabled_ = false, restarted_ = false;
   int setup_ = 0;             // set-up frames sent since `enable_` changed
   std::uint32_t waited_ = 0;  // periods since then
 };

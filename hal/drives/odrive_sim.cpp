@@ -86,13 +86,35 @@ void ODriveSim::answer(int axis, const Frame& frame) noexcept {
 
 void ODriveSim::take(const Frame& frame) noexcept {
   for (int i = 0; i < plant_.count(); ++i)
-    if (!frame.fd && frame.id >> 5 == static_cast<std::uint32_t>(drive_[i].node) && !(fault_of(i) && fault_.mute))
-      answer(i, frame);
+    if (!frame.fd && frame.id >> 5 == static_cast<std::uint32_t>(drive_[i].node) && !silent(i)) answer(i, frame);
+}
+
+void ODriveSim::restart(int axis, int periods) noexcept {
+  Drive fresh;
+  fresh.node = drive_[axis].node;
+  fresh.off_periods = periods;
+  drive_[axis] = fresh;
+}
+
+// Positions that fall into this period. Early or late by chance is uniform, from one draw of a linear congruence
+// (Knuth's) each.
+int ODriveSim::positions_due(int axis) noexcept {
+  Drive& drive = drive_[axis];
+  const double length = 1 + 1e-6 * drive.ppm;  // of a period, by its clock
+  int count = 0;
+  drive.due -= length;
+  for (; drive.due + drive.late <= 0; ++count) {
+    random_ = 6364136223846793005u * random_ + 1442695040888963407u;
+    drive.late = drive.jitter * (static_cast<double>(random_ >> 11) * 0x1p-52 - 1);
+    drive.due += fault_of(axis) ? fault_.estimate_periods : 1;
+  }
+  return count;
 }
 
 void ODriveSim::watch() noexcept {
   for (int i = 0; i < plant_.count(); ++i) {
     Drive& drive = drive_[i];
+    if (drive.off_periods > 0) drive.off_periods -= 1;
     drive.fed_s += plant_.plant().options().period_s;
     if (fault_of(i)) drive.error |= fault_.error;
     if (drive.watchdog && drive.fed_s > static_cast<double>(drive.watchdog_s) &&
@@ -107,9 +129,8 @@ void ODriveSim::watch() noexcept {
 void ODriveSim::send_state() noexcept {
   constexpr std::uint64_t kHeartbeatPeriods = 20;
   for (int i = 0; i < plant_.count(); ++i) {
-    if (fault_of(i) && fault_.mute) continue;
-    const int every = fault_of(i) ? fault_.estimate_periods : 1;
-    if (periods_ % static_cast<std::uint64_t>(every) == 0) {
+    if (silent(i)) continue;
+    for (int n = positions_due(i); n > 0; --n) {
       Frame frame = classic_frame(frame_id(drive_[i].node, kGetEncoderEstimates), 8);
       put_bytes(frame, 0, static_cast<float>(plant_.turns(i)));
       send_frames(transport_, &frame, 1);

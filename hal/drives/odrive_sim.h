@@ -38,6 +38,13 @@ class ODriveSim : public DriveSim {
     return any;
   }
   AxisPlant& plant() noexcept override { return plant_; }
+  // Without power for so many periods, then as it came: idle, its watchdog off.
+  void restart(int axis, int periods) noexcept;
+  // Each drive sends by its own crystal, so many parts per million fast, and a little early or late by chance.
+  void set_clock(int axis, double ppm, double jitter_periods = 0) noexcept {
+    drive_[axis].ppm = ppm;
+    drive_[axis].jitter = jitter_periods;
+  }
   double torque_Nm(int axis) const noexcept { return on(axis) ? drive_[axis].torque_Nm : 0.0; }
   bool closed_loop(int axis) const noexcept { return drive_[axis].state == 8; }
   bool watchdog_on(int axis) const noexcept { return drive_[axis].watchdog; }
@@ -52,9 +59,13 @@ class ODriveSim : public DriveSim {
     bool torque_mode = false, watchdog = false;
     float watchdog_s = 0;
     double fed_s = 0;
+    int off_periods = 0;                              // without power yet
+    double ppm = 0, jitter = 0, due = 0.5, late = 0;  // periods until its next position
   };
   bool on(int axis) const noexcept { return drive_[axis].state == 8 && drive_[axis].torque_mode; }
   bool fault_of(int axis) const noexcept { return fault_.axis == axis; }
+  bool silent(int axis) const noexcept { return drive_[axis].off_periods > 0 || (fault_of(axis) && fault_.mute); }
+  int positions_due(int axis) noexcept;
   void take(const Frame& frame) noexcept;
   void answer(int axis, const Frame& question) noexcept;
   void take_sdo(int axis, const Frame& frame) noexcept;
@@ -70,6 +81,7 @@ class ODriveSim : public DriveSim {
   Drive drive_[kMaxAxes];
   std::uint8_t firmware_[3] = {};
   std::uint64_t periods_ = 0, watchdogs_ = 0;
+  std::uint64_t random_ = 1;
 };
 
 }  // namespace palpate

@@ -19,7 +19,7 @@ struct Options {
   std::string device = "loopback", profile, identify;
   int cpu = -1;
   int priority = 80;
-  bool json = false;
+  bool json = false, ask = false;
 };
 
 int measure(const Options& options, Json& json) {
@@ -64,7 +64,12 @@ int tell(const std::vector<DoctorItem>& items, Json& json) {
 }
 
 int run_doctor(const Options& options, Json& json) {
-  if (options.device == kFind) return tell(find_devices("/", listen_to_bus), json) == 0 ? kExitOk : kExitFailed;
+  const bool find = options.device == kFind;
+  if (options.ask && !find) throw CLI::ValidationError("--ask", "goes with --device without an address");
+  if (find) {
+    const auto found = find_devices("/", listen_to_bus, options.ask ? AskOn(ask_on_bus) : AskOn());
+    return tell(found, json) == 0 ? kExitOk : kExitFailed;
+  }
   std::vector<DoctorItem> items = examine_machine_and_device(options.cpu, options.priority, options.device);
   const std::vector<DoctorItem> profile = examine_profile(options.device, options.profile);
   items.insert(items.end(), profile.begin(), profile.end());
@@ -85,6 +90,9 @@ void add_doctor_command(CLI::App& app, int& exit_code) {
       ->expected(0, 1)
       ->default_str(kFind)  // of the option without a value
       ->type_name("[ADDRESS]");
+  command->add_flag("--ask", options->ask,
+                    "with --device: also asks for moteus controllers, which speak only then: one read of a register "
+                    "for each of 1 to 127, on CAN FD interfaces where no classic frame is heard");
   command->add_option("--profile", options->profile, "the device's profile (config/devices/*.toml)");
   command->add_option("--cpu", options->cpu, "CPU the controller will run on");
   command->add_option("--priority", options->priority, "SCHED_FIFO priority of the loop")
@@ -97,7 +105,8 @@ void add_doctor_command(CLI::App& app, int& exit_code) {
       ->check(ends_in({".toml"}));
   command->footer(
       "Exits with 1 when an item fails; unknown ones do not count.\n"
-      "Examples:\n  palpate doctor\n  palpate doctor --device\n  palpate doctor --device can:can0 --profile arm.toml "
+      "Examples:\n  palpate doctor\n  palpate doctor --device\n  palpate doctor --device --ask\n  palpate doctor "
+      "--device can:can0 --profile arm.toml "
       "--cpu 3\n"
       "  palpate doctor --identify measured.toml --profile config/devices/sim-6dof.toml");
   add_json_flag(*command, options->json);

@@ -1,5 +1,6 @@
 #include "sim_host/doctor/find_devices.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <map>
 #include <set>
@@ -8,9 +9,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "hal/bus/device_address.h"
 #include "hal/bus/socketcan.h"
 #include "hal/bus/usb_hid.h"
 #include "hal/loop/clock.h"
+#include "hal/system/device_lock.h"
+#include "sim_host/doctor/ask_moteus.h"
 #include "sim_host/doctor/bus_speakers.h"
 #include "sim_host/doctor/doctor_files.h"
 
@@ -55,7 +59,41 @@ DoctorItem item_of(const std::string& address, Protocol protocol, const std::vec
   return open_node_item(address, protocol == Protocol::kOpenNodeClassic, nodes);
 }
 
-void find_on_bus(const std::string& name, bool fd, const ListenTo& listen, std::vector<DoctorItem>& items) {
+// What asks for moteus controllers adds; with nobody found, the next step.
+void ask_bus(const std::string& name, const std::vector<Frame>& heard, const AskOn& ask,
+             std::vector<DoctorItem>& items) {
+  const std::string address = "can:" + name;
+  if (!ask) return;
+  if (std::ranges::any_of(heard, [](const Frame& frame) { return !frame.fd; })) {
+    items.push_back({address, Verdict::kUnknown,
+                     "moteus not asked for: classic frames were heard, whose nodes CAN FD may disturb", ""});
+    return;
+  }
+  const BusAnswers answers = ask(name);
+  if (!answers.error.empty())
+    items.push_back({address, Verdict::kUnknown, "moteus not asked for: " + answers.error, ""});
+  if (!answers.moteus.empty())
+    items.push_back(drives_item(fmt::format("{}: moteus {}", address, fmt::join(answers.moteus, ", ")), address,
+                                "moteus", "example-arm-moteus.toml"));
+}
+
+DoctorItem nobody(const std::string& address, bool fd, bool asked, const std::vector<Frame>& heard) {
+  std::set<std::uint32_t> others;
+  for (const Frame& frame : heard) others.insert(frame.id);
+  const std::string silent = fmt::format(
+      "nobody heard for half a second{}: power, termination, bit rate; a drive may keep silent until its heartbeat is "
+      "set{}",
+      asked ? ", no moteus answers" : "", fd && !asked ? ", a moteus until it is asked" : "");
+  return {address, Verdict::kUnknown,
+          others.empty() ? silent
+                         : fmt::format("{} frames of {} identifiers, of no driver here, the first {:#x}", heard.size(),
+                                       others.size(), *others.begin()),
+          (fd && !asked ? "palpate doctor --device --ask   (asks each moteus there can be), or " : "") +
+              ("palpate device-test " + address) + " --profile FILE   (asks the drives of a profile)"};
+}
+
+void find_on_bus(const std::string& name, bool fd, const ListenTo& listen, const AskOn& ask,
+                 std::vector<DoctorItem>& items) {
   const std::string address = "can:" + name;
   const BusTraffic traffic = listen(name, fd);
   if (!traffic.error.empty()) {
@@ -64,21 +102,13 @@ void find_on_bus(const std::string& name, bool fd, const ListenTo& listen, std::
   }
   std::map<Protocol, std::vector<int>> nodes;
   for (const Speaker& speaker : speakers_of(traffic.frames)) nodes[speaker.protocol].push_back(speaker.node);
+  const std::size_t before = items.size();
   for (const auto& [protocol, list] : nodes) items.push_back(item_of(address, protocol, list));
-  if (!nodes.empty()) return;
-  std::set<std::uint32_t> others;
-  for (const Frame& frame : traffic.frames) others.insert(frame.id);
-  const std::string silent =
-      "nobody heard for half a second: power, termination, bit rate; a drive may keep silent until "
-      "its heartbeat is set";
-  items.push_back({address, Verdict::kUnknown,
-                   others.empty() ? silent
-                                  : fmt::format("{} frames of {} identifiers, of no driver here, the first {:#x}",
-                                                traffic.frames.size(), others.size(), *others.begin()),
-                   "palpate device-test " + address + " --profile FILE   (asks the drives of a profile)"});
+  if (fd) ask_bus(name, traffic.frames, ask, items);
+  if (items.size() == before) items.push_back(nobody(address, fd, static_cast<bool>(ask), traffic.frames));
 }
 
-void find_can(const fs::path& root, const ListenTo& listen, std::vector<DoctorItem>& items) {
+void find_can(const fs::path& root, const ListenTo& listen, const AskOn& ask, std::vector<DoctorItem>& items) {
   std::error_code error;
   std::set<std::string> names;
   for (const auto& entry : fs::directory_iterator(root / "sys/class/net", error))
@@ -92,7 +122,7 @@ void find_can(const fs::path& root, const ListenTo& listen, std::vector<DoctorIt
       items.push_back({"can:" + name, Verdict::kFail, "down", "ip link set " + name + " up" + (is_chip ? rate : "")});
       continue;
     }
-    find_on_bus(name, doctor::number(first_line(folder / "mtu")).value_or(0) >= kFdMtu, listen, items);
+    find_on_bus(name, doctor::number(first_line(folder / "mtu")).value_or(0) >= kFdMtu, listen, ask, items);
   }
 }
 
@@ -149,9 +179,9 @@ void find_usb(const fs::path& root, std::vector<DoctorItem>& items) {
 
 }  // namespace
 
-std::vector<DoctorItem> find_devices(const fs::path& root, const ListenTo& listen) {
+std::vector<DoctorItem> find_devices(const fs::path& root, const ListenTo& listen, const AskOn& ask) {
   std::vector<DoctorItem> items;
-  find_can(root, listen, items);
+  find_can(root, listen, ask, items);
   find_hid(root, items);
   find_usb(root, items);
   if (items.empty())
@@ -174,6 +204,17 @@ BusTraffic listen_to_bus(const std::string& interface, bool fd) {
     for (int k = 0; k < count && traffic.frames.size() < kMostFrames; ++k) traffic.frames.push_back(frames[k]);
   }
   return traffic;
+}
+
+BusAnswers ask_on_bus(const std::string& interface) {
+  BusAnswers answers;
+  const DeviceLock lock = DeviceLock::take(lock_name({TransportKind::kCan, interface}), answers.error);
+  if (!lock) return answers;
+  const std::unique_ptr<Transport> transport = open_socketcan({interface, true, {}, true}, answers.error);
+  if (!transport) return answers;
+  MonotonicClock clock;
+  answers.moteus = ask_moteus(*transport, [&clock] { clock.wait_until(clock.now_ns() + 1'000'000); });
+  return answers;
 }
 
 }  // namespace palpate

@@ -19,6 +19,7 @@
 #include "hal/device/device_profile.h"
 #include "hal/drives/axis_device.h"
 #include "hal/drives/drive_link.h"
+#include "hal/drives/moved_record.h"
 #include "hal/loop/lockstep.h"
 #include "hal/loop/loop.h"
 #include "hal/system/device_lock.h"
@@ -272,7 +273,12 @@ void drain(D& device) {
 
 // Drives are found, proved and set up; none is enabled.
 template <Clock C>
-void start_drives(AxisDevice& arm, C& clock) {
+void start_drives(AxisDevice& arm, const Arguments& arguments, const Connection& connection, C& clock) {
+  const bool asked = connection.profile.arm->drives.moved_by_hand > 0;
+  const bool matters = asked || connection.address.kind != TransportKind::kLoopback;
+  const std::string unmoved = matters ? text_if_unmoved(arguments.device, arguments.profile) : "";
+  if (asked && !unmoved.empty()) throw Failure{kUnavailable, "refused, and no motor was enabled: " + unmoved};
+  if (!unmoved.empty()) std::fprintf(stderr, "drives: %s\n", unmoved.c_str());
   std::fprintf(stderr, "drives: looking for them\n");
   const std::string wrong = arm.start([&clock] { clock.wait_until(clock.now_ns() + 1'000'000); });
   if (!wrong.empty()) throw Failure{kUnavailable, "refused, and no motor was enabled: " + wrong};
@@ -339,7 +345,7 @@ LoopSummary run_loop(const Arguments& arguments, const Model& model, Core& core,
   SceneShelf shelf(model, [&](const Model& next) { return refuse_scene(arguments, connection, next); });
   SwitchingController controller(model, *core.state, *core.scratch, shelf, port,
                                  host.telemetry ? &host.writer : nullptr);
-  if constexpr (std::same_as<D, AxisDevice>) start_drives(bus, clock);
+  if constexpr (std::same_as<D, AxisDevice>) start_drives(bus, arguments, connection, clock);
   LoopSummary summary;
   std::thread thread([&] {
     const RtSetup setup(rt_options(arguments));

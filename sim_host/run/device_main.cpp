@@ -19,6 +19,7 @@
 #include "hal/device/device_node.h"
 #include "hal/device/device_profile.h"
 #include "hal/device/fault_player.h"
+#include "hal/drives/drive_faults.h"
 #include "hal/drives/drive_link.h"
 #include "hal/loop/clock.h"
 #include "hal/loop/deadline.h"
@@ -52,7 +53,8 @@ constexpr char kHelp[] =
     "  --bus-model B      classic or fd: frames take the time they need at 1 Mbit/s (fd: data at 5 Mbit/s)\n"
     "  --hand-fd N        inherited memory that says where the hand is pulled (palpate view); it leaves its motion "
     "then\n"
-    "  --faults FILE      misbehave by script, one line per fault: AT_S KIND [VALUE]; see below\n"
+    "  --faults FILE      misbehave by script, one line per fault: AT_S KIND [VALUE]; see below; drives by the path's "
+    "time: lose, silence, miss, deaf, freeze, jump\n"
     "  --priority P       SCHED_FIFO priority 1..98; default 0: ordinary scheduling\n"
     "  --cpu N            pin to this CPU\n"
     "  --set NAME=VALUE   a property of device or hand, repeatable; SI units:\n";
@@ -266,8 +268,8 @@ void run_node(DeviceNode& node, FaultPlayer& faults, BusModel* bus, const Argume
 // The drives of a profile, one step per period. The hand holds the handle at its path's first pose until the controller
 // has found them and enables one: a search takes about a second, in which a path would be half over.
 template <Clock C>
-void run_drives(DriveSim& drives, const CartesianKinematics& frame, const Transport& transport,
-                const Arguments& arguments, C& clock, std::int64_t deadline_ns, const std::atomic<bool>& stop) {
+void run_drives(DriveSim& drives, const CartesianKinematics& frame, DriveFaults& transport, const Arguments& arguments,
+                C& clock, std::int64_t deadline_ns, const std::atomic<bool>& stop) {
   const SharedMemory hand = hand_memory(arguments.hand_fd);
   bool begun = false;
   const auto period_ns = static_cast<std::int64_t>(1e9 * arguments.plant.period_s + 0.5);
@@ -279,6 +281,7 @@ void run_drives(DriveSim& drives, const CartesianKinematics& frame, const Transp
     clock.wait_until(deadline_ns);
     pull_hand(hand, drives.plant().plant(), &frame);
     begun = begun || drives.any_enabled();
+    if (begun) transport.advance(drives);
     begun ? drives.step() : drives.step_bus();
   }
 }
@@ -288,23 +291,26 @@ int simulate_drives(const Arguments& arguments, const DeviceAddress& address, co
   const std::optional<DeviceProfile> profile = read_device_profile(arguments.profile, error);
   if (!profile) throw Failure{kUsage, error};
   if (!profile->arm) throw Failure{kUsage, arguments.profile + ": has no [drives]; leave --profile out"};
-  if (!arguments.faults.empty() || !arguments.bus_model.empty())
-    throw Failure{kUsage, "--profile: simulated drives take no --faults and no --bus-model"};
+  if (!arguments.bus_model.empty()) throw Failure{kUsage, "--profile: simulated drives take no --bus-model"};
+  std::vector<FaultLine> script = load_faults(arguments.faults);
+  if (const std::string wrong = DriveFaults::refuse(script); !wrong.empty())
+    throw Failure{kUsage, arguments.faults + ": " + wrong};
   constexpr int kTimeout_ms = 10'000;
   const std::unique_ptr<Transport> transport =
       arguments.device_fd >= 0 ? adopt_loopback(arguments.device_fd, error)
                                : open_drives(address, *profile->arm, DeviceSide::kDevice, kTimeout_ms, error);
   if (!transport) throw Failure{kUnavailable, error};
+  DriveFaults faulty(*transport, std::move(script), arguments.plant.period_s);
   const std::unique_ptr<DriveSim> drives =
-      make_drive_sim(*transport, *profile->arm, arguments.plant, path_in(profile->frame, load_poses(arguments.path)));
+      make_drive_sim(faulty, *profile->arm, arguments.plant, path_in(profile->frame, load_poses(arguments.path)));
   if (arguments.turn_fd >= 0) {
     FollowerClock clock(arguments.turn_fd, stop);
-    run_drives(*drives, profile->frame, *transport, arguments, clock, clock.now_ns(), stop);
+    run_drives(*drives, profile->frame, faulty, arguments, clock, clock.now_ns(), stop);
   } else {
     MonotonicClock clock;
     const auto period_ns = static_cast<std::int64_t>(1e9 * arguments.plant.period_s + 0.5);
     const std::int64_t first_ns = first_slot_ns(clock.now_ns(), period_ns, step_phase_ns(period_ns));
-    run_drives(*drives, profile->frame, *transport, arguments, clock, first_ns - period_ns, stop);
+    run_drives(*drives, profile->frame, faulty, arguments, clock, first_ns - period_ns, stop);
   }
   return kOk;
 }

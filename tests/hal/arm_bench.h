@@ -102,6 +102,7 @@ class WiredArm {
   BadCable& cable() { return cable_; }          // at the controller
   BadCable& far_cable() { return far_cable_; }  // at the drives
   AxisDevice& axes() { return device_; }
+  const ArmProfile& arm() const { return *profile_.arm; }
   const CartesianKinematics& frame() const { return frame_; }
   const DeviceCommand& last_sent() const { return last_sent_; }
   const DeviceSample& last() const { return last_; }

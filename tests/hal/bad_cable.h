@@ -14,7 +14,18 @@ namespace palpate::test {
 class BadCable : public Transport {
  public:
   // Of what this end receives, but for the two that name what it sends.
-  enum class Fault { kNone, kLose, kDuplicate, kReorder, kDelay, kCorrupt, kLoseSent, kFullQueue, kBusOff };
+  enum class Fault {
+    kNone,
+    kLose,
+    kLoseEverySecond,
+    kDuplicate,
+    kReorder,
+    kDelay,
+    kCorrupt,
+    kLoseSent,
+    kFullQueue,
+    kBusOff
+  };
   explicit BadCable(Transport& inner) : inner_(inner) {}
   void set(Fault fault) { fault_ = fault; }
   void tap(std::vector<Frame>& frames) { tap_ = &frames; }  // all that passes is written there, both ways
@@ -28,6 +39,7 @@ class BadCable : public Transport {
     Frame arrived[kMaxFramesPerReceive];
     const int count = inner_.receive(arrived);
     if (tap_ != nullptr) tap_->insert(tap_->end(), arrived, arrived + count);
+    even_ = !even_;
     const std::size_t older = held_.size();
     if (!behind_ && fault_ != Fault::kDelay) release(older);
     for (int i = 0; i < count; ++i) take(arrived[i]);
@@ -50,6 +62,7 @@ class BadCable : public Transport {
   }
   void take(Frame frame) {
     if (fault_ == Fault::kLose || fault_ == Fault::kBusOff) return;
+    if (fault_ == Fault::kLoseEverySecond && even_) return;
     if (fault_ == Fault::kDelay || fault_ == Fault::kReorder) return held_.push_back(frame);
     if (fault_ == Fault::kCorrupt && frame.length > 0)
       frame.data[draw_() % frame.length] ^= static_cast<std::uint8_t>(1u << draw_() % 8);
@@ -60,6 +73,7 @@ class BadCable : public Transport {
   Fault fault_ = Fault::kNone;
   std::vector<Frame>* tap_ = nullptr;
   std::deque<Frame> held_, ready_;  // what waits, and what is to be handed out
+  bool even_ = false;               // of two calls
   bool behind_ = false;             // what waits comes after what arrives next
   std::mt19937 draw_{17};
 };

@@ -11,8 +11,8 @@
 #include "hal/drives/cia402_emergency.h"
 #include "hal/drives/cia402_sim.h"
 #include "hal/drives/drive_link.h"
-#include "tests/hal/cable_judge.h"
 #include "tests/hal/dissector.h"
+#include "tests/hal/encoder_judge.h"
 
 namespace palpate {
 namespace {
@@ -311,6 +311,8 @@ TEST(Cia402, ATransitionThatIsNotConfirmedIsAFault) {
 
 TEST(Cia402, BadCablesAreBorneOrNoticed) { test::expect_bad_cables_are_borne<Cia402Arm>(tables()); }
 TEST(Cia402, GarbledCommandsEndWithTheCable) { test::expect_garbled_commands_end_with_the_cable<Cia402Arm>(tables()); }
+TEST(Cia402, WrongEncodersAreBorneOrNoticed) { test::expect_wrong_encoders_are_borne<Cia402Arm>(tables()); }
+TEST(Cia402, SparsePositionsAreAFault) { test::expect_sparse_positions_are_a_fault<Cia402Arm>(tables()); }
 
 // 95 + 115 us an axis, 55 for SYNC, 65 for the heartbeat, 146 for an error: three fit 900 us, six do not.
 TEST(DriveBudget, Cia402) {

@@ -10,7 +10,7 @@
 #include "hal/drives/drive_link.h"
 #include "hal/drives/falcon_drives.h"
 #include "hal/drives/falcon_sim.h"
-#include "tests/hal/cable_judge.h"
+#include "tests/hal/encoder_judge.h"
 
 namespace palpate {
 namespace {
@@ -151,6 +151,8 @@ TEST(Falcon, ALostHomeIsAFaultAndFreesTheHand) {
 
 TEST(Falcon, BadCablesAreBorneOrNoticed) { test::expect_bad_cables_are_borne<FalconArm>(tables()); }
 TEST(Falcon, GarbledCommandsEndWithTheCable) { test::expect_garbled_commands_end_with_the_cable<FalconArm>(tables()); }
+TEST(Falcon, WrongEncodersAreBorneOrNoticed) { test::expect_wrong_encoders_are_borne<FalconArm>(tables()); }
+TEST(Falcon, SparsePositionsAreAFault) { test::expect_sparse_positions_are_a_fault<FalconArm>(tables()); }
 
 TEST(Falcon, IsSpokenToOverUsbAndNothingElse) {
   const DeviceProfile profile = test::arm_profile(tables());

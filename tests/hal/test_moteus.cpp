@@ -8,7 +8,7 @@
 #include "hal/drives/drive_link.h"
 #include "hal/drives/moteus_drives.h"
 #include "hal/drives/moteus_sim.h"
-#include "tests/hal/cable_judge.h"
+#include "tests/hal/encoder_judge.h"
 
 namespace palpate {
 namespace {
@@ -215,6 +215,15 @@ TEST(Moteus, ADriveThatStaysStoppedIsAFault) {
 
 TEST(Moteus, BadCablesAreBorneOrNoticed) { test::expect_bad_cables_are_borne<MoteusArm>(tables()); }
 TEST(Moteus, GarbledCommandsEndWithTheCable) { test::expect_garbled_commands_end_with_the_cable<MoteusArm>(tables()); }
+TEST(Moteus, WrongEncodersAreBorneOrNoticed) { test::expect_wrong_encoders_are_borne<MoteusArm>(tables()); }
+TEST(Moteus, SparsePositionsAreAFault) { test::expect_sparse_positions_are_a_fault<MoteusArm>(tables()); }
+
+// What start() set is gone with the power: enabling it again would drive it without its watchdog.
+TEST(Moteus, ADriveThatStartsAnewIsAFaultUntilTheControllerDoes) {
+  test::expect_a_restart_is_a_fault<MoteusArm>(
+      tables(), MoteusDrives::kRestarted, {20, 300},
+      [](MoteusSim& sim, int axis, int periods) { sim.restart(axis, periods); });
+}
 
 // Each axis 32 bytes down with 29 bits of identifier and 16 up, at 1 and 5 Mbit/s: three fit, four do not.
 TEST(DriveBudget, Moteus) {

@@ -10,8 +10,8 @@
 #include "hal/drives/odrive_dbc.h"
 #include "hal/drives/odrive_drives.h"
 #include "hal/drives/odrive_sim.h"
-#include "tests/hal/cable_judge.h"
 #include "tests/hal/dissector.h"
+#include "tests/hal/encoder_judge.h"
 
 namespace palpate {
 namespace {
@@ -181,6 +181,59 @@ TEST(ODriveDbc, OtherProgramsReadTheBus) {
 
 TEST(ODrive, BadCablesAreBorneOrNoticed) { test::expect_bad_cables_are_borne<ODriveArm>(tables()); }
 TEST(ODrive, GarbledCommandsEndWithTheCable) { test::expect_garbled_commands_end_with_the_cable<ODriveArm>(tables()); }
+
+TEST(ODrive, WrongEncodersAreBorneOrNoticed) { test::expect_wrong_encoders_are_borne<ODriveArm>(tables()); }
+TEST(ODrive, SparsePositionsAreAFault) { test::expect_sparse_positions_are_a_fault<ODriveArm>(tables()); }
+
+// What start() set is gone with the power: enabling it again would drive it without its watchdog.
+TEST(ODrive, ADriveThatStartsAnewIsAFaultUntilTheControllerDoes) {
+  test::expect_a_restart_is_a_fault<ODriveArm>(
+      tables(), ODriveDrives::kRestarted, {1, 20, 300},
+      [](ODriveSim& sim, int axis, int periods) { sim.restart(axis, periods); });
+}
+
+TEST(ODrive, AnEmergencyStopIsAFaultAndFreesTheHand) {
+  VirtualClock clock;
+  ODriveArm arm(tables(), clock);
+  ASSERT_EQ(arm.start(), "");
+  const test::FaultRun run = test::run_on(
+      arm, clock, 1500, 2e4,
+      [&arm](const test::Surroundings& s) {
+        if (s.tick == 800) arm.sim().set_fault({.axis = 2, .error = odrive::kEstopRequested});
+      },
+      0, arm.frame());
+  EXPECT_EQ(run.summary.faults & Fault::kDeviceReported, Fault::kDeviceReported);
+  EXPECT_EQ(arm.last().flags & DeviceFlag::kStopButton, DeviceFlag::kStopButton);
+  EXPECT_EQ(arm.rendered_N().back(), Vec3{});
+}
+
+// They send unasked, each by its own crystal: 100 ppm are a period in 10 s, and their phases meet the loop's slots in
+// turn. A position that is not there yet is that of the period before; two at once count once.
+TEST(ODrive, ClocksThatDriftAreBridged) {
+  VirtualClock clock;
+  ODriveArm arm(tables(), clock);
+  ASSERT_EQ(arm.start(), "");
+  arm.sim().set_clock(0, 100);
+  arm.sim().set_clock(2, -100);
+  const test::FaultRun run = test::run_on(arm, clock, 30'000, 2e4, {}, 0, arm.frame());
+  EXPECT_EQ(run.summary.faults, 0u);
+  EXPECT_EQ(run.summary.stale_ticks, 0u) << "while one slips the others are there";
+  EXPECT_GT(norm(arm.rendered_N()[29'000]), 1.0);
+}
+
+// The worst of it: all three slip at once, each position up to 0.4 ms early or late. For 8 s of ten two positions may
+// lie before one tick and none before the next; with whole sets alone that ended in kSamplesSparse (2026-11-25).
+TEST(ODrive, ClocksThatDriftTogetherWithJitterAreBridged) {
+  VirtualClock clock;
+  ODriveArm arm(tables(), clock);
+  ASSERT_EQ(arm.start(), "");
+  for (int i = 0; i < 3; ++i) arm.sim().set_clock(i, i == 0 ? -100 : 100, 0.4);
+  const test::FaultRun run = test::run_on(arm, clock, 20'000, 2e4, {}, 0, arm.frame());
+  EXPECT_EQ(run.summary.faults, 0u);
+  // None of three in a period: each is late with q (1 - q) <= 1/4, independently; 1/64 of the ticks at most. 109 were.
+  EXPECT_LE(run.summary.stale_ticks, 20'000u / 64);
+  EXPECT_GT(norm(arm.rendered_N()[19'000]), 1.0);
+}
 
 }  // namespace
 }  // namespace palpate

@@ -7,9 +7,13 @@
 #include <random>
 
 #include "hal/bus/codec.h"
+#include "hal/bus/loopback.h"
 #include "hal/bus/usb_hid.h"
+#include "hal/device/device_profile.h"
 #include "hal/drives/canopen_wire.h"
+#include "hal/drives/moteus_sim.h"
 #include "hal/drives/odrive_wire.h"
+#include "sim_host/doctor/ask_moteus.h"
 #include "sim_host/doctor/bus_speakers.h"
 #include "sim_host/doctor/find_devices.h"
 
@@ -173,6 +177,52 @@ TEST_F(FindDevices, AFalconIsFoundByItsNumbers) {
   EXPECT_EQ(items[0].verdict, Verdict::kPass);
   EXPECT_EQ(items[0].name, "usb:/dev/bus/usb/001/012: Novint Falcon");
   EXPECT_EQ(items[0].remedy, "palpate device-test usb:/dev/bus/usb/001/012 --profile FILE");
+}
+
+// Three moteus controllers say nothing until they are asked; then they answer as the real ones do, and none is enabled.
+TEST_F(FindDevices, MoteusControllersAreFoundByAsking) {
+  put_can("can0", true, true);
+  put_can("can1", true, false);
+  EXPECT_NE(find()[0].found.find("a moteus until it is asked"), std::string::npos);
+  EXPECT_EQ(find()[0].remedy.find("palpate doctor --device --ask"), 0u);
+  EXPECT_EQ(find()[1].found.find("moteus"), std::string::npos) << "not on a classic bus";
+  std::string error;
+  const auto profile =
+      read_device_profile(std::string(PALPATE_SOURCE_DIR) + "/config/devices/example-arm-moteus.toml", error);
+  ASSERT_TRUE(profile && profile->arm) << error;
+  auto ends = open_loopback_pair(error);
+  MoteusSim sim(*ends.second, *profile->arm, {}, {});
+  std::vector<std::string> asked;
+  const AskOn ask = [&](const std::string& name) {
+    asked.push_back(name);
+    return BusAnswers{ask_moteus(*ends.first, [&sim] { sim.step_bus(); }), ""};
+  };
+  const auto listen = [this](const std::string&, bool) { return traffic_; };
+  auto items = find_devices(root_, listen, ask);
+  ASSERT_EQ(items.size(), 2u);
+  EXPECT_EQ(items[0].name, "can:can0: moteus 1, 2, 3");
+  EXPECT_EQ(items[0].verdict, Verdict::kPass);
+  EXPECT_NE(items[0].remedy.find("example-arm-moteus.toml"), std::string::npos);
+  EXPECT_EQ(asked, std::vector<std::string>{"can0"}) << "CAN FD alone";
+  EXPECT_FALSE(sim.any_enabled());
+  EXPECT_EQ(sim.watchdogs(), 0u);
+  sim.set_fault({.axis = 1, .mute = true});
+  EXPECT_EQ(find_devices(root_, listen, ask)[0].name, "can:can0: moteus 1, 3");
+  traffic_.frames = {odrive_heartbeat(7)};
+  asked.clear();
+  items = find_devices(root_, listen, ask);
+  EXPECT_EQ(items[1].found, "moteus not asked for: classic frames were heard, whose nodes CAN FD may disturb");
+  EXPECT_TRUE(asked.empty());
+}
+
+TEST_F(FindDevices, NobodyWhoAnswersIsSaid) {
+  put_can("can0", true, true);
+  const auto listen = [](const std::string&, bool) { return BusTraffic(); };
+  auto items = find_devices(root_, listen, [](const std::string&) { return BusAnswers(); });
+  ASSERT_EQ(items.size(), 1u);
+  EXPECT_NE(items[0].found.find("no moteus answers"), std::string::npos);
+  items = find_devices(root_, listen, [](const std::string&) { return BusAnswers{{}, "it is driven"}; });
+  EXPECT_EQ(items[0].found, "moteus not asked for: it is driven");
 }
 
 // CANopen's node 1 sends its first process data object with identifier 0x181, which is ODrive 12's heartbeat.

@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "config/scene/scene.h"
+#include "hal/drives/moved_record.h"
 #include "sim_host/exit_codes.h"
 #include "tests/support/ball_run.h"
 
@@ -143,6 +144,21 @@ TEST_F(RunDrives, AnotherDriveThanTheProfilesIsNotDriven) {
   EXPECT_EQ(WEXITSTATUS(status), kExitUnavailable);
   EXPECT_THAT(read(out),
               HasSubstr("no motor was enabled: axis 2 (ODrive node 2): serial number 61925406831666 is not that"));
+}
+
+// A profile that asks for the check by hand is driven once that passed with this very text.
+TEST_F(RunDrives, AProfileMayAskToHaveBeenMovedByHand) {
+  std::string text = read(shipped("example-arm-odrive.toml"));
+  text.insert(text.find("watchdog_ms"), "moved_by_hand = 1\n");
+  options_.duration_s = 1;
+  options_.profile = write("asks.toml", text);
+  EXPECT_FALSE(is_moved(options_.profile));
+  EXPECT_EQ(run_session(options_).controller_exit, kExitUnavailable);
+  ASSERT_EQ(record_moved(options_.profile), "");
+  EXPECT_EQ(run_session(options_).controller_exit, 0);
+  write("asks.toml", text + "# changed\n");
+  EXPECT_FALSE(is_moved(options_.profile));
+  EXPECT_EQ(run_session(options_).controller_exit, kExitUnavailable);
 }
 
 TEST_F(RunDrives, DeviceTestFindsThemAndDoctorSaysHow) {
