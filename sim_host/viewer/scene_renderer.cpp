@@ -292,9 +292,12 @@ void SceneRenderer::draw_anchors(const AnchorField& field, const ColourScale& co
   }
 }
 
-// From where each region's contact is to every anchor: straight beams as they are, circular ones by their chords.
+// From where each region's contact is to every anchor: straight beams as they are, circular ones by their chords. Those
+// of many regions, as of a hand's, are fainter, so that the body stays in sight.
 void SceneRenderer::draw_beams(const State& state, const AnchorField& field, const ColourScale& colours,
                                float opacity) {
+  const int regions = force_sum(state).regions;
+  opacity *= std::min(1.0f, 2.0f / static_cast<float>(std::max(regions, 1)));
   for (const Region& region : state.region) {
     if (region.id == 0 || region.lost_ticks > 0) continue;
     for (std::size_t k = 0; k < model_.anchor.size(); ++k) {
