@@ -1,5 +1,5 @@
 // A contact law of one's own: the tick finds where the tool is in the body and how deep, this program makes the force
-// of it. Hunt and Crossley 1975, F = k d^(3/2) (1 + c d'), beside the scene's own law: the tool presses 12 mm deep and
+// of it. Hunt and Crossley 1975, F = k d^(3/2) (1 + c d'), beside the scene's own law: the tool comes down 22 mm and
 // withdraws.
 #include <algorithm>
 #include <cmath>
