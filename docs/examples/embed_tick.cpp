@@ -8,12 +8,10 @@
 #include "rt_core/palpate_core.h"
 
 using namespace palpate;
-
-struct Free {
-  void operator()(void* block) const { std::free(block); }
-};
-using Block = std::unique_ptr<std::byte, Free>;
-Block block_of(std::size_t bytes) { return Block(static_cast<std::byte*>(std::aligned_alloc(kImageAlignment, bytes))); }
+using Block = std::unique_ptr<std::byte, void (*)(void*)>;
+Block block_of(std::size_t bytes) {
+  return {static_cast<std::byte*>(std::aligned_alloc(kImageAlignment, bytes)), std::free};
+}
 
 int main(int argc, char** argv) {
   if (argc != 2) return std::puts("usage: embed_tick IMAGE.pal"), 2;

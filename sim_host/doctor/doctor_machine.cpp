@@ -146,6 +146,11 @@ DoctorItem group_scheduling(const DoctorSources& s) {
                 "give the group cpu.rt_runtime_us, or use a kernel without RT_GROUP_SCHED");
 }
 
+// The limits are a group's.
+constexpr const char* kLimitsRemedy =
+    "copy hal/system/palpate-limits.conf to /etc/security/limits.d (the Debian package has done it), "
+    "`adduser YOU palpate` and log in again";
+
 }  // namespace
 
 std::vector<DoctorItem> examine_machine(const DoctorSources& s) {
@@ -157,10 +162,8 @@ std::vector<DoctorItem> examine_machine(const DoctorSources& s) {
           lockup_watchdog(s),
           page_lists(s),
           group_scheduling(s),
-          limit("real-time priority limit", RLIMIT_RTPRIO, static_cast<rlim_t>(s.loop_priority),
-                "copy hal/system/palpate-limits.conf to /etc/security/limits.d and log in again"),
-          limit("locked-memory limit", RLIMIT_MEMLOCK, RLIM_INFINITY,
-                "copy hal/system/palpate-limits.conf to /etc/security/limits.d and log in again"),
+          limit("real-time priority limit", RLIMIT_RTPRIO, static_cast<rlim_t>(s.loop_priority), kLimitsRemedy),
+          limit("locked-memory limit", RLIMIT_MEMLOCK, RLIM_INFINITY, kLimitsRemedy),
           governor(s),
           dma_latency(s),
           sibling(s),

@@ -231,7 +231,8 @@ int run_press(const PressOptions& options, Json& json) {
           all.add(row, now);
           csv.add(row);
           if (wants_anchors) all.add_anchors(sample_anchors(model, now, row.time_s, row.record.output.penetration_m));
-          if (vtu && (all.rows - 1) % static_cast<std::uint64_t>(options.every) == 0) vtu->add(model, now, row.time_s);
+          if (vtu && (all.rows - 1) % static_cast<std::uint64_t>(options.every) == 0)
+            vtu->add(model, now, row.record, row.time_s);
           progress.at(all.rows);
         });
   csv.finish();

@@ -16,13 +16,15 @@
 #include "sim_host/record/recording_reader.h"
 #include "sim_host/record/replay.h"
 #include "sim_host/record/state_dump.h"
+#include "sim_host/view/vtu.h"
 
 namespace palpate {
 
 namespace {
 
 struct ReplayOptions {
-  std::string recording, image;
+  std::string recording, image, vtu;
+  int every = 20;
   ExportOptions exports;
   std::int64_t state = -1;  // tick after which to print the state
   bool json = false;
@@ -80,12 +82,32 @@ int print_state(RecordingReader& recording, const Model& model, std::int64_t tic
   return kExitOk;
 }
 
+// Deformed surface, anchors and regions of every Nth tick, as far as the replay was the same.
+void write_surfaces(const ReplayOptions& options, const MappedFile& file, const Model& model, std::uint64_t ticks,
+                    Json& json) {
+  RecordingReader recording(file.bytes());
+  const double period_s = 1e-9 * static_cast<double>(recording.header().period_ns);
+  VtuSeries series(options.vtu);
+  std::uint64_t done = 0;
+  for_each_state(recording, model, [&](const TickRecord& record, const State& state) {
+    if (done == ticks) return false;
+    if (done++ % static_cast<std::uint64_t>(options.every) == 0)
+      series.add(model, state, record, period_s * static_cast<double>(record.tick));
+    return true;
+  });
+  series.finish();
+  json["vtu"] = {{"folder", options.vtu}, {"ticks", series.size()}};
+  fmt::print("wrote   {}: surface.pvd, anchors.pvd, regions.pvd of {} ticks\n", options.vtu, series.size());
+}
+
 int run_replay(const ReplayOptions& options, Json& json) {
   json["recording"] = options.recording;
   const MappedFile file(options.recording);
   RecordingReader recording(file.bytes());
   const RecordingHeader& header = recording.header();
-  RecordingExports exports(options.exports);
+  ExportOptions wanted = options.exports;
+  wanted.period_ns = header.period_ns;
+  RecordingExports exports(wanted);
   if (!recording.state_known()) return list_only(recording, exports, json);
   const RecordedScene scene(recording, options.image);
   if (options.state >= 0) return print_state(recording, scene.model(), options.state, json);
@@ -94,13 +116,13 @@ int run_replay(const ReplayOptions& options, Json& json) {
                kBuildId);
   }
   GraspWatch grasp(scene.model());
-  const int exit_code = report(replay(recording, scene.model(),
-                                      [&](const TickRecord& recorded, const TickRecord&) {
-                                        exports.add(recorded);
-                                        grasp.take(recorded);
-                                      }),
-                               json);
+  const ReplayResult result = replay(recording, scene.model(), [&](const TickRecord& recorded, const TickRecord&) {
+    exports.add(recorded);
+    grasp.take(recorded);
+  });
+  const int exit_code = report(result, json);
   exports.finish();
+  if (!options.vtu.empty()) write_surfaces(options, file, scene.model(), result.ticks, json);
   json["grasp"] = grasp.text();
   fmt::print("{}", grasp.text());
   return exit_code;
@@ -119,6 +141,13 @@ void add_replay_command(CLI::App& app, int& exit_code) {
                       "write one row per recorded tick to this CSV file, every field (docs/record_format.md)");
   command->add_option("--dump-regions", exports.regions,
                       "write one row per contact region of every tick to this CSV file");
+  command->add_option("--npz", exports.npz,
+                      "write ticks, regions and period_ns as NumPy arrays to this file, every field (numpy.load)");
+  command->add_option("--vtu", options->vtu,
+                      "write deformed surfaces, anchors and the regions' forces for ParaView into this folder");
+  command->add_option("--every", options->every, "with --vtu: write only every Nth tick")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000000000));
   command->add_option(
       "--candump", exports.candump,
       "write the traffic as `candump -L` writes it, encoded again from the recording, as if the handle's "
@@ -136,6 +165,7 @@ void add_replay_command(CLI::App& app, int& exit_code) {
       "Examples:\n"
       "  palpate replay run.plr\n"
       "  palpate replay run.plr --image mallet.pal --dump run.csv --dump-regions regions.csv\n"
+      "  palpate replay run.plr --npz run.npz --vtu surface --every 100\n"
       "  palpate replay run.plr --candump run.log        canplayer vcan0=palpate0 -I run.log");
   add_json_flag(*command, options->json);
   command->callback([options, &exit_code] {

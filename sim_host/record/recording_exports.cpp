@@ -3,6 +3,7 @@
 namespace palpate {
 
 RecordingExports::RecordingExports(const ExportOptions& options) : tables_(options.ticks, options.regions) {
+  if (!options.npz.empty()) arrays_.emplace(options.npz, options.period_ns);
   if (options.candump.empty()) return;
   CandumpOptions wire;
   wire.profile = options.classic ? WireProfile::kClassic : WireProfile::kFd;
@@ -13,6 +14,7 @@ RecordingExports::RecordingExports(const ExportOptions& options) : tables_(optio
 
 void RecordingExports::add(const TickRecord& record) {
   tables_.add(record);
+  if (arrays_) arrays_->add(record);
   if (!candump_) return;
   std::string text;
   candump_->add(record, text);
@@ -21,6 +23,7 @@ void RecordingExports::add(const TickRecord& record) {
 
 void RecordingExports::finish() {
   tables_.finish();
+  if (arrays_) arrays_->finish();
   if (candump_) candump_file_->finish();
 }
 

@@ -6,6 +6,7 @@
 
 #include "sim_host/record/candump_log.h"
 #include "sim_host/record/record_csv.h"
+#include "sim_host/record/record_npz.h"
 #include "sim_host/record/text_file.h"
 
 namespace palpate {
@@ -14,6 +15,8 @@ struct ExportOptions {
   std::string ticks, regions, candump;  // files; "": not written
   bool classic = false;                 // candump: frames of the classic profile
   int node = 1;
+  std::string npz;  // file; "": not written
+  std::int64_t period_ns = 0;
 };
 
 class RecordingExports {
@@ -24,6 +27,7 @@ class RecordingExports {
 
  private:
   RecordCsv tables_;
+  std::optional<RecordNpz> arrays_;
   std::optional<CandumpLog> candump_;
   std::optional<TextFile> candump_file_;
 };

@@ -19,7 +19,7 @@ namespace palpate {
 namespace {
 
 struct FilmOptions {
-  std::string recording, output = "movie.png", image;
+  std::string recording, output = "movie.png", image, colour = "displacement";
   MovieOptions movie;
   bool json = false;
 };
@@ -29,7 +29,9 @@ int run_movie(const FilmOptions& options, Json& json) {
   const RecordingReader recording(file.bytes());
   const RecordedScene scene(recording, options.image);
   const Progress bar = isatty(STDERR_FILENO) != 0 ? progress_bar(stderr) : Progress{};
-  const MovieMade made = save_movie(options.output, file.bytes(), scene.model(), options.movie, [&](double part) {
+  MovieOptions wanted = options.movie;
+  wanted.colour = surface_colours().at(options.colour);
+  const MovieMade made = save_movie(options.output, file.bytes(), scene.model(), wanted, [&](double part) {
     if (bar) bar("frames", part);
   });
   json.update({{"recording", options.recording},
@@ -62,6 +64,9 @@ void add_movie_command(CLI::App& app, int& exit_code) {
       ->capture_default_str()
       ->check(CLI::Range(0.01, 100.0));
   command->add_option("--fps", movie.per_second, "frames a second")->capture_default_str()->check(CLI::Range(1, 60));
+  command->add_option("--colour", options->colour, "displacement, pressure or stress, as of `palpate picture`")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"displacement", "pressure", "stress"}));
   command->add_option("--image", options->image, "scene image, when it is no longer where the recording says");
   command->add_option("--width", movie.width, "pixels")->capture_default_str()->check(CLI::Range(200, 4000));
   command->add_option("--height", movie.height, "pixels")->capture_default_str()->check(CLI::Range(150, 4000));

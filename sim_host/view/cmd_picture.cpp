@@ -24,7 +24,7 @@ namespace palpate {
 namespace {
 
 struct DrawOptions {
-  std::string source, output = "picture.png", image, plot, view;
+  std::string source, output = "picture.png", image, plot, view, colour = "displacement";
   std::int64_t tick = -1;
   int width = 1200, height = 900;
   bool json = false;
@@ -68,6 +68,7 @@ PictureOptions picture_of(const DrawOptions& options) {
   PictureOptions picture;
   picture.width = options.width;
   picture.height = options.height;
+  picture.colour = surface_colours().at(options.colour);
   if (!options.view.empty()) picture.view = standard_views().at(options.view);
   return picture;
 }
@@ -137,12 +138,19 @@ void add_picture_command(CLI::App& app, int& exit_code) {
       ->add_option("--view", options->view,
                    "oblique, front, back, left, right, top or bottom; default: from the side of the contacts")
       ->check(CLI::IsMember({"oblique", "front", "back", "left", "right", "top", "bottom"}));
+  command
+      ->add_option("--colour", options->colour,
+                   "displacement, pressure (of the contacts) or stress (at the anchors of a beam skeleton); what the "
+                   "scene's model does not solve is not drawn, and the legend says so")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"displacement", "pressure", "stress"}));
   command->add_option("--width", options->width, "pixels")->capture_default_str()->check(CLI::Range(200, 4000));
   command->add_option("--height", options->height, "pixels")->capture_default_str()->check(CLI::Range(150, 4000));
   command->footer(
       "Examples:\n"
       "  palpate picture run.plr -o deformed.png --plot forces.svg\n"
       "  palpate picture run.plr --tick 2500 --view front -o front.png\n"
+      "  palpate picture run.plr --colour pressure -o pressure.png\n"
       "  palpate picture config/scenes/heart_compass.toml -o scene.png");
   add_json_flag(*command, options->json);
   command->callback([options, &exit_code] {

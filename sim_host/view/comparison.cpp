@@ -22,9 +22,10 @@ double first_touch_s(const RunTrack& track, const std::string& name) {
 
 void cut(TrackColumns& columns, std::size_t first, std::size_t end) {
   constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
-  for (std::vector<TrackColumns::Range>* range : {&columns.contact_N, &columns.felt_N, &columns.depth_mm})
-    for (std::size_t c = 0; c < range->size(); ++c)
-      if (c < first || c >= end) (*range)[c] = {kNone, kNone};
+  columns.each([&](std::vector<TrackColumns::Range>& line) {
+    for (std::size_t c = 0; c < line.size(); ++c)
+      if (c < first || c >= end) line[c] = {kNone, kNone};
+  });
 }
 
 }  // namespace

@@ -29,6 +29,20 @@ Real contact_profile(TipShape shape, Real rho) {
   return 0;
 }
 
+Real contact_pressure(TipShape shape, Real rho) {
+  if (!(rho < 1)) return 0;
+  const Real root = std::sqrt((1 - rho) * (1 + rho));
+  switch (shape) {
+    case TipShape::kBall:
+      return 1.5 * root;
+    case TipShape::kCone:
+      return std::acosh(1 / rho);
+    case TipShape::kFlat:
+      return 0.5 / root;
+  }
+  return 0;
+}
+
 Real fade_out(Real distance_m, Real from_m, Real to_m) {
   if (!(distance_m < to_m)) return 0;
   if (distance_m <= from_m) return 1;

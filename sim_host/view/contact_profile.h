@@ -16,6 +16,11 @@ enum class TipShape { kBall, kCone, kFlat };
 // All fall like 1/rho from far away. Continuous; for ball and cone the slope is, too.
 Real contact_profile(TipShape shape, Real rho);
 
+// Pressure under the tip over its mean F/(pi a b), by the same solutions; it adds up to the force:
+//   ball 3/2 sqrt(1 - rho^2), cone acosh(1/rho), flat 1/(2 sqrt(1 - rho^2)); 0 from rho = 1 on.
+// Infinite at a cone's point and at the edge of a flat end.
+Real contact_pressure(TipShape shape, Real rho);
+
 // Half spaces end: 1 up to `from_m`, 0 from `to_m` on, between them falling without a kink.
 Real fade_out(Real distance_m, Real from_m, Real to_m);
 

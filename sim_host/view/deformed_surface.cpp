@@ -77,17 +77,33 @@ std::vector<Vec3> nodal_displacement_m(const Model& model, const State& state) {
                                       : response_m(model, state, model.compliance_f64);
 }
 
+// What pushes each vertex inward, over a third of the areas of its triangles.
+std::vector<double> nodal_pressure_Pa(const Model& model, const State& state, const std::vector<Vec3>& normal) {
+  std::vector<double> pressure(normal.size());
+  for (std::int32_t i = 0; i < state.nodal.count; ++i) {
+    const NodalContact& contact = state.nodal.contact[i];
+    const std::size_t v = at(contact.vertex);
+    const double inward_N = -dot(contact.force_w, normal[v]);
+    pressure[v] += state.live.stiffness * std::max(inward_N, 0.0) / model.nodal_vertex[v].area_m2;
+  }
+  return pressure;
+}
+
 // Modes at the vertices, straight between them; the dents at every point. `rest_normal` may be empty: then they are
 // made.
 void add_dents(const Model& model, const State& state, DeformedSurface& surface, std::span<const Vec3> rest_normal) {
   const std::vector<TipDent> dents = tip_dents(model, state);
+  surface.pressure_Pa.assign(surface.rest_m.size(), 0);
   if (dents.empty()) return;
   std::vector<Vec3> made;
   if (rest_normal.empty()) made = mesh_normals(surface.rest_m, surface.triangle);
   const std::span<const Vec3> normal = made.empty() ? rest_normal : made;
   for (std::size_t i = 0; i < surface.rest_m.size(); ++i) {
     const Vec3 carried = surface.rest_m[i] + surface.displacement_m[i];
-    for (const TipDent& dent : dents) surface.displacement_m[i] += dent.at(carried, normal[i]);
+    for (const TipDent& dent : dents) {
+      surface.displacement_m[i] += dent.at(carried, normal[i]);
+      surface.pressure_Pa[i] += dent.pressure_Pa(carried, normal[i]);
+    }
   }
 }
 
@@ -95,6 +111,7 @@ void displace(const Model& model, const State& state, DeformedSurface& surface,
               std::span<const Vec3> rest_normal = {}) {
   if (method_of(model) == Method::kNodes) {
     surface.displacement_m = nodal_displacement_m(model, state);
+    surface.pressure_Pa = nodal_pressure_Pa(model, state, mesh_normals(surface.rest_m, surface.triangle));
     return;
   }
   if (method_of(model) == Method::kElastic) {
@@ -107,6 +124,7 @@ void displace(const Model& model, const State& state, DeformedSurface& surface,
   for (std::size_t i = 0; i < surface.rest_m.size(); ++i) {
     const std::int32_t vertex = i < model.vertex_m.size() ? static_cast<std::int32_t>(i) : -1;
     surface.displacement_m.push_back(displacement_at(model, field, surface.rest_m[i], vertex));
+    if (method_of(model) == Method::kTips) surface.pressure_Pa.push_back(pressure_at(field, surface.rest_m[i]));
   }
   if (model.params.articulation != Articulation::kHand) return;
   finish_positions(surface);

@@ -18,6 +18,7 @@ struct DeformedSurface {
   std::vector<Vec3> displacement_m;                   // world frame, per vertex
   std::vector<Vec3> position_m;                       // rest position plus displacement
   std::vector<Vec3> normal;                           // of the deformed surface, angle-weighted, outward
+  std::vector<double> pressure_Pa;                    // of the contacts, per vertex; empty where the model has none
   // Of a refined surface only, per triangle and corner: normals that do not average over creases.
   std::vector<std::array<Vec3, 3>> corner_normal;
 };
@@ -29,7 +30,9 @@ DeformedSurface deformed_surface(const Model& model, const State& state);
 // The same on a mesh refined for drawing, up to `most_triangles`: edges are halved and the new points rounded by the
 // normals (Phong tessellation, Boubekeur & Alexa 2008), which keep creases sharp. Not refined where the shape law
 // is only known at the model's vertices (displacement angles, finite elements); modes are straight between vertices.
-// Refined once, then evaluated for one state after another.
+// Pressure under a tip is that of a frictionless contact of its profile and true radius on a half space (Hertz' for
+// balls, contact_profile.h), at a node of a finite-element body its force over its area; springs at tool points have
+// none. Refined once, then evaluated for one state after another.
 class RefinedBody {
  public:
   // `model` must outlive this.

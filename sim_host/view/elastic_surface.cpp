@@ -50,13 +50,18 @@ std::vector<TouchingTip> touching_tips(const Model& model, const State& state, A
   return tips;
 }
 
-// Of the linear modes, J^1/2: a region's force is shared by its tips alike, as good as is known here.
+// A region's force is shared by its tips alike, as good as is known here.
+double force_of(const TouchingTip& tip, const State& state, const std::vector<TouchingTip>& tips) {
+  const auto sharing = std::ranges::count_if(tips, [&](const TouchingTip& t) { return t.region == tip.region; });
+  return state.region[tip.region].normal_force_N / static_cast<double>(sharing);
+}
+
+// Of the linear modes, J^1/2.
 std::array<double, kMaxLinearModes> linear_amplitudes(const Model& model, const State& state,
                                                       const std::vector<TouchingTip>& tips) {
   std::array<double, kMaxLinearModes> amplitude{};
   for (const TouchingTip& tip : tips) {
-    const auto sharing = std::ranges::count_if(tips, [&](const TouchingTip& t) { return t.region == tip.region; });
-    const double force_N = state.region[tip.region].normal_force_N / static_cast<double>(sharing);
+    const double force_N = force_of(tip, state, tips);
     double along[kMaxLinearModes];
     show_linear_modes(model, tip.row, along);
     for (std::int32_t m = 0; m < model.params.elastic_linear; ++m)
@@ -118,6 +123,7 @@ std::vector<TipDent> tip_dents(const Model& model, const State& state) {
     const double depth_m = tip.row.travel_m - given_m;
     if (!(depth_m > 0)) continue;
     TipDent dent = dent_of(tip, depth_m);
+    dent.mean_Pa = state.live.stiffness * force_of(tip, state, tips) / (kPi * dent.across_m * dent.along_m);
     dent.foot_w += given_m * dent.inward;
     dents.push_back(dent);
   }
@@ -132,6 +138,11 @@ Vec3 TipDent::at(Vec3 point_w, Vec3 normal) const {
   const double rho = ContactEllipse{along, across_m, along_m}.radii(from);
   const double fade = fade_out(rho, 0.5 * kReach, kReach);
   return (depth_m * contact_profile(TipShape::kBall, rho) * fade * std::min(1.0, 2 * facing)) * inward;
+}
+
+double TipDent::pressure_Pa(Vec3 point_w, Vec3 normal) const {
+  if (!(dot(normal, inward) < 0)) return 0;
+  return mean_Pa * contact_pressure(TipShape::kBall, ContactEllipse{along, across_m, along_m}.radii(point_w - foot_w));
 }
 
 }  // namespace palpate

@@ -19,9 +19,11 @@ struct TipDent {
   Vec3 along;                // unit, of the ellipse's longer axis
   double depth_m;            // what the modes leave of the tip's overlap
   double across_m, along_m;  // the contact's half axes
+  double mean_Pa;            // its force over its area
 
   // At a point of the carried surface whose normal at rest is `normal`; nothing on sides that face away.
   Vec3 at(Vec3 point_w, Vec3 normal) const;
+  double pressure_Pa(Vec3 point_w, Vec3 normal) const;
 };
 std::vector<TipDent> tip_dents(const Model& model, const State& state);
 

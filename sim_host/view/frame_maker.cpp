@@ -43,13 +43,14 @@ std::vector<DrawnVertex> drawn_vertices(const DrawnBody& body, const DeformedSur
     const Vec3 n = surface.corner_normal[static_cast<std::size_t>(s.triangle)][static_cast<std::size_t>(s.corner)];
     vertices.push_back({{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)},
                         {static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z)},
-                        static_cast<float>(norm(surface.displacement_m[v]))});
+                        static_cast<float>(norm(surface.displacement_m[v])),
+                        static_cast<float>(surface_value(surface, v, SurfaceColour::kPressure))});
   }
   return vertices;
 }
 
 FrameMaker::FrameMaker(const Model& model, const RunTrack& track, StatePtr initial, std::size_t most_triangles)
-    : refined_(model, most_triangles), states_(model, track, copy_of(*initial)), track_(track) {
+    : model_(model), refined_(model, most_triangles), states_(model, track, copy_of(*initial)), track_(track) {
   const DeformedSurface surface = refined_.shape(*initial);
   drawn_ = drawn_body(surface);
   at_rest_ = drawn_vertices(drawn_, surface);
@@ -97,7 +98,9 @@ std::shared_ptr<const ViewFrame> FrameMaker::make(std::size_t index) {
   frame->index = states_.reached();
   frame->state = copy_of(state);
   frame->vertex = drawn_vertices(drawn_, surface);
-  for (const Vec3 d : surface.displacement_m) frame->largest_m = std::max(frame->largest_m, norm(d));
+  const AnchorField anchors = anchors_of(model_, state);
+  for (const auto& [name, colour] : surface_colours())
+    frame->largest[static_cast<std::size_t>(colour)] = largest_value(surface, anchors, colour);
   frame->made_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return frame;
 }

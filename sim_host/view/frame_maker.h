@@ -13,6 +13,7 @@
 
 #include "sim_host/view/deformed_surface.h"
 #include "sim_host/view/run_track.h"
+#include "sim_host/view/view_scales.h"
 
 namespace palpate {
 
@@ -26,9 +27,9 @@ struct DrawnBody {
 };
 DrawnBody drawn_body(const DeformedSurface& surface);
 
-// Position (m), normal and displacement (m) of one vertex, interleaved.
+// Position (m), normal, displacement (m) and pressure (Pa) of one vertex, interleaved.
 struct DrawnVertex {
-  float position[3], normal[3], displacement_m;
+  float position[3], normal[3], displacement_m, pressure_Pa;
 };
 std::vector<DrawnVertex> drawn_vertices(const DrawnBody& body, const DeformedSurface& surface);
 
@@ -36,8 +37,8 @@ struct ViewFrame {
   std::size_t index = 0;  // of the tick in the track
   StatePtr state;
   std::vector<DrawnVertex> vertex;
-  double largest_m = 0;  // displacement
-  double made_ms = 0;    // time to compute it
+  std::array<double, 3> largest{};  // by SurfaceColour
+  double made_ms = 0;               // time to compute it
 };
 
 class FrameMaker {
@@ -62,6 +63,7 @@ class FrameMaker {
   void run();
   std::shared_ptr<const ViewFrame> make(std::size_t index);
 
+  const Model& model_;
   RefinedBody refined_;
   TrackStates states_;
   DrawnBody drawn_;

@@ -86,8 +86,7 @@ MovieTicks choose_ticks(const RunOutline& run, double period_s, const MovieOptio
 
 // One scale and one place for all frames: those of the strongest tick.
 void look_at(const Model& model, const State& state, const DeformedSurface& surface, PictureOptions& picture) {
-  for (const Vec3& d : surface.displacement_m)
-    picture.displacement_max_m = std::max(picture.displacement_max_m, norm(d));
+  picture.colour_max = largest_value(surface, anchors_of(model, state), picture.colour);
   std::vector<Vec3> arrow_tips;
   for (const Region& region : state.region)
     if (region.id != 0)
@@ -107,6 +106,7 @@ MovieMade save_movie(const std::string& path, std::span<const std::byte> bytes, 
   const MovieTicks ticks = choose_ticks(run, period_s, options, made);
   const RefinedBody body(model, kMostTriangles);
   PictureOptions picture;
+  picture.colour = options.colour;
   picture.width = options.width;
   picture.height = options.height;
   picture.force_max_N = run.largest_N;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "sim_host/record/recording_reader.h"
+#include "sim_host/view/view_scales.h"
 
 namespace palpate {
 
@@ -13,6 +14,7 @@ struct MovieOptions {
   double speed = 1;               // 1: as it was; 0.5: half as fast
   int per_second = 15;            // frames shown in a second
   int width = 640, height = 480;
+  SurfaceColour colour = SurfaceColour::kDisplacement;
 };
 
 inline constexpr int kMostFrames = 3000;

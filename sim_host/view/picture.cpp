@@ -17,7 +17,7 @@ namespace palpate {
 
 namespace {
 
-enum Material : std::int32_t { kBody = 0, kAnchorFree, kAnchorFixed, kTool, kArrow };
+enum Material : std::int32_t { kBody = 0, kAnchorFree, kAnchorFixed, kAnchorStress, kTool, kArrow };
 
 constexpr Colour kInk = colour(0x1f2933), kGrey = colour(0x5b6672);
 constexpr Colour kSkinColour = colour(0xd8a488);
@@ -45,6 +45,7 @@ class Renderer {
         is_hand_(model.params.articulation == Articulation::kHand),
         samples_(std::clamp(options.supersampling, 1, 4)),
         forces_(drawn_forces(state)),
+        anchors_(anchors_of(model, state)),
         force_scale_(force_scale(options.force_max_N > 0 ? options.force_max_N : force_sum(state).largest_N,
                                  model.params.surface_size_m)),
         camera_(camera_of(model, state, tips_of(forces_, force_scale_), options)),
@@ -98,12 +99,13 @@ class Renderer {
   bool is_hand_;
   int samples_;
   std::vector<DrawnForce> forces_;  // the largest first
+  AnchorField anchors_;
   ForceScale force_scale_;
   Camera camera_;
   Projection projection_;
   Layer solid_, rest_, tool_, arrows_;
-  double scale_top_m_ = 1e-3;
-  std::vector<double> legend_mm_;
+  ColourScale colours_;
+  bool on_surface_ = true;  // the surface has the values
   // Soft shadow on the ground: a blurred view of body and tool from above.
   static constexpr int kShadow = 256;
   double ground_y_ = 0, shadow_half_ = 1;
@@ -112,13 +114,10 @@ class Renderer {
 };
 
 void Renderer::choose_scale() {
-  double largest = options_.displacement_max_m;
-  if (!(largest > 0)) {
-    for (const Vec3 d : surface_.displacement_m) largest = std::max(largest, norm(d));
-  }
-  const DisplacementScale scale = displacement_scale(largest, options_.displacement_max_m > 0);
-  legend_mm_ = scale.tick_mm;
-  scale_top_m_ = scale.top_m;
+  const double fixed = options_.colour_max;
+  colours_ =
+      colour_scale(options_.colour, fixed > 0 ? fixed : largest_value(surface_, anchors_, options_.colour), fixed > 0);
+  on_surface_ = solves(model_, options_.colour) && options_.colour != SurfaceColour::kStress;
 }
 
 void Renderer::draw_body() {
@@ -130,7 +129,7 @@ void Renderer::draw_body() {
       mesh.position_m.push_back(surface_.position_m[v]);
       rest_m.push_back(surface_.rest_m[v]);
       mesh.normal.push_back(surface_.corner_normal.empty() ? surface_.normal[v] : surface_.corner_normal[t][k]);
-      mesh.value.push_back(norm(surface_.displacement_m[v]));
+      mesh.value.push_back(on_surface_ ? surface_value(surface_, v, options_.colour) : 0);
     }
     const auto first = static_cast<std::int32_t>(3 * t);
     mesh.triangle.push_back({first, first + 1, first + 2});
@@ -141,12 +140,14 @@ void Renderer::draw_body() {
 }
 
 void Renderer::draw_anchors() {
-  const AnchorField field = anchors_of(model_, state_);
+  const bool stress = options_.colour == SurfaceColour::kStress;
   for (std::size_t k = 0; k < model_.anchor.size(); ++k) {
     const Anchor& anchor = model_.anchor[k];
-    const Vec3 at = anchor.position_m + (anchor.fixed != 0 ? Vec3{} : field.anchor[k].displacement_w);
-    solid_.draw(sphere_mesh({at, {}}, 0.014 * model_.params.surface_size_m), projection_,
-                anchor.fixed != 0 ? kAnchorFixed : kAnchorFree);
+    const AnchorLoad& load = anchors_.anchor[k];
+    const Vec3 at = anchor.position_m + (anchor.fixed != 0 ? Vec3{} : load.displacement_w);
+    RenderMesh ball = sphere_mesh({at, {}}, (stress ? 0.020 : 0.014) * model_.params.surface_size_m);
+    ball.value.assign(ball.position_m.size(), load.stress_Pa);
+    solid_.draw(ball, projection_, stress ? kAnchorStress : anchor.fixed != 0 ? kAnchorFixed : kAnchorFree);
   }
 }
 
@@ -230,11 +231,14 @@ Colour Renderer::solid_colour(int x, int y) const {
   const Surfel& surfel = solid_.at(x, y);
   if (surfel.material == kAnchorFree) return shade(colour(0x2f6f8f), surfel, x, y, 0.35f);
   if (surfel.material == kAnchorFixed) return shade(colour(0x3c434b), surfel, x, y, 0.35f);
-  const Colour c = shade(displacement_colour(static_cast<double>(surfel.value) / scale_top_m_), surfel, x, y, 0.16f);
+  const Colour of_value = map_colour(static_cast<double>(surfel.value) / colours_.top);
+  if (surfel.material == kAnchorStress) return shade(of_value, surfel, x, y, 0.35f);
+  if (!on_surface_) return shade(kNoValue, surfel, x, y, 0.16f);
+  const Colour c = shade(of_value, surfel, x, y, 0.16f);
   // Contour line where a neighbour lies beyond another legend tick.
   const auto band = [this](const Surfel& s) {
-    return std::upper_bound(legend_mm_.begin(), legend_mm_.end(), static_cast<double>(s.value) * 1e3) -
-           legend_mm_.begin();
+    return std::upper_bound(colours_.tick.begin(), colours_.tick.end(), static_cast<double>(s.value) / colours_.unit) -
+           colours_.tick.begin();
   };
   for (const int step : {1, 2}) {
     if (x + step < solid_.width() && solid_.at(x + step, y).material == kBody &&
@@ -313,20 +317,27 @@ Canvas Renderer::resolve() const {
 void Renderer::draw_legend(Canvas& canvas) const {
   const double unit = options_.height / 900.0, left = options_.width - 96 * unit, top = 0.30 * options_.height;
   const double height = 0.40 * options_.height, width = 20 * unit;
-  const int rows = static_cast<int>(height);
-  for (int row = 0; row < rows; ++row) {
-    canvas.rectangle(left, top + row, width, 1, displacement_colour(1 - (row + 0.5) / rows));
+  const char* const meaning = colour_meaning(model_, options_.colour);
+  if (!solves(model_, options_.colour)) {
+    canvas.text(options_.width - 30 * unit, top, fmt::format("{}: {}", colours_.name, meaning), 15 * unit, kInk,
+                Align::kEnd);
+    return;
   }
+  const int rows = static_cast<int>(height);
+  for (int row = 0; row < rows; ++row) canvas.rectangle(left, top + row, width, 1, map_colour(1 - (row + 0.5) / rows));
   const double x1 = left + width, y1 = top + rows;
   canvas.polyline(Stroke{{left, top}, {x1, top}, {x1, y1}, {left, y1}, {left, top}}, 1.2 * unit, kGrey);
-  for (const double mm : legend_mm_) {
-    const double y = y1 - rows * mm * 1e-3 / scale_top_m_;
+  for (const double tick : colours_.tick) {
+    const double y = y1 - rows * tick * colours_.unit / colours_.top;
     canvas.polyline(Stroke{{x1, y}, {x1 + 6 * unit, y}}, 1.2 * unit, kGrey);
-    canvas.text(x1 + 11 * unit, y + 5.5 * unit, tick_label(mm), 15 * unit, kInk);
+    canvas.text(x1 + 11 * unit, y + 5.5 * unit, tick_label(tick), 15 * unit, kInk);
   }
-  canvas.text(x1, top + height + 24 * unit, colour_meaning(model_), 15 * unit, kGrey, Align::kMiddle);
-  canvas.text(x1, top - 36 * unit, "displacement", 15 * unit, kInk, Align::kMiddle);
-  canvas.text(x1, top - 16 * unit, "(mm)", 15 * unit, kInk, Align::kMiddle);
+  const auto middle_of = [&](const std::string& text) {  // within the picture
+    return std::min(x1, options_.width - 10 * unit - 0.5 * text_width(text, 15 * unit));
+  };
+  canvas.text(middle_of(meaning), top + height + 24 * unit, meaning, 15 * unit, kGrey, Align::kMiddle);
+  canvas.text(middle_of(colours_.name), top - 36 * unit, colours_.name, 15 * unit, kInk, Align::kMiddle);
+  canvas.text(x1, top - 16 * unit, fmt::format("({})", colours_.unit_name), 15 * unit, kInk, Align::kMiddle);
 }
 
 // Beyond the arrow's tip, in the direction it points.

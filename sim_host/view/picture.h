@@ -1,5 +1,5 @@
-// A picture of the deformed body with the tool, for documents and reports: colour by displacement, translucent tool,
-// contact forces as arrows, the rest shape as a dashed outline, anchors as dots.
+// A picture of the deformed body with the tool, for documents and reports: colour by displacement, contact pressure or
+// anchor stress, translucent tool, contact forces as arrows, the rest shape as a dashed outline, anchors as dots.
 #pragma once
 
 #include <optional>
@@ -10,6 +10,7 @@
 #include "rt_core/state.h"
 #include "sim_host/view/deformed_surface.h"
 #include "sim_host/view/orbit_camera.h"
+#include "sim_host/view/view_scales.h"
 
 namespace palpate {
 
@@ -22,8 +23,9 @@ struct PictureOptions {
   std::optional<Camera> camera;      // otherwise `default_camera`
   std::optional<StandardView> view;  // of default_camera
   std::string title;                 // otherwise the scene's name
-  double displacement_max_m = 0;     // top of the colour scale; 0: the largest displacement, rounded up
-  double force_max_N = 0;            // force of the longest arrow; 0: the largest region's
+  SurfaceColour colour = SurfaceColour::kDisplacement;
+  double colour_max = 0;   // top of the colour scale, m or Pa; 0: the largest value, rounded up
+  double force_max_N = 0;  // force of the longest arrow; 0: the largest region's
 };
 
 // Sees the body, `points_w` and the tool (of a long one the end near the body), slightly from above, from the side on
@@ -35,8 +37,10 @@ Canvas render_scene(const Model& model, const State& state, const DeformedSurfac
 // Writes render_scene of the scene's own shape models as PNG.
 void save_picture(const std::string& path, const Model& model, const State& state, const PictureOptions& options = {});
 
-// Colour map of displacement, t in 0..1: light sand to dark violet, lightness falling evenly.
-Colour displacement_colour(double t);
+// Colour map of what the body shows, t in 0..1: light sand to dark violet, lightness falling evenly.
+Colour map_colour(double t);
+// Of a body whose surface has no such value.
+inline constexpr Colour kNoValue = colour(0xd9dde2);
 // Surface of a tool piece in the world; `carrier_w` as rt_core/tool/articulate.h has it.
 RenderMesh piece_mesh(const Model& model, const ToolPiece& piece, const Pose& carrier_w);
 // The same for a part of the hand, as people draw it.

@@ -100,7 +100,7 @@ Camera default_camera(const Model& model, const State& state, std::span<const Ve
   return camera;
 }
 
-Colour displacement_colour(double t) {
+Colour map_colour(double t) {
   static constexpr std::array kStops{colour(0xf3ece0), colour(0xf5cfa5), colour(0xf1a06c), colour(0xe36a4e),
                                      colour(0xbb3a5b), colour(0x7c2269), colour(0x3a1555)};
   const double place = std::clamp(t, 0.0, 1.0) * (kStops.size() - 1);

@@ -85,10 +85,28 @@ void RunTrack::find_fades(const TrackTick& tick, const TrackTick& before) {
   if (renders(tick.mode)) events_.push_back({TrackEvent::Kind::kMode, last_fading_ + 1, "force again"});
 }
 
+// The force of a tick acts until the next sample.
+double RunTrack::work_of_hands(const TickRecord& record) {
+  double work_J = 0;
+  const Pose now[] = {record.input.pose_w, record.input.second_w};
+  for (std::size_t hand = 0; hand < 2; ++hand) {
+    const Vec3 turn = small_rotation_vector(now[hand].orientation * conjugate(handle_w_[hand].orientation));
+    if (!ticks_.empty())
+      work_J -= dot(felt_w_[hand].force_N, now[hand].position_m - handle_w_[hand].position_m) +
+                dot(felt_w_[hand].torque_Nm, turn);
+    handle_w_[hand] = now[hand];
+  }
+  felt_w_[0] = record.output.device_w;
+  felt_w_[1] = record.output.second_w;
+  return work_J;
+}
+
 void RunTrack::append(const TickRecord& record) {
   const std::lock_guard lock(mutex_);
   if (ticks_.size() >= kMostTicks) return;
-  const TrackTick tick = track_tick(record);
+  TrackTick tick = track_tick(record);
+  if (const double work_J = work_of_hands(record); std::isfinite(work_J)) given_J_ += work_J;
+  tick.given_J = given_J_;
   const std::uint64_t missing =
       ticks_.empty() || record.sequence < next_sequence_ ? 0 : record.sequence - next_sequence_;
   next_sequence_ = record.sequence + 1;
@@ -140,9 +158,7 @@ std::vector<Input> RunTrack::inputs(std::size_t first, std::size_t most) const {
 TrackColumns RunTrack::columns(double from_s, double until_s, std::size_t number) const {
   const std::lock_guard lock(mutex_);
   TrackColumns columns;
-  columns.contact_N.resize(number);
-  columns.felt_N.resize(number);
-  columns.depth_mm.resize(number);
+  columns.each([&](std::vector<TrackColumns::Range>& line) { line.resize(number); });
   columns.regions.resize(number);
   const double column_s = (until_s - from_s) / static_cast<double>(number);
   const auto start =
@@ -152,20 +168,22 @@ TrackColumns RunTrack::columns(double from_s, double until_s, std::size_t number
     const double end = (from_s + column_s * static_cast<double>(c + 1)) / period_s_;
     bool first = true;
     if (c > 0) {
-      columns.contact_N[c] = columns.contact_N[c - 1];
-      columns.felt_N[c] = columns.felt_N[c - 1];
-      columns.depth_mm[c] = columns.depth_mm[c - 1];
+      columns.each([c](std::vector<TrackColumns::Range>& line) { line[c] = line[c - 1]; });
       columns.regions[c] = columns.regions[c - 1];
     }
     for (; tick != ticks_.end() && static_cast<double>(tick->tick) < end; ++tick, first = false) {
-      const auto take = [first](TrackColumns::Range& range, double value) {
+      const auto take = [first, c](std::vector<TrackColumns::Range>& line, double value) {
         const auto v = static_cast<float>(value);
-        range =
-            first ? TrackColumns::Range{v, v} : TrackColumns::Range{std::min(range.low, v), std::max(range.high, v)};
+        line[c] = first ? TrackColumns::Range{v, v}
+                        : TrackColumns::Range{std::min(line[c].low, v), std::max(line[c].high, v)};
       };
-      take(columns.contact_N[c], norm(tick->contact_N));
-      take(columns.felt_N[c], norm(tick->device_N));
-      take(columns.depth_mm[c], 1e3 * std::max(0.0, tick->depth_m));
+      take(columns.contact_N, norm(tick->contact_N));
+      take(columns.felt_N, norm(tick->device_N));
+      take(columns.depth_mm, 1e3 * std::max(0.0, tick->depth_m));
+      take(columns.stored_mJ, 1e3 * tick->energy_J);
+      take(columns.given_mJ, 1e3 * tick->given_J);
+      take(columns.compute_us, 1e-3 * tick->compute_ns);
+      for (std::size_t i = 0; i < kStageCount; ++i) take(columns.stage_us[i], 1e-3 * tick->stage_ns[i]);
       columns.regions[c] = first ? tick->regions : std::max(columns.regions[c], tick->regions);
     }
   }

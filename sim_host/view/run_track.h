@@ -21,6 +21,7 @@ struct TrackTick {
   Input input;
   Vec3 contact_N, device_N;  // of the body on the tool; what the hand feels
   double depth_m = 0, energy_J = 0;
+  double given_J = 0;  // by the hands to the devices since the track's first tick: what they pushed against, on its way
   std::uint32_t status = 0, fault = 0;
   Mode mode = Mode::kIdle;
   std::int32_t regions = 0;
@@ -43,8 +44,14 @@ struct TrackColumns {
   struct Range {
     float low = 0, high = 0;
   };
-  std::vector<Range> contact_N, felt_N, depth_mm;
+  std::vector<Range> contact_N, felt_N, depth_mm, stored_mJ, given_mJ;
+  std::vector<Range> compute_us, stage_us[kStageCount];
   std::vector<std::int32_t> regions;  // most
+  template <class Visitor>
+  void each(Visitor visit) {
+    for (std::vector<Range>* line : {&contact_N, &felt_N, &depth_mm, &stored_mJ, &given_mJ, &compute_us}) visit(*line);
+    for (std::vector<Range>& line : stage_us) visit(line);
+  }
 };
 
 struct TrackTiming {
@@ -88,6 +95,7 @@ class RunTrack {
 
  private:
   void note(TrackEvent::Kind kind, std::string text);
+  double work_of_hands(const TickRecord& record);
   void find_events(const TrackTick& tick);
   void find_fades(const TrackTick& tick, const TrackTick& before);
 
@@ -97,6 +105,9 @@ class RunTrack {
   std::vector<TrackEvent> events_;
   std::uint64_t next_sequence_ = 0, lost_ = 0;
   TrackTiming timing_;
+  Pose handle_w_[2];  // of the last tick
+  Wrench felt_w_[2];
+  double given_J_ = 0;
   double largest_region_N_ = 0, strongest_N_ = -1;
   std::size_t strongest_ = 0, last_touching_ = 0;
   std::size_t last_fading_ = 0;

@@ -106,6 +106,14 @@ Neighbourhood punch_of(const Model& model, const State& state, const ShapeRegion
   return punch_neighbourhood(tip_shape(piece), {across, radius_m, radius_m}, reach_m);
 }
 
+void press_of(const Model& model, const State& state, Real reach_m, ShapeRegion& r) {
+  if (method_of(model) != Method::kTips) return;
+  r.press = r.local.law == NeighbourhoodLaw::kPunch ? r.local : punch_of(model, state, r, reach_m);
+  const Real area_m2 = kPi * r.press.edge.across_m * r.press.edge.along_m;
+  if (r.press.law != NeighbourhoodLaw::kPunch || !(area_m2 > 0)) return;
+  r.mean_Pa = state.live.stiffness * state.region[r.slot].normal_force_N / area_m2;
+}
+
 void prepare_region(const Model& model, const State& state, const AnchorField& anchors, std::int32_t slot,
                     ShapeField& field) {
   const Region& region = state.region[slot];
@@ -120,7 +128,7 @@ void prepare_region(const Model& model, const State& state, const AnchorField& a
   for (std::int32_t i = 0; i < anchors.count; ++i) r.anchor_displacement_w[i] = anchors.by_region_w[slot][i];
   if (!field.interpolated) {
     if (r.local.law == NeighbourhoodLaw::kPunch) r.local = punch_of(model, state, r, reach_m);
-    return;
+    return press_of(model, state, reach_m, r);
   }
 
   Vec3 own[kMaxRbf];
@@ -134,6 +142,7 @@ void prepare_region(const Model& model, const State& state, const AnchorField& a
     r.local_amplitude_w = r.dent_w - rbf_value(model, g, own);
     if (r.local.law == NeighbourhoodLaw::kPunch) r.local = punch_of(model, state, r, reach_m);
   }
+  press_of(model, state, reach_m, r);
 }
 
 // One region by displacement angles. The global value at the contact point is not a vertex's, so the blend runs towards
@@ -163,6 +172,17 @@ void prepare_shape(const Model& model, const State& state, ShapeField& field) {
     const Region& region = state.region[slot];
     if (is_in_contact(region) && is_finite(region.centre_w)) prepare_region(model, state, *anchors, slot, field);
   }
+}
+
+Real pressure_at(const ShapeField& field, Vec3 rest_point_w) {
+  Real sum = 0;
+  for (std::int32_t i = 0; i < field.count; ++i) {  // <= kMaxRegions
+    const ShapeRegion& r = field.region[i];
+    if (!(r.mean_Pa > 0)) continue;
+    const Real rho = r.press.edge.radii(rest_point_w - r.contact_w);
+    sum += r.mean_Pa * min_of(contact_pressure(r.press.tip, rho), kMostPressure);
+  }
+  return sum;
 }
 
 Vec3 displacement_at(const Model& model, const ShapeField& field, Vec3 rest_point_w, std::int32_t vertex) {

@@ -16,6 +16,8 @@ struct ShapeRegion {
   Vec3 dent_w;             // displacement of the contact point d_c: -(omega D_eq) along the total force on the tool
   Vec3 local_amplitude_w;  // d_c - u_global(contact): what the local law adds at the contact
   Neighbourhood local;
+  Neighbourhood press;      // of a whole tip: its profile and edge, whatever the local law
+  Real mean_Pa = 0;         // its normal force over the area within that edge; 0: no tip's
   RbfContact node;          // the contact point as a node of the interpolation, when there is no local law
   Vec3 node_coefficient_w;  // of |x - contact|
   Vec3 anchor_displacement_w[kMaxAnchors];  // by this region
@@ -43,5 +45,10 @@ void prepare_shape(const Model& model, const State& state, ShapeField& field);
 // the displacement-angle law needs the vertex's patch and normal, and uses the RBF interpolation where there is none.
 // Cost: about 60 + 15 n_rbf operations, and a logarithm or arcsine per region within reach.
 Vec3 displacement_at(const Model& model, const ShapeField& field, Vec3 rest_point_w, std::int32_t vertex);
+
+// Pressure (Pa) of whole tips there, by the profile with which they dent it. Where that is without bound, at a cone's
+// point and a flat end's edge, it ends at this many times the mean.
+inline constexpr Real kMostPressure = 2.5;
+Real pressure_at(const ShapeField& field, Vec3 rest_point_w);
 
 }  // namespace palpate

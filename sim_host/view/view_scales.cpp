@@ -19,15 +19,70 @@ double round_below(double most) {
   return best;
 }
 
-DisplacementScale displacement_scale(double largest_m, bool fixed) {
-  const double top_mm = largest_m > 1e-7 ? largest_m * 1e3 : 1.0;
-  DisplacementScale scale;
-  scale.tick_mm = axis_ticks(0, top_mm, 4);
-  std::vector<double>& tick = scale.tick_mm;
-  if (tick.size() > 1 && tick.back() < top_mm * (1 - 1e-9) && !fixed)
+const std::map<std::string, SurfaceColour>& surface_colours() {
+  static const std::map<std::string, SurfaceColour> colours{{"displacement", SurfaceColour::kDisplacement},
+                                                            {"pressure", SurfaceColour::kPressure},
+                                                            {"stress", SurfaceColour::kStress}};
+  return colours;
+}
+
+bool solves(const Model& model, SurfaceColour shown) {
+  switch (shown) {
+    case SurfaceColour::kDisplacement:
+      return true;
+    case SurfaceColour::kPressure:  // springs at tool points have a force, but no body under it that would spread it
+      return method_of(model.params) != Method::kPoints;
+    case SurfaceColour::kStress:
+      return model.params.skeleton_law != SkeletonLaw::kNone && !model.anchor.empty();
+  }
+  return false;
+}
+
+const char* colour_meaning(const Model& model, SurfaceColour shown) {
+  const Method method = method_of(model.params);
+  if (!solves(model, shown)) return "not solved by this model";
+  switch (shown) {
+    case SurfaceColour::kDisplacement:
+      return method == Method::kElastic || method == Method::kNodes ? "as solved" : "drawn shape";
+    case SurfaceColour::kPressure:
+      return method == Method::kNodes ? "nodal force by area" : "by the tip's profile";
+    case SurfaceColour::kStress:
+      return "at the anchors";
+  }
+  return "";
+}
+
+ColourScale colour_scale(SurfaceColour shown, double largest, bool fixed) {
+  ColourScale scale;
+  scale.shown = shown;
+  double least = 1e-7;  // below it nothing is there, and the scale is one of its unit
+  if (shown != SurfaceColour::kDisplacement) {
+    const bool mega = largest >= 1e6, kilo = largest >= 1e3;
+    scale.name = shown == SurfaceColour::kPressure ? "contact pressure" : "fibre stress";
+    scale.unit = mega ? 1e6 : kilo ? 1e3 : 1;
+    scale.unit_name = mega ? "MPa" : kilo ? "kPa" : "Pa";
+    least = 1e-3;
+  }
+  const double top = largest > least ? largest / scale.unit : 1.0;
+  scale.tick = axis_ticks(0, top, 4);
+  std::vector<double>& tick = scale.tick;
+  if (tick.size() > 1 && tick.back() < top * (1 - 1e-9) && !fixed)
     tick.push_back(2 * tick.back() - tick[tick.size() - 2]);
-  scale.top_m = std::max(top_mm, tick.back()) * 1e-3;
+  scale.top = std::max(top, tick.back()) * scale.unit;
   return scale;
+}
+
+double surface_value(const DeformedSurface& surface, std::size_t vertex, SurfaceColour shown) {
+  if (shown == SurfaceColour::kDisplacement) return norm(surface.displacement_m[vertex]);
+  return shown == SurfaceColour::kPressure && vertex < surface.pressure_Pa.size() ? surface.pressure_Pa[vertex] : 0;
+}
+
+double largest_value(const DeformedSurface& surface, const AnchorField& anchors, SurfaceColour shown) {
+  double largest = 0;
+  for (std::int32_t a = 0; shown == SurfaceColour::kStress && a < anchors.count; ++a)
+    largest = std::max(largest, anchors.anchor[a].stress_Pa);
+  for (std::size_t v = 0; v < surface.rest_m.size(); ++v) largest = std::max(largest, surface_value(surface, v, shown));
+  return largest;
 }
 
 ForceScale force_scale(double largest_N, double body_size_m) {
@@ -57,11 +112,6 @@ std::string force_words(const ForceSum& sum) {
   const double force_N = norm(sum.sum_N);
   if (sum.regions == 1) return fmt::format("|F| = {:.2f} N", force_N);
   return fmt::format("|sum of {} forces| = {:.2f} N, largest {:.2f} N", sum.regions, force_N, sum.largest_N);
-}
-
-const char* colour_meaning(const Model& model) {
-  const Method method = method_of(model.params);
-  return method == Method::kElastic || method == Method::kNodes ? "as solved" : "drawn shape";
 }
 
 std::vector<DrawnForce> drawn_forces(const State& state) {

@@ -35,6 +35,7 @@ constexpr Word kWords[] = {{"wait", "SECONDS", Kind::kWait},
                            {"scrub", "SECONDS", Kind::kScrub},
                            {"follow", "", Kind::kFollow},
                            {"look", "VIEW", Kind::kLook},
+                           {"colour", "displacement | pressure | stress", Kind::kColour},
                            {"fit", "", Kind::kFit},
                            {"turn", "DEGREES_right DEGREES_up", Kind::kTurn},
                            {"zoom", "STEPS", Kind::kZoom},
@@ -102,6 +103,13 @@ void read_view(LineReader& line, ViewStep& step) {
   step.view = view->second;
 }
 
+void read_colour(LineReader& line, ViewStep& step) {
+  const std::string name = line.word("what the colours show");
+  const auto colour = surface_colours().find(name);
+  if (colour == surface_colours().end()) throw std::runtime_error(fmt::format("no colour '{}'", name));
+  step.colour = colour->second;
+}
+
 // Which joints there are, only the run's tool knows.
 void read_joint(LineReader& line, ViewStep& step) {
   step.part = line.word("the joint");
@@ -149,6 +157,8 @@ void read_rest(LineReader& line, ViewStep& step) {
       return read_setting(line, step);
     case Kind::kLook:
       return read_view(line, step);
+    case Kind::kColour:
+      return read_colour(line, step);
     case Kind::kPicture:
       step.file = line.word("the file");
       if (!step.file.ends_with(".png")) throw std::runtime_error(step.file + ": the name must end in .png");

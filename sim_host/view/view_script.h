@@ -8,6 +8,7 @@
 #include "rt_core/live.h"
 #include "rt_core/vec.h"
 #include "sim_host/view/orbit_camera.h"
+#include "sim_host/view/view_scales.h"
 
 namespace palpate {
 
@@ -27,6 +28,7 @@ struct ViewStep {
     kScrub,    // to value, seconds of the timeline
     kFollow,   // back to the live end
     kLook,     // standard view
+    kColour,   // what the body's colours show
     kFit,      // all is to be seen
     kTurn,     // drag beside the tool: degrees to the right, degrees up
     kZoom,     // steps of the wheel
@@ -41,6 +43,7 @@ struct ViewStep {
   std::string where;  // "FILE:LINE", for messages
   float LiveSettings::*setting = nullptr;
   StandardView view = StandardView::kOblique;
+  SurfaceColour colour = SurfaceColour::kDisplacement;
 };
 
 // One step a line; "#" begins a remark. Throws std::runtime_error naming `name`, the line and what is expected there.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -33,18 +34,34 @@ void append(std::vector<float>& list, Vec3 v) {
   list.push_back(static_cast<float>(v.z));
 }
 
+void append(std::vector<double>& list, Vec3 v) { list.insert(list.end(), {v.x, v.y, v.z}); }
+
 struct Cells {
   std::vector<std::int32_t> connectivity, offsets;
   std::vector<std::uint8_t> types;
 };
 
-std::string grid(std::size_t points, const std::vector<float>& position, const Cells& cells,
+// A cell of its own for each point.
+Cells dots(std::size_t points) {
+  constexpr std::uint8_t kVertexCell = 1;
+  Cells cells;
+  for (std::int32_t i = 0; i < static_cast<std::int32_t>(points); ++i) {
+    cells.connectivity.push_back(i);
+    cells.offsets.push_back(i + 1);
+    cells.types.push_back(kVertexCell);
+  }
+  return cells;
+}
+
+template <typename Number>
+std::string grid(std::size_t points, const std::vector<Number>& position, const Cells& cells,
                  const std::string& point_data) {
+  constexpr const char* kNumber = sizeof(Number) == 8 ? "Float64" : "Float32";
   return fmt::format(
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
       "header_type=\"UInt32\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<PointData>\n{}"
       "</PointData>\n<Points>\n{}</Points>\n<Cells>\n{}{}{}</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n",
-      points, cells.types.size(), point_data, array("Float32", "Points", 3, position),
+      points, cells.types.size(), point_data, array(kNumber, "Points", 3, position),
       array("Int32", "connectivity", 1, cells.connectivity), array("Int32", "offsets", 1, cells.offsets),
       array("UInt8", "types", 1, cells.types));
 }
@@ -92,10 +109,8 @@ std::string surface_vtu(const Model& model, const DeformedSurface& surface) {
 }
 
 std::string anchors_vtu(const Model& model, const AnchorField& field) {
-  constexpr std::uint8_t kVertexCell = 1;
   std::vector<float> position, displacement, stress, axial, shear;
   std::vector<std::uint8_t> fixed;
-  Cells cells;
   for (std::size_t i = 0; i < model.anchor.size(); ++i) {
     append(position, model.anchor[i].position_m);
     append(displacement, field.anchor[i].displacement_w);
@@ -103,14 +118,29 @@ std::string anchors_vtu(const Model& model, const AnchorField& field) {
     axial.push_back(static_cast<float>(field.anchor[i].axial_stress_Pa));
     shear.push_back(static_cast<float>(field.anchor[i].shear_stress_Pa));
     fixed.push_back(model.anchor[i].fixed != 0 ? 1 : 0);
-    cells.connectivity.push_back(static_cast<std::int32_t>(i));
-    cells.offsets.push_back(static_cast<std::int32_t>(i) + 1);
-    cells.types.push_back(kVertexCell);
   }
-  return grid(model.anchor.size(), position, cells,
+  return grid(model.anchor.size(), position, dots(model.anchor.size()),
               array("Float32", "displacement_m", 3, displacement) + array("Float32", "stress_Pa", 1, stress) +
                   array("Float32", "axial_stress_Pa", 1, axial) + array("Float32", "shear_stress_Pa", 1, shear) +
                   array("UInt8", "fixed", 1, fixed));
+}
+
+std::string regions_vtu(std::span<const RegionRecord> regions) {
+  std::vector<double> position, force, normal, depth;
+  std::vector<std::uint32_t> id;
+  std::vector<std::int32_t> friction;
+  for (const RegionRecord& region : regions) {
+    append(position, region.centre_w);
+    append(force, region.force_w);
+    append(normal, region.normal_w);
+    depth.push_back(region.depth_equivalent_m);
+    id.push_back(region.id);
+    friction.push_back(region.friction);
+  }
+  return grid(regions.size(), position, dots(regions.size()),
+              array("Float64", "force_N", 3, force) + array("Float64", "normal", 3, normal) +
+                  array("Float64", "depth_equivalent_m", 1, depth) + array("UInt32", "id", 1, id) +
+                  array("Int32", "friction", 1, friction));
 }
 
 VtuSeries::VtuSeries(const std::string& folder) : folder_(folder) {
@@ -119,15 +149,17 @@ VtuSeries::VtuSeries(const std::string& folder) : folder_(folder) {
   if (error) throw std::runtime_error(fmt::format("{}: cannot create folder: {}", folder, error.message()));
 }
 
-void VtuSeries::add(const Model& model, const State& state, double time_s) {
+void VtuSeries::add(const Model& model, const State& state, const TickRecord& record, double time_s) {
   const std::size_t n = times_s_.size();
   write_file(fmt::format("{}/surface_{:06}.vtu", folder_, n), surface_vtu(model, deformed_surface(model, state)));
   write_file(fmt::format("{}/anchors_{:06}.vtu", folder_, n), anchors_vtu(model, anchors_of(model, state)));
+  const auto regions = static_cast<std::size_t>(std::clamp(record.region_count, 0, kMaxRegions));
+  write_file(fmt::format("{}/regions_{:06}.vtu", folder_, n), regions_vtu(std::span(record.region).first(regions)));
   times_s_.push_back(time_s);
 }
 
 void VtuSeries::finish() const {
-  for (const char* name : {"surface", "anchors"}) {
+  for (const char* name : {"surface", "anchors", "regions"}) {
     std::string text =
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" "
         "byte_order=\"LittleEndian\">\n<Collection>\n";

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "rt_core/model.h"
+#include "rt_core/record.h"
 #include "rt_core/state.h"
 #include "sim_host/view/anchors.h"
 #include "sim_host/view/deformed_surface.h"
@@ -20,12 +21,19 @@ std::string surface_vtu(const Model& model, const DeformedSurface& surface);
 // Anchors: points at rest; point arrays displacement_m, stress_Pa, axial_stress_Pa, shear_stress_Pa, fixed.
 std::string anchors_vtu(const Model& model, const AnchorField& field);
 
-// A folder of numbered surface and anchor files; created if missing. Throws std::runtime_error on failure.
+// Contact regions: points are their equivalent contact points; point arrays force_N (on the tool, friction included:
+// "Glyph" draws it), normal, depth_equivalent_m, id, friction. In double precision: the numbers of the tick's record,
+// to the bit.
+std::string regions_vtu(std::span<const RegionRecord> regions);
+
+// A folder of numbered files of surface, anchors and regions; created if missing. Throws std::runtime_error on failure.
 class VtuSeries {
  public:
   explicit VtuSeries(const std::string& folder);
-  void add(const Model& model, const State& state, double time_s);
-  // Writes surface.pvd and anchors.pvd; call once at the end.
+  // `record` of the tick whose state that is.
+  void add(const Model& model, const State& state, const TickRecord& record, double time_s);
+  std::size_t size() const { return times_s_.size(); }
+  // Writes surface.pvd, anchors.pvd and regions.pvd; call once at the end.
   void finish() const;
 
  private:

@@ -68,7 +68,7 @@ GlMesh::GlMesh() {
   };
   attribute(0, 3, offsetof(DrawnVertex, position));
   attribute(1, 3, offsetof(DrawnVertex, normal));
-  attribute(2, 1, offsetof(DrawnVertex, displacement_m));
+  attribute(2, 2, offsetof(DrawnVertex, displacement_m));  // and pressure_Pa behind it
 }
 GlMesh::GlMesh(GlMesh&& other) noexcept
     : array_(std::exchange(other.array_, 0)),
@@ -104,7 +104,7 @@ GlMesh gl_mesh(const RenderMesh& mesh) {
   std::vector<DrawnVertex> vertices;
   for (std::size_t i = 0; i < mesh.position_m.size(); ++i) {
     const auto p = floats(mesh.position_m[i]), n = floats(mesh.normal[i]);
-    vertices.push_back({{p[0], p[1], p[2]}, {n[0], n[1], n[2]}, 0});
+    vertices.push_back({{p[0], p[1], p[2]}, {n[0], n[1], n[2]}, 0, 0});
   }
   std::vector<std::array<std::uint32_t, 3>> triangles;
   for (const auto& [a, b, c] : mesh.triangle)

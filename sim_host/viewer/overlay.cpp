@@ -118,7 +118,14 @@ class Overlay {
 
   void colour_legend() {
     const auto [left, top, height] = legend_bar();
-    const float width = 1.0f * unit_;
+    const float width = 1.0f * unit_, middle = left + 0.8f * width;
+    const ColourScale& colours = scene_.colours;
+    const char* const kind = colour_meaning(*scene_.model, colours.shown);
+    if (!solves(*scene_.model, colours.shown)) {
+      centred(middle, top - 2.6f * unit_, theme::kInk, colours.name);
+      centred(middle, top - 1.3f * unit_, theme::kWarning, kind);
+      return;
+    }
     constexpr int kSteps = 64;
     for (int i = 0; i < kSteps; ++i) {
       const auto y = [&](int k) { return top + height * static_cast<float>(k) / kSteps; };
@@ -126,23 +133,22 @@ class Overlay {
                                      step(i + 1));
     }
     list_->AddRect({left, top}, {left + width, top + height}, packed(theme::kGrey, 0.6f));
-    for (const double mm : scene_.colours.tick_mm) {
-      const float y = top + height * static_cast<float>(1 - 1e-3 * mm / scene_.colours.top_m);
+    for (const double tick : colours.tick) {
+      const float y = top + height * static_cast<float>(1 - tick * colours.unit / colours.top);
       list_->AddLine({left + width, y}, {left + 1.3f * width, y}, packed(theme::kGrey));
-      text(fonts_.text, 0.9f * unit_, {left + 1.6f * width, y - 0.5f * unit_}, theme::kInk, tick_label(mm));
+      text(fonts_.text, 0.9f * unit_, {left + 1.6f * width, y - 0.5f * unit_}, theme::kInk, tick_label(tick));
     }
-    const char* const kind = colour_meaning(*scene_.model);
-    const ImVec2 room = number_extent(kind);
-    number({left + 0.8f * width - 0.5f * room.x, top + height + 0.6f * unit_}, theme::kGrey, kind);
-    const char* const head[] = {"displacement", "(mm)"};
-    for (int i = 0; i < 2; ++i) {
-      const ImVec2 wide = extent(0.9f * unit_, head[i]);
-      text(fonts_.text, 0.9f * unit_,
-           {left + 0.8f * width - 0.5f * wide.x, top - (2.6f - 1.15f * static_cast<float>(i)) * unit_}, theme::kInk,
-           head[i]);
-    }
+    centred(middle, top + height + 0.6f * unit_, theme::kGrey, kind);
+    centred(middle, top - 2.6f * unit_, theme::kInk, colours.name);
+    centred(middle, top - 1.45f * unit_, theme::kInk, fmt::format("({})", colours.unit_name));
   }
-  static ImU32 step(int i) { return packed(displacement_colour(1 - i / 64.0)); }
+  // About `middle`, but within the scene.
+  void centred(float middle, float y, Colour c, const std::string& what) {
+    const ImVec2 room = number_extent(what);
+    const float most = low_.x + size_.x - room.x - 0.6f * unit_;
+    number({std::min(middle - 0.5f * room.x, most), y}, c, what);
+  }
+  static ImU32 step(int i) { return packed(map_colour(1 - i / 64.0)); }
 
   // Axes, length and force to scale, left below.
   void foot() {

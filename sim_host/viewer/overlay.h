@@ -24,7 +24,7 @@ struct OverlayScene {
   std::string letter;       // before the title, in its colour; "" for none
   Colour letter_colour{};
   std::string notice;  // "" or what to know of what is shown, in the middle above
-  DisplacementScale colours;
+  ColourScale colours;
   ForceScale forces;
   ViewLayers layers;
   std::optional<Vec3> hand_m;  // where the mouse pulls, when it does

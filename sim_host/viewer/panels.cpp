@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
+#include <numeric>
 
 #include "rt_core/tool/articulate.h"
 #include "sim_host/status_text.h"
@@ -102,10 +105,31 @@ void plots(const PanelScene& scene, double now_s) {
   const PlotLine force[] = {{"felt", theme::kFelt, data.felt_N, 4.0f, 0.55f},
                             {"on the tool", theme::kForce, data.contact_N}};
   // A hand's sliders need the room.
-  const float share = is_articulated(*scene.model) && scene.can_steer ? 0.6f : 1;
+  const float share = is_articulated(*scene.model) && scene.can_steer ? 0.6f : 0.8f;
   history_plot("Force", "N", force, from_s, until_s, now_s, 11 * share * line);
   const PlotLine depth[] = {{"deepest", theme::kDepth, data.depth_mm}};
-  history_plot("Depth", "mm", depth, from_s, until_s, now_s, 8 * share * line);
+  history_plot("Depth", "mm", depth, from_s, until_s, now_s, 9 * share * line);
+  const PlotLine energy[] = {{"given by the hand", theme::kFelt, data.given_mJ},
+                             {"stored", theme::kForce, data.stored_mJ}};
+  history_plot("Energy", "mJ", energy, from_s, until_s, now_s, 9 * share * line);
+}
+
+// The whole tick and its dearest stages; nothing in virtual time.
+void stage_plot(const PanelScene& scene, const TrackTiming& timing, double now_s) {
+  constexpr std::size_t kShown = 3;
+  static constexpr Colour kColours[kShown] = {theme::kDepth, theme::kFriction, theme::kFelt};
+  double from_s = 0, until_s = 1;
+  time_span(scene, now_s, from_s, until_s);
+  const auto columns = static_cast<std::size_t>(std::max(50.0f, ImGui::GetContentRegionAvail().x));
+  const TrackColumns data = scene.track->columns(from_s, until_s, columns);
+  std::array<std::size_t, kStageCount> stage;
+  std::iota(stage.begin(), stage.end(), 0u);
+  std::ranges::sort(stage, std::greater{}, [&](std::size_t i) { return percentile_ns(timing.stage[i], 0.5); });
+  std::vector<PlotLine> lines;
+  for (std::size_t k = kShown; k-- > 0;)  // the dearest last, beside the whole
+    lines.push_back({stage_name(static_cast<Stage>(stage[k])), kColours[k], data.stage_us[stage[k]], 1.4f});
+  lines.push_back({"tick", theme::kInk, data.compute_us, 1.4f});
+  history_plot("Stages", "us", lines, from_s, until_s, now_s, 8 * ImGui::GetTextLineHeight());
 }
 
 // What the tick says in numbers.
@@ -126,7 +150,7 @@ void numbers(const PanelScene& scene, const TrackTick& tick) {
   row("force felt", three(tick.device_N, "N"));
   row("tool at", three(1e3 * state.tool_w.position_m, "mm"));
   row("handle behind tool", fmt::format("{:.2f} mm", 1e3 * norm(state.device_w.position_m - state.tool_w.position_m)));
-  row("stored energy", fmt::format("{:.2f} mJ", 1e3 * tick.energy_J));
+  row("stored, given", fmt::format("{:.2f}  {:.2f} mJ", 1e3 * tick.energy_J, 1e3 * tick.given_J));
   row("tick", fmt::format("{}", tick.tick));
   ImGui::EndTable();
 }
@@ -158,7 +182,7 @@ void stage_table(const TrackTiming& timing, const TrackTick& tick) {
   ImGui::EndTable();
 }
 
-void times(const PanelScene& scene, const TrackTick& tick) {
+void times(const PanelScene& scene, const TrackTick& tick, double now_s) {
   const TrackTiming timing = scene.track->timing();
   if (timing.compute.max_ns == 0) {
     wrapped(theme::kGrey, "Virtual time: no tick is timed");
@@ -166,6 +190,7 @@ void times(const PanelScene& scene, const TrackTick& tick) {
   }
   duration_plot("Time of a tick (us; 99.9 %, maximum, period)", timing.compute, scene.track->period_s(),
                 7.5f * ImGui::GetTextLineHeight());
+  stage_plot(scene, timing, now_s);
   stage_table(timing, tick);
 }
 
@@ -179,6 +204,11 @@ void switches(ViewLayers& layers, CameraWish& wish) {
     if (n % 3 != 0) ImGui::SameLine(static_cast<float>(n % 3) * third + ImGui::GetStyle().WindowPadding.x);
     ImGui::Checkbox(name, value);
     ++n;
+  }
+  ImGui::TextUnformatted("colour");
+  for (const auto& [name, colour] : surface_colours()) {
+    ImGui::SameLine();
+    if (ImGui::RadioButton(name.c_str(), layers.colour == colour)) layers.colour = colour;
   }
   const std::pair<const char*, StandardView> views[] = {{"front", StandardView::kFront},
                                                         {"right", StandardView::kRight},
@@ -224,7 +254,7 @@ void side_panel(ImVec2 low, ImVec2 size, const PanelScene& scene, ViewLayers& la
     ImGui::Spacing();
     numbers(scene, tick);
     ImGui::Spacing();
-    times(scene, tick);
+    times(scene, tick, scene.track->time_s(scene.frame->index));
     ImGui::Spacing();
     if (scene.is_live && scene.steering != nullptr) {
       settings_block(scene);
@@ -236,11 +266,12 @@ void side_panel(ImVec2 low, ImVec2 size, const PanelScene& scene, ViewLayers& la
   switches(layers, wish);
   ImGui::Separator();
   wrapped(theme::kGrey,
-          scene.can_steer ? "Drag the tool to feel: it is the device. Wheel while dragging: nearer, farther. "
-                            "C, O: close, open fingers. L: scenes, tools and materials to go over to. P: picture. "
-                            "Drag elsewhere: turn; right button: shift."
-                          : "Drag: turn. Right button: shift. Wheel: zoom. P: picture. Space: play. Arrows: one tick, "
-                            "with Ctrl 100. Tab: this panel.");
+          scene.can_steer
+              ? "Drag the tool to feel: it is the device. Wheel while dragging: nearer, farther. "
+                "C, O: close, open fingers. L: scenes, tools and materials to go over to. K: colours. P: picture. "
+                "Drag elsewhere: turn; right button: shift."
+              : "Drag: turn. Right button: shift. Wheel: zoom. K: colours. P: picture. Space: play. Arrows: one tick, "
+                "with Ctrl 100. Tab: this panel.");
   ImGui::End();
 }
 

@@ -40,9 +40,18 @@ Frame begin(const char* title, float height) {
   return frame;
 }
 
-void value_axis(const Frame& frame, double top) {
-  for (const double value : axis_ticks(0, top, 3)) {
-    const float y = frame.high.y - static_cast<float>(value / top) * (frame.high.y - frame.low.y);
+// What stands at the lower and the upper edge.
+struct Values {
+  double bottom, top;
+};
+float height_of(const Frame& frame, const Values& values, double value) {
+  const double share = (value - values.bottom) / (values.top - values.bottom);
+  return frame.high.y - static_cast<float>(share) * (frame.high.y - frame.low.y);
+}
+
+void value_axis(const Frame& frame, const Values& values) {
+  for (const double value : axis_ticks(values.bottom, values.top, 3)) {
+    const float y = height_of(frame, values, value);
     frame.list->AddLine({frame.low.x, y}, {frame.high.x, y}, packed(theme::kLine));
     const std::string label = tick_label(value);
     small_text(frame, {frame.low.x - width_of(frame, label) - 5, y - 0.55f * frame.text}, theme::kGrey, label);
@@ -69,11 +78,11 @@ void legend(const Frame& frame, std::span<const PlotLine> lines) {
 }
 
 // Broken where a column holds nothing (not-a-number).
-void draw_line(const Frame& frame, const PlotLine& line, double top) {
+void draw_line(const Frame& frame, const PlotLine& line, const Values& values) {
   const auto at = [&](std::size_t column, float value) {
     const float share = (static_cast<float>(column) + 0.5f) / static_cast<float>(line.columns.size());
     return ImVec2{frame.low.x + share * (frame.high.x - frame.low.x),
-                  frame.high.y - value / static_cast<float>(top) * (frame.high.y - frame.low.y)};
+                  height_of(frame, values, static_cast<double>(value))};
   };
   std::vector<ImVec2> points;
   const auto stroke = [&] {
@@ -100,11 +109,12 @@ void history_plot(const char* title, const char* unit, std::span<const PlotLine>
                   double now_s, float height) {
   const Frame frame = begin(fmt::format("{} ({})", title, unit).c_str(), height);
   legend(frame, lines);
-  float largest = 0;
+  float largest = 0, least = 0;
   for (const PlotLine& line : lines)
-    for (const auto& range : line.columns) largest = std::max(largest, range.high);
-  const double top = largest > 1e-9f ? 1.08 * static_cast<double>(largest) : 1;
-  value_axis(frame, top);
+    for (const auto& range : line.columns) largest = std::max(largest, range.high), least = std::min(least, range.low);
+  const bool flat = !(largest - least > 1e-9f);
+  const Values values{1.08 * static_cast<double>(least), flat ? 1 : 1.08 * static_cast<double>(largest)};
+  value_axis(frame, values);
   const auto x_of = [&](double time_s) {
     return frame.low.x + static_cast<float>((time_s - from_s) / (until_s - from_s)) * (frame.high.x - frame.low.x);
   };
@@ -114,7 +124,7 @@ void history_plot(const char* title, const char* unit, std::span<const PlotLine>
   }
   frame.list->PushClipRect(frame.low, frame.high, true);
   for (const PlotLine& line : lines)
-    if (line.columns.size() > 1) draw_line(frame, line, top);
+    if (line.columns.size() > 1) draw_line(frame, line, values);
   frame.list->PopClipRect();
   if (now_s >= from_s && now_s <= until_s)
     frame.list->AddLine({x_of(now_s), frame.low.y}, {x_of(now_s), frame.high.y}, packed(theme::kInk, 0.7f), 1.2f);

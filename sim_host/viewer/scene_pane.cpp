@@ -21,7 +21,7 @@ bool ScenePane::take_frame() {
   if (!frame || frame == shown_) return false;
   renderer_.show(*frame);
   shown_ = frame;
-  largest_m_ = std::max(largest_m_, frame->largest_m);
+  for (std::size_t i = 0; i < largest_.size(); ++i) largest_[i] = std::max(largest_[i], frame->largest[i]);
   ++surfaces_;
   surface_ms_ += frame->made_ms;
   return true;
@@ -31,7 +31,7 @@ void ScenePane::draw(const PaneView& view, ImVec2 size, bool full) {
   constexpr double kSlow_ms = 30;
   if (!shown_) return;
   const Drawn now{view.camera.camera().eye_m, view.camera.target_m(), size.x, size.y, view.layers, shown_.get(),
-                  view.colours.top_m,         view.forces.m_per_N};
+                  view.colours.top,           view.forces.m_per_N};
   const bool moved = !(now == drawn_);
   if (!moved && drawn_fully_) return;
   full = full || !moved || !slow_;

@@ -12,7 +12,7 @@ namespace palpate {
 struct PaneView {
   const OrbitCamera& camera;
   const ViewLayers& layers;
-  const DisplacementScale& colours;
+  const ColourScale& colours;
   const ForceScale& forces;
 };
 
@@ -31,7 +31,8 @@ class ScenePane {
   const SceneRenderer& renderer() const { return renderer_; }
   // What is shown; null before the first frame.
   const std::shared_ptr<const ViewFrame>& shown() const { return shown_; }
-  double largest_m() const { return largest_m_; }  // displacement shown so far
+  // Shown so far, m or Pa.
+  double largest(SurfaceColour colour) const { return largest_[static_cast<std::size_t>(colour)]; }
 
   // Takes the newest frame there is; whether it is another one than before.
   bool take_frame();
@@ -55,14 +56,14 @@ class ScenePane {
   SceneRenderer renderer_;
   GlFramebuffer picture_;
   std::shared_ptr<const ViewFrame> shown_;
-  double largest_m_ = 0;
+  std::array<double, 3> largest_{};
   // What the picture shows.
   struct Drawn {
     Vec3 eye_m, target_m;
     float width = 0, height = 0;
     ViewLayers layers;
     const ViewFrame* frame = nullptr;
-    double colour_top_m = 0, m_per_N = 0;
+    double colour_top = 0, m_per_N = 0;
     bool operator==(const Drawn&) const = default;
   };
   Drawn drawn_;

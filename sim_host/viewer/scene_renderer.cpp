@@ -29,7 +29,7 @@ GLuint colour_texture() {
   constexpr int kColours = 256;
   std::vector<float> colours;
   for (int i = 0; i < kColours; ++i) {
-    const Colour c = displacement_colour((i + 0.5) / kColours);
+    const Colour c = map_colour((i + 0.5) / kColours);
     colours.insert(colours.end(), {c.r, c.g, c.b});
   }
   GLuint texture = 0;
@@ -68,6 +68,24 @@ GlMesh unit_shaft() {
   const Point2 profile[] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
   return gl_mesh(revolved_mesh({}, profile, 0));
 }
+// As thin as a beam is drawn, six sides are round.
+GlMesh unit_beam() {
+  constexpr int kSides = 6;
+  RenderMesh beam;
+  for (const double z : {0.0, 1.0}) {
+    for (int j = 0; j < kSides; ++j) {
+      const double turn = 2 * kPi * j / kSides;
+      beam.normal.push_back({std::cos(turn), std::sin(turn), 0});
+      beam.position_m.push_back(beam.normal.back() + Vec3{0, 0, z});
+    }
+  }
+  for (std::int32_t j = 0; j < kSides; ++j) {
+    const std::int32_t next = (j + 1) % kSides;
+    beam.triangle.push_back({j, next, kSides + next});
+    beam.triangle.push_back({j, kSides + next, kSides + j});
+  }
+  return gl_mesh(beam);
+}
 GlMesh unit_head() {
   const Point2 profile[] = {{0, 0}, {1, 0}, {0, 1}};
   return gl_mesh(revolved_mesh({}, profile, 0));
@@ -89,6 +107,7 @@ SceneRenderer::SceneRenderer(const Model& model, const DrawnBody& body, std::spa
       ball_(unit_ball()),
       shaft_(unit_shaft()),
       head_(unit_head()),
+      beam_(unit_beam()),
       colours_(colour_texture()) {
   body_.set_triangles(body.triangle);
   rest_.set_triangles(body.triangle);
@@ -181,12 +200,15 @@ void SceneRenderer::draw_background(const ViewFrame& frame, bool floor) {
   draw_whole_picture();
 }
 
-void SceneRenderer::draw_body(const DisplacementScale& colours) {
+void SceneRenderer::draw_body(const ColourScale& colours) {
   set_view(body_program_);
   body_program_.set("place", kUnmoved);
-  body_program_.set("top", static_cast<float>(colours.top_m));
+  const bool on_surface = colours.shown != SurfaceColour::kStress && solves(model_, colours.shown);
+  body_program_.set("bare", kNoValue, on_surface ? 0.0f : 1.0f);
+  body_program_.set("pressed", colours.shown == SurfaceColour::kPressure ? 1.0f : 0.0f);
+  body_program_.set("top", static_cast<float>(colours.top));
   std::vector<float> ticks;
-  for (const double mm : colours.tick_mm) ticks.push_back(static_cast<float>(1e-3 * mm));
+  for (const double tick : colours.tick) ticks.push_back(static_cast<float>(tick * colours.unit));
   ticks.resize(std::min<std::size_t>(ticks.size(), 12));
   body_program_.set("tick", ticks);
   body_program_.set("ticks", static_cast<int>(ticks.size()));
@@ -256,16 +278,53 @@ void SceneRenderer::draw_forces(const ViewFrame& frame, const ForceScale& scale,
   }
 }
 
-void SceneRenderer::draw_points(const ViewFrame& frame, const ViewLayers& layers) {
+Colour SceneRenderer::anchor_colour(const AnchorField& field, std::size_t anchor, const ColourScale& colours) const {
+  if (colours.shown == SurfaceColour::kStress) return map_colour(field.anchor[anchor].stress_Pa / colours.top);
+  return model_.anchor[anchor].fixed != 0 ? theme::kFixed : theme::kAnchor;
+}
+
+void SceneRenderer::draw_anchors(const AnchorField& field, const ColourScale& colours) {
+  const double radius = (colours.shown == SurfaceColour::kStress ? 0.018 : 0.012) * size_m_;
+  for (std::size_t k = 0; k < model_.anchor.size(); ++k) {
+    const Anchor& anchor = model_.anchor[k];
+    const Vec3 at = anchor.position_m + (anchor.fixed != 0 ? Vec3{} : field.anchor[k].displacement_w);
+    draw_solid(ball_, scaled({at, {}}, radius, radius), {anchor_colour(field, k, colours), 1, 0.3f, 0});
+  }
+}
+
+// From where each region's contact is to every anchor: straight beams as they are, circular ones by their chords. Those
+// of many regions, as of a hand's, are fainter, so that the body stays in sight.
+void SceneRenderer::draw_beams(const State& state, const AnchorField& field, const ColourScale& colours,
+                               float opacity) {
+  const int regions = force_sum(state).regions;
+  opacity *= std::min(1.0f, 2.0f / static_cast<float>(std::max(regions, 1)));
+  for (const Region& region : state.region) {
+    if (region.id == 0 || region.lost_ticks > 0) continue;
+    for (std::size_t k = 0; k < model_.anchor.size(); ++k) {
+      const Anchor& anchor = model_.anchor[k];
+      const Vec3 end = anchor.position_m + (anchor.fixed != 0 ? Vec3{} : field.anchor[k].displacement_w);
+      const Vec3 way = end - region.centre_w;
+      const Pose pose{region.centre_w, rotation_between({0, 0, 1}, unit_or(way, {0, 0, 1}))};
+      draw_solid(beam_, scaled(pose, 0.0035 * size_m_, norm(way)),
+                 {anchor_colour(field, k, colours), opacity, 0.1f, 0, 0.5f});
+    }
+  }
+}
+
+void SceneRenderer::draw_points(const ViewFrame& frame, const ViewLayers& layers, const ColourScale& colours) {
   const State& state = *frame.state;
   if (layers.anchors && !model_.anchor.empty()) {
     const AnchorField field = anchors_of(model_, state);
-    for (std::size_t k = 0; k < model_.anchor.size(); ++k) {
-      const Anchor& anchor = model_.anchor[k];
-      const Vec3 at = anchor.position_m + (anchor.fixed != 0 ? Vec3{} : field.anchor[k].displacement_w);
-      const double radius = 0.012 * size_m_;
-      draw_solid(ball_, scaled({at, {}}, radius, radius),
-                 {anchor.fixed != 0 ? theme::kFixed : theme::kAnchor, 1, 0.3f, 0});
+    draw_anchors(field, colours);
+    if (field.count > 0) {
+      glEnable(GL_BLEND);
+      glDepthMask(GL_FALSE);
+      glDepthFunc(GL_GREATER);  // within the body, seen through it
+      draw_beams(state, field, colours, 0.45f);
+      glDepthMask(GL_TRUE);
+      glDepthFunc(GL_LESS);
+      draw_beams(state, field, colours, 1);
+      glDisable(GL_BLEND);
     }
   }
   if (!layers.contacts) return;
@@ -317,8 +376,7 @@ void SceneRenderer::draw_outline(const GlFramebuffer& target, int samples) {
 }
 
 void SceneRenderer::draw(const ViewFrame& frame, const OrbitCamera& camera, const ViewLayers& layers,
-                         const DisplacementScale& colours, const ForceScale& forces, GlFramebuffer& target,
-                         int samples) {
+                         const ColourScale& colours, const ForceScale& forces, GlFramebuffer& target, int samples) {
   width_ = target.width();
   height_ = target.height();
   camera_ = camera.camera();
@@ -333,7 +391,7 @@ void SceneRenderer::draw(const ViewFrame& frame, const OrbitCamera& camera, cons
   draw_body(colours);
   set_view(solid_program_);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-  draw_points(frame, layers);
+  draw_points(frame, layers, colours);
   glEnable(GL_BLEND);
   if (layers.forces) {
     glDepthFunc(GL_GREATER);  // through the body, faintly

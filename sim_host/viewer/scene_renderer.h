@@ -13,6 +13,7 @@ namespace palpate {
 struct ViewLayers {
   bool rest_outline = true, tool = true, device_ghost = true, forces = true, contacts = true, anchors = true;
   bool floor = true;
+  SurfaceColour colour = SurfaceColour::kDisplacement;
   bool operator==(const ViewLayers&) const = default;
 };
 
@@ -23,8 +24,8 @@ class SceneRenderer {
   // Uploads the deformed surface.
   void show(const ViewFrame& frame);
   // Into `target`, which is resized; `samples` per pixel.
-  void draw(const ViewFrame& frame, const OrbitCamera& camera, const ViewLayers& layers,
-            const DisplacementScale& colours, const ForceScale& forces, GlFramebuffer& target, int samples);
+  void draw(const ViewFrame& frame, const OrbitCamera& camera, const ViewLayers& layers, const ColourScale& colours,
+            const ForceScale& forces, GlFramebuffer& target, int samples);
   double floor_y_m() const { return floor_y_m_; }
   double size_m() const { return size_m_; }
   double grid_m() const { return grid_m_; }
@@ -38,14 +39,17 @@ class SceneRenderer {
   void set_view(const GlProgram& program) const;
   void draw_background(const ViewFrame& frame, bool floor);
   void draw_shadow(const ViewFrame& frame);
-  void draw_body(const DisplacementScale& colours);
+  void draw_body(const ColourScale& colours);
   void draw_piece(const ViewFrame& frame, std::size_t piece, const Pose& tool_w, const Look& look);
   void draw_tool(const ViewFrame& frame);
   void draw_ghost(const ViewFrame& frame);
   void draw_solid(const GlMesh& mesh, const Matrix4& place, const Look& look);
   void draw_arrow(Vec3 tail_w, Vec3 way_m, Colour colour, float opacity);
   void draw_forces(const ViewFrame& frame, const ForceScale& scale, float opacity);
-  void draw_points(const ViewFrame& frame, const ViewLayers& layers);
+  void draw_points(const ViewFrame& frame, const ViewLayers& layers, const ColourScale& colours);
+  void draw_anchors(const AnchorField& field, const ColourScale& colours);
+  void draw_beams(const State& state, const AnchorField& field, const ColourScale& colours, float opacity);
+  Colour anchor_colour(const AnchorField& field, std::size_t anchor, const ColourScale& colours) const;
   void make_outline(int samples);
   void draw_outline(const GlFramebuffer& target, int samples);
 
@@ -55,7 +59,7 @@ class SceneRenderer {
   Vec3 centre_m_;
   GlProgram body_program_, solid_program_, cover_program_, background_program_, blur_program_, outline_program_,
       lay_program_;
-  GlMesh body_, rest_, ball_, shaft_, head_;
+  GlMesh body_, rest_, ball_, shaft_, head_, beam_;
   std::vector<GlMesh> pieces_;  // tool frame, joints at zero
   GLuint colours_ = 0;
   GlFramebuffer scene_, mask_samples_, mask_, outline_, shadow_, soft_shadow_;

@@ -98,6 +98,7 @@ void ScriptedUser::begin(const UserView& view) {
   }
   if (now.kind == Kind::kFollow) view.player.live = true;
   if (now.kind == Kind::kLook) view.wish = {true, now.view};
+  if (now.kind == Kind::kColour) view.layers.colour = now.colour;
   if (now.kind == Kind::kFit) view.wish = {true, {}};
   if (now.kind == Kind::kZoom) view.camera.zoom(now.value);
   // Half a turn is the height of the scene.

@@ -19,6 +19,7 @@ struct UserView {
   Projection projection;  // of its scene, which fills the window from its left upper corner to `size`
   ImVec2 size;
   OrbitCamera& camera;
+  ViewLayers& layers;
   CameraWish& wish;
   Player& player;
   double first_s, last_s;

@@ -7,15 +7,16 @@ namespace palpate::shaders {
 inline constexpr char kMesh[] = R"(#version 330 core
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
-layout(location = 2) in float value;
+layout(location = 2) in vec2 value;  // displacement, pressure
 uniform mat4 projection, place;
+uniform float pressed;  // 1: the pressure is shown
 out vec3 at_w, normal_w;
 out float shown;
 void main() {
   vec4 world = place * vec4(position, 1.0);
   at_w = world.xyz;
   normal_w = mat3(place) * normal;
-  shown = value;
+  shown = mix(value.x, value.y, pressed);
   gl_Position = projection * world;
 })";
 
@@ -36,15 +37,16 @@ in float shown;
 uniform sampler2D colours;
 uniform float top, tick[12];
 uniform int ticks;
+uniform vec4 bare;  // paint instead of colours, where its last number is 1
 out vec4 colour;
 void main() {
   vec3 view = normalize(eye - at_w);
-  vec3 base = texture(colours, vec2(clamp(shown / top, 0.0, 1.0), 0.5)).rgb;
+  vec3 base = mix(texture(colours, vec2(clamp(shown / top, 0.0, 1.0), 0.5)).rgb, bare.rgb, bare.a);
   vec3 c = lit(base, facing(normal_w, view), view, 0.10);
   float across = max(fwidth(shown), 1e-9), line = 0.0;
   for (int i = 1; i < ticks; ++i) line = max(line, 1.0 - smoothstep(0.4, 1.3, abs(shown - tick[i]) / across));
   // Where a tick's value is spread over many pixels there is no line to draw.
-  if (across < 1e-4 * top) line = 0.0;
+  if (across < 1e-4 * top || bare.a > 0.5) line = 0.0;
   colour = vec4(mix(c, vec3(0.122, 0.161, 0.2), 0.32 * line), 1.0);
 })";
 

@@ -22,7 +22,7 @@ namespace {
 
 struct ViewCommand {
   std::vector<std::string> source, also;
-  std::string image, size = "1600x1000", view, attach, align = "time", script;
+  std::string image, size = "1600x1000", view, attach, align = "time", script, colour = "displacement";
   double at_s = -1;
   bool motion = false, real_time = false, json = false;
   RunOptions run;
@@ -171,6 +171,7 @@ int run(ViewCommand& command, Json& json) {
     viewer.view = standard_views().at(command.view);
     viewer.default_view = false;
   }
+  viewer.colour = surface_colours().at(command.colour);
   if (!command.script.empty()) viewer.script = read_view_script(command.script);
   if (!viewer.script.empty() && !viewer.screenshot.empty())
     throw std::runtime_error("--script: writes its own pictures, without --screenshot");
@@ -225,6 +226,9 @@ void add_options(CLI::App& app, ViewCommand& command) {
       ->transform(duration_in(0, 1e9));
   app.add_option("--view", command.view, "oblique, front, back, left, right, top or bottom; default: as still pictures")
       ->check(CLI::IsMember({"oblique", "front", "back", "left", "right", "top", "bottom"}));
+  app.add_option("--colour", command.colour, "of the body: displacement, pressure or stress (key K)")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"displacement", "pressure", "stress"}));
   app.add_option("--screenshot", command.viewer.screenshot, "write this PNG and leave; no window is shown")
       ->check(ends_in({".png"}));
   app.add_option("--script", command.script, "do the steps of this file, one a line, and leave; steps below");

@@ -42,6 +42,7 @@ class Viewer {
     if (const ViewerRun& run = runs_.front(); run.change != nullptr) list_.emplace(run.scene->choice, run.also);
     player_.live = first().run().live() && !options.at_s;
     panel_ = options.panel;
+    layers_.colour = options.colour;
   }
 
   void show() {
@@ -190,9 +191,10 @@ class Viewer {
     const Layout place = layout();
     window_.begin_ui([&](ImGuiIO& io) { act(io, place, elapsed_s); });
     if (std::ranges::all_of(panes_, [](const auto& pane) { return pane->shown() != nullptr; })) {
-      double largest_m = 1e-4;
-      for (const auto& pane : panes_) largest_m = std::max(largest_m, pane->largest_m());
-      const DisplacementScale colours = displacement_scale(largest_m, false);
+      const SurfaceColour shown = layers_.colour;
+      double largest = shown == SurfaceColour::kDisplacement ? 1e-4 : 0;
+      for (const auto& pane : panes_) largest = std::max(largest, pane->largest(shown));
+      const ColourScale colours = colour_scale(shown, largest, false);
       const ForceScale forces = arrows();
       for (std::size_t i = 0; i < panes_.size(); ++i)
         draw_pane(i, {camera_, layers_, colours, forces}, place.scene_size);
@@ -261,8 +263,8 @@ class Viewer {
   void act(ImGuiIO& io, const Layout& place, double elapsed_s) {
     if (options_.script.empty()) return;
     user_.act(io,
-              {first(), projection(place), place.scene_size, camera_, wish_, player_, first_s(), last_s(), grabbed_,
-               hand_, plane_w_},
+              {first(), projection(place), place.scene_size, camera_, layers_, wish_, player_, first_s(), last_s(),
+               grabbed_, hand_, plane_w_},
               elapsed_s);
   }
 
@@ -323,6 +325,8 @@ class Viewer {
     for (const auto& [key, view] : kViews)
       if (ImGui::IsKeyPressed(key, false)) wish = {true, view};
     if (list_ && ImGui::IsKeyPressed(GLFW_KEY_L, false)) list_->toggle();
+    if (ImGui::IsKeyPressed(GLFW_KEY_K, false))  // the next one
+      layers_.colour = static_cast<SurfaceColour>((static_cast<int>(layers_.colour) + 1) % kSurfaceColours);
     if (run_steers() && first().shown())
       hand_control_.keys(first().model(), *first().shown()->state, *first().run().steering,
                          static_cast<double>(io.DeltaTime));

@@ -9,6 +9,7 @@
 #include "sim_host/view/orbit_camera.h"
 #include "sim_host/view/scene_change.h"
 #include "sim_host/view/steering.h"
+#include "sim_host/view/view_scales.h"
 #include "sim_host/view/view_script.h"
 
 namespace palpate {
@@ -19,7 +20,8 @@ struct ViewerOptions {
   std::vector<ViewStep> script;  // done instead of a person; then it leaves
   std::optional<double> at_s;    // start there; default: at the largest force, of a live run at its end
   StandardView view = StandardView::kOblique;
-  bool default_view = true;             // the still pictures' view, from the side of the contacts
+  bool default_view = true;  // the still pictures' view, from the side of the contacts
+  SurfaceColour colour = SurfaceColour::kDisplacement;
   bool panel = true;                    // plots and words at the right
   bool stats = false;                   // print frame times and memory at the end
   double stats_s = 5;                   // after so long, when stats are asked for

@@ -62,6 +62,26 @@ TEST(ContactProfile, FarAwayOnlyTheForceCounts) {
       EXPECT_NEAR(contact_profile(kShapes[i], rho) * kPi * rho / force[i], 1, 1e-4) << rho;
 }
 
+// The pressures are those of the same contacts: over the whole contact they are the force, and the displacement that
+// they make in the middle, by Boussinesq, is the depth: w(0) = 2 (1 - nu^2)/E int p dr, and F/(E* a d) as above.
+TEST(ContactProfile, ThePressureIsTheForceAndMakesTheDepth) {
+  const double force[] = {4.0 / 3, 1, 2};  // over E* a d
+  for (std::size_t i = 0; i < 3; ++i) {
+    double whole = 0, depth = 0;
+    constexpr int kSteps = 20000;
+    for (int k = 0; k < kSteps; ++k) {  // r = sin t: bounded at a flat end's edge, and midpoints miss a cone's point
+      const double t = 0.5 * kPi * (k + 0.5) / kSteps, r = std::sin(t), dr = 0.5 * kPi / kSteps * std::cos(t);
+      const double p = contact_pressure(kShapes[i], r);
+      whole += 2 * p * r * dr;
+      depth += 2 * p * dr;
+    }
+    EXPECT_NEAR(whole, 1, 1e-6);
+    EXPECT_NEAR(depth * force[i] / kPi, 1, 2e-4);
+    EXPECT_EQ(contact_pressure(kShapes[i], 1), 0);
+    EXPECT_EQ(contact_pressure(kShapes[i], 2.5), 0);
+  }
+}
+
 // A ball on a plane: inside the edge the dented surface is the ball's paraboloid, and beyond it lies outside the ball.
 TEST(ContactProfile, TheDentedSurfaceLiesOnTheBall) {
   const double ball_m = 6e-3, depth_m = 1e-3;

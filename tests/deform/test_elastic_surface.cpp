@@ -6,6 +6,7 @@
 
 #include "sim_host/view/deformed_surface.h"
 #include "sim_host/view/elastic_surface.h"
+#include "sim_host/view/view_scales.h"
 #include "tests/elastic/elastic_tick_scene.h"
 
 namespace palpate {
@@ -53,11 +54,95 @@ TEST(ElasticSurface, TheContactIsAsWideAsTheLawSays) {
 
 // What lies below the tip on another side of the body is not dented: the inside of a ring's far side faces the tip too.
 TEST(ElasticSurface, ADentReachesAsFarAsItsRadius) {
-  TipDent dent{{0, 0.1, 0}, {0, -1, 0}, {1, 0, 0}, 0.002, 0.004, 0.004};
+  TipDent dent{{0, 0.1, 0}, {0, -1, 0}, {1, 0, 0}, 0.002, 0.004, 0.004, 1000};
   EXPECT_NEAR(norm(dent.at({0, 0.1, 0}, {0, 1, 0})), 0.002, 1e-12);
   EXPECT_NEAR(norm(dent.at({0.004, 0.1, 0}, {0, 1, 0})), 0.001, 1e-12);
   EXPECT_EQ(norm(dent.at({0, 0.02, 0}, {0, 1, 0})), 0);
   EXPECT_EQ(norm(dent.at({0, 0.09, 0}, {0, -1, 0})), 0);
+  EXPECT_DOUBLE_EQ(dent.pressure_Pa({0, 0.1, 0}, {0, 1, 0}), 1500);
+  EXPECT_EQ(dent.pressure_Pa({0, 0.1, 0}, {0, -1, 0}), 0);
+  EXPECT_EQ(dent.pressure_Pa({0.0041, 0.1, 0}, {0, 1, 0}), 0);
+}
+
+// Over the drawn surface the pressure adds up to the force, of every method that has one.
+double force_of_pressure_N(const DeformedSurface& surface) {
+  double sum_N = 0;
+  for (const auto& [a, b, c] : surface.triangle) {
+    const auto at = [&](std::int32_t v) { return surface.rest_m[static_cast<std::size_t>(v)]; };
+    const auto p = [&](std::int32_t v) { return surface.pressure_Pa[static_cast<std::size_t>(v)]; };
+    sum_N += 0.5 * norm(cross(at(b) - at(a), at(c) - at(a))) * (p(a) + p(b) + p(c)) / 3;
+  }
+  return sum_N;
+}
+
+TEST(ContactPressure, OfAnElasticBodyAddsUpToTheForce) {
+  Pressed pressed;
+  const DeformedSurface surface = refined_surface(pressed.scene.model(), *pressed.bench->state);
+  const double force_N = pressed.bench->output.contact_w.force_N.y;
+  EXPECT_GT(force_N, 1);
+  // Triangles of 0.7 mm under a contact of 5 mm.
+  EXPECT_NEAR(force_of_pressure_N(surface) / force_N, 1, 0.03);
+}
+
+const char* const kTipScene = R"(name = "tip"
+[body]
+shape = "box"
+size_mm = [60, 30, 60]
+triangles = 3000
+[body.material]
+youngs_modulus_Pa = 2e4
+poisson_ratio = 0.49
+[skeleton]
+law = "none"
+[contact]
+law = "tool"
+max_depth_mm = 6
+[friction]
+law = "none"
+[shape]
+neighbourhood = "punch"
+radius_mm = 15
+[[tool.piece]]
+shape = "sphere"
+radius_mm = 6
+)";
+
+TEST(ContactPressure, OfAWholeTipAddsUpToTheForce) {
+  const BakedScene scene(kTipScene);
+  Bench bench(scene.model());
+  move_to(bench, {0, 0.037, 0}, {0.001, 0.0335, 0.002});
+  const DeformedSurface surface = refined_surface(scene.model(), *bench.state);
+  EXPECT_GT(bench.output.contact_w.force_N.y, 0.05);
+  EXPECT_NEAR(force_of_pressure_N(surface) / bench.output.contact_w.force_N.y, 1, 0.03);
+}
+
+TEST(ContactPressure, OfNodesIsTheirForceOverTheirArea) {
+  const BakedScene scene(
+      "name = \"block\"\n[body]\nshape = \"box\"\nsize_mm = [20, 20, 20]\n[body.material]\nyoungs_modulus_Pa = 2e5\n"
+      "poisson_ratio = 0.45\n[body.fem]\nedge_mm = 5\n[body.fixed]\nbase_height_mm = 0\n[contact]\nbackend = "
+      "\"nodal\"\n[friction]\nlaw = \"none\"\n[[tool.piece]]\nshape = \"sphere\"\nradius_mm = 8\n");
+  Bench bench(scene.model());
+  move_to(bench, {0, 0.0285, 0}, {0, 0.0265, 0});
+  const DeformedSurface surface = deformed_surface(scene.model(), *bench.state);
+  const double force_N = bench.output.contact_w.force_N.y;
+  EXPECT_GT(force_N, 0.1);
+  // What pushes on nodes pushes along a slope: on a flat top it is the same but for the ball's curvature.
+  EXPECT_NEAR(force_of_pressure_N(surface) / force_N, 1, 0.05);
+}
+
+TEST(ContactPressure, SpringsAtPointsHaveNone) {
+  const BakedScene scene(
+      "name = \"points\"\n[body]\nshape = \"ellipsoid\"\nhalf_axes_mm = [40, 30, 25]\ntriangles = 2000\n[contact]\nlaw "
+      "= "
+      "\"cubic\"\n[contact.cubic]\nk1_N_per_m = 300\nk3_N_per_m3 = 1e6\n[[tool.piece]]\nshape = \"sphere\"\nradius_mm "
+      "= "
+      "10\n[friction]\nmu_ref = 0.3\n");
+  Bench bench(scene.model());
+  move_to(bench, {0, 0.072, 0}, {0, 0.068, 0});
+  EXPECT_GT(bench.output.contacts, 0);
+  EXPECT_TRUE(deformed_surface(scene.model(), *bench.state).pressure_Pa.empty());
+  EXPECT_FALSE(solves(scene.model(), SurfaceColour::kPressure));
+  EXPECT_STREQ(colour_meaning(scene.model(), SurfaceColour::kPressure), "not solved by this model");
 }
 
 TEST(ElasticSurface, WhatIsHeldKeepsStillAndLetGoItIsAtRest) {

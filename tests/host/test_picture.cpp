@@ -115,14 +115,14 @@ TEST(MeshRaster, PiecesHaveTheirSize) {
 TEST(Picture, ColourMapIsLightAtZeroAndDarkAtTheTop) {
   double last = 10;
   for (int k = 0; k <= 20; ++k) {
-    const Colour c = displacement_colour(k / 20.0);
+    const Colour c = map_colour(k / 20.0);
     const double lightness =
         0.2126 * static_cast<double>(c.r) + 0.7152 * static_cast<double>(c.g) + 0.0722 * static_cast<double>(c.b);
     EXPECT_LT(lightness, last);
     last = lightness;
   }
-  EXPECT_EQ(displacement_colour(-1), displacement_colour(0));
-  EXPECT_EQ(displacement_colour(2), displacement_colour(1));
+  EXPECT_EQ(map_colour(-1), map_colour(0));
+  EXPECT_EQ(map_colour(2), map_colour(1));
 }
 
 std::string scene_path() { return std::string(PALPATE_SOURCE_DIR) + "/config/scenes/ellipsoid_mallet.toml"; }

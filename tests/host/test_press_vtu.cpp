@@ -94,6 +94,27 @@ TEST_F(Vtu, AnchorsHoldDisplacementAndStress) {
   EXPECT_FLOAT_EQ(array_of<float>(text, "displacement_m")[3 * 2 + 1], 1e-3f);
 }
 
+TEST(VtuRegions, AreTheRecordsNumbersToTheBit) {
+  std::vector<RegionRecord> regions(2);
+  regions[1].id = 7;
+  regions[1].centre_w = {1e-3, 1.0 / 3, -0.1};
+  regions[1].force_w = {0.1, -2.0 / 7, 1e-12};
+  regions[1].normal_w = {0, 0.6, 0.8};
+  regions[1].depth_equivalent_m = 1e-3 / 3;
+  regions[1].friction = 2;
+  const std::string text = regions_vtu(regions);
+  EXPECT_EQ(test::xml_error(text), "");
+  const auto of = [&](const char* name) { return array_of<double>(text, name); };
+  EXPECT_EQ(of("Points")[4], 1.0 / 3);
+  EXPECT_EQ(of("force_N")[4], -2.0 / 7);
+  EXPECT_EQ(of("normal")[5], 0.8);
+  EXPECT_EQ(of("depth_equivalent_m")[1], 1e-3 / 3);
+  EXPECT_EQ(array_of<std::uint32_t>(text, "id")[1], 7u);
+  EXPECT_EQ(array_of<std::int32_t>(text, "friction")[1], 2);
+  EXPECT_EQ(array_of<std::uint8_t>(text, "types"), std::vector<std::uint8_t>(2, 1));
+  EXPECT_EQ(test::xml_error(regions_vtu({})), "") << "a tick without contact has a file, too";
+}
+
 TEST_F(Vtu, SeriesHasAnIndexWithTimes) {
   const std::filesystem::path folder =
       std::filesystem::temp_directory_path() / ("palpate_vtu_" + std::to_string(getpid()));
@@ -101,8 +122,8 @@ TEST_F(Vtu, SeriesHasAnIndexWithTimes) {
   reset(*state);
   {
     VtuSeries series(folder.string());
-    series.add(model_, *state, 0);
-    series.add(model_, *state, 0.25);
+    series.add(model_, *state, {}, 0);
+    series.add(model_, *state, {}, 0.25);
     series.finish();
   }
   std::ifstream file(folder / "surface.pvd");

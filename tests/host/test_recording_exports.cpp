@@ -25,7 +25,8 @@ class Exports : public testing::Test {
     return (std::filesystem::temp_directory_path() / (std::to_string(getpid()) + name)).string();
   }
   ~Exports() override {
-    for (const std::string& path : {options_.ticks, options_.regions, options_.candump}) std::filesystem::remove(path);
+    for (const std::string& path : {options_.ticks, options_.regions, options_.candump, options_.npz})
+      std::filesystem::remove(path);
   }
   void export_run() {
     Model model;
@@ -44,7 +45,7 @@ class Exports : public testing::Test {
     exports.finish();
   }
   test::ImageBytes image_ = test::tiny_image();
-  ExportOptions options_{file("_ticks.csv"), file("_regions.csv"), file("_can.log"), false, 1};
+  ExportOptions options_{file("_ticks.csv"), file("_regions.csv"), file("_can.log"), false, 1, file(".npz"), 1'000'000};
   std::vector<TickRecord> records_;
 };
 
@@ -96,8 +97,23 @@ TEST_F(Exports, TrafficHasAStatusAndACommandForEachTick) {
   EXPECT_EQ(lines, 2 * kTicks);
 }
 
+// NumPy's own reading is held against the tables in tests/commands/exports.py; here, that the rows are the records'
+// bytes.
+TEST_F(Exports, TheArraysHoldTheRecordsBytes) {
+  export_run();
+  std::ifstream file(options_.npz, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  const std::string first(reinterpret_cast<const char*>(&records_.front()), offsetof(TickRecord, region));
+  const std::string last(reinterpret_cast<const char*>(&records_.back()), offsetof(TickRecord, region));
+  const std::size_t at = bytes.find(first);
+  ASSERT_NE(at, std::string::npos);
+  EXPECT_EQ(at % 64, bytes.find("\x93NUMPY", bytes.find("ticks.npy")) % 64) << "rows begin 64 bytes on, or a multiple";
+  EXPECT_EQ(bytes.compare(at + (kTicks - 1) * first.size(), last.size(), last), 0);
+}
+
 TEST(ExportErrors, AFolderThatIsNotThereIsNamed) {
-  for (std::string ExportOptions::*file : {&ExportOptions::ticks, &ExportOptions::regions, &ExportOptions::candump}) {
+  for (std::string ExportOptions::*file :
+       {&ExportOptions::ticks, &ExportOptions::regions, &ExportOptions::candump, &ExportOptions::npz}) {
     ExportOptions options;
     options.*file = "/nonexistent/a";
     const std::string said = test::refusal_by<std::runtime_error>([&] { RecordingExports exports(options); });

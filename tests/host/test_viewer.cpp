@@ -129,11 +129,19 @@ TEST(ViewScales, RoundLengthsAndTicks) {
   EXPECT_DOUBLE_EQ(round_below(0.0199), 0.01);
   EXPECT_EQ(round_below(-1), 0);
   EXPECT_EQ(round_below(std::nan("")), 0);
-  const DisplacementScale scale = displacement_scale(2.3e-3, false);
-  EXPECT_GE(scale.top_m, 2.3e-3);
-  EXPECT_NEAR(scale.tick_mm.back() * 1e-3, scale.top_m, 1e-12) << "the top of the colours has a tick";
-  EXPECT_DOUBLE_EQ(displacement_scale(2.3e-3, true).top_m, 2.3e-3);
-  EXPECT_GT(displacement_scale(0, false).top_m, 0);
+  constexpr SurfaceColour kMoved = SurfaceColour::kDisplacement, kPressed = SurfaceColour::kPressure;
+  const ColourScale scale = colour_scale(kMoved, 2.3e-3, false);
+  EXPECT_GE(scale.top, 2.3e-3);
+  EXPECT_NEAR(scale.tick.back() * scale.unit, scale.top, 1e-12) << "the top of the colours has a tick";
+  EXPECT_DOUBLE_EQ(colour_scale(kMoved, 2.3e-3, true).top, 2.3e-3);
+  EXPECT_GT(colour_scale(kMoved, 0, false).top, 0);
+  for (const double largest_Pa : {0.7, 340.0, 5.2e4, 3.1e6}) {
+    const ColourScale pressure = colour_scale(kPressed, largest_Pa, false);
+    EXPECT_GE(pressure.top, largest_Pa);
+    EXPECT_LE(pressure.top, 3 * largest_Pa);
+    EXPECT_NEAR(pressure.tick.back() * pressure.unit, pressure.top, 1e-9 * pressure.top);
+  }
+  EXPECT_STREQ(colour_scale(kPressed, 5.2e4, false).unit_name, "kPa");
 }
 
 TEST(ViewScales, ANewtonHasOneLength) {
@@ -222,6 +230,31 @@ TEST(RunTrack, TellsWhatHappened) {
   EXPECT_EQ(touches, 1u);
   EXPECT_EQ(armed, 1u);
   EXPECT_EQ(run->track.lost(), 0u);
+}
+
+// A handle that pushes a spring of 200 N/m in by 5 mm and lets it out again: 2.5 mJ given, and all back.
+TEST(RunTrack, TheWorkOfTheHandIsForceAlongItsWay) {
+  RunTrack track(1e-3);
+  TickRecord record{};
+  record.output.mode = Mode::kForce;
+  constexpr double kStiffness_N_per_m = 200;
+  const auto go = [&](double depth_m) {
+    record.sequence += 1;
+    record.tick += 1;
+    record.input.pose_w.position_m = {0, -depth_m, 0};
+    record.output.device_w.force_N = {0, kStiffness_N_per_m * depth_m, 0};
+    record.output.energy_J = 0.5 * kStiffness_N_per_m * depth_m * depth_m;
+    track.append(record);
+  };
+  constexpr int kSteps = 1000;
+  for (int i = 0; i <= kSteps; ++i) go(5e-3 * i / kSteps);
+  const TrackTick in = track.at(kSteps);
+  EXPECT_NEAR(in.given_J, in.energy_J, 1e-3 * in.energy_J);  // a held force lags by half a step
+  for (int i = kSteps; i >= 0; --i) go(5e-3 * i / kSteps);
+  EXPECT_NEAR(track.at(2 * kSteps + 1).given_J, 0, 2e-3 * in.energy_J);
+  const TrackColumns columns = track.columns(0, 2.1, 21);
+  EXPECT_NEAR(static_cast<double>(columns.given_mJ[10].high), 1e3 * in.given_J, 1e-3);
+  EXPECT_NEAR(static_cast<double>(columns.stored_mJ[10].high), 1e3 * in.energy_J, 1e-3);
 }
 
 TEST(RunTrack, ForceThatFadesAndComesBackIsMarked) {

@@ -21,7 +21,7 @@ for deb in "$work"/*.deb; do
   name=$(dpkg-deb -f "$deb" Package)
   [ -s "$work/root/usr/share/doc/$name/copyright" ] || wrong "$name has no copyright file"
   [[ $(dpkg-deb -f "$deb" Description | wc -c) -gt 40 ]] || wrong "$name does not say what it is"
-  others=$(dpkg-deb -c "$deb" | awk '$2 != "root/root" || $6 !~ /^\.\/usr\/|^\.\/$/ { print $6 }')
+  others=$(dpkg-deb -c "$deb" | awk '$2 != "root/root" || $6 !~ /^\.\/usr\/|^\.\/(etc\/(security\/(limits\.d\/(palpate-limits\.conf)?)?)?)?$/ { print $6 }')
   [ -z "$others" ] || wrong "$name: not root's, or outside /usr: $others"
 done
 usr=$work/root/usr
@@ -31,6 +31,9 @@ for file in bin/palpate bin/palpate-rt bin/palpate-device lib/systemd/system/pal
   include/palpate/rt_core/palpate_core.h lib/libpalpate_core.a; do
   [ -s "$usr/$file" ] || wrong "no package has $file"
 done
+# Rights of group palpate where PAM looks for them, in a file that is the administrator's to change.
+cmp "$root/hal/system/palpate-limits.conf" "$work/root/etc/security/limits.d/palpate-limits.conf" || wrong "no package has the limits"
+[ "$(dpkg-deb -I "$work"/palpate_*.deb conffiles)" = /etc/security/limits.d/palpate-limits.conf ] || wrong "the limits are no conffile"
 [[ $(dpkg-deb -f "$work"/palpate_*.deb Depends) == *libc6* ]] || wrong "palpate does not say which libraries it needs"
 ! grep -rlF -e "$root" -e "$build" "$usr" || wrong "these name the folders of the build"
 

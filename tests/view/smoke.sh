@@ -21,11 +21,14 @@ look bare.png 640 480 "$folder/run.plr" --at 2.5s --view top --no-panel
 # To programs it is one object, and nothing else.
 look told.png 400 300 "$folder/run.plr" --json >"$folder/told.json"
 ! command -v python3 >/dev/null || python3 -c 'import json, sys; told = json.load(sys.stdin); sys.exit(told["command"] != "view" or len(told["files"]) != 1)' <"$folder/told.json"
+look pressure.png 640 480 "$folder/run.plr" --colour pressure
+! cmp -s "$folder/pressure.png" "$folder/bare.png" || { echo "pressure is drawn as displacement"; exit 1; }
+look stress.png 640 480 "$folder/run.plr" --colour stress
 look scene.png 640 480 "$scene" --at 0.5
 look laid.png 640 480 "$scene" --set name=laid --at 0.5
 look both.png 800 500 "$folder/run.plr" "$folder/run.plr" --align touch
 # A script: the mouse drags the tool, a setting changes, the run is recorded; pictures where it says so.
-printf '%s\n' 'wait 0.3' 'drag 0 60 0 0.5' 'set stiffness=0.5' 'wait 0.3' "picture $folder/dragged.png" release \
+printf '%s\n' 'wait 0.3' 'drag 0 60 0 0.5' 'set stiffness=0.5' 'colour pressure' 'wait 0.3' "picture $folder/dragged.png" release \
   'scrub 0.2' "picture $folder/scrubbed.png" >"$folder/session.txt"
 xvfb-run -a -s '-screen 0 1280x1024x24' "$palpate" view "$scene" --script "$folder/session.txt" --size 640x480 \
   --record "$folder/session.plr" >"$folder/log"
