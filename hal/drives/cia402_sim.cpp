@@ -176,7 +176,7 @@ std::uint32_t Cia402Sim::statusword(int axis) const noexcept {
 std::int32_t Cia402Sim::mark(int axis) const noexcept { return arm_.index ? -123456 * (axis + 1) : 0; }
 
 // Until its mark was passed the handle is about where it lay when the drives were switched on: in its home pose.
-double Cia402Sim::counts(int axis) const noexcept {
+double Cia402Sim::counts(int axis) noexcept {
   const AxisProfile& a = arm_.axes[static_cast<std::size_t>(axis)];
   const bool waits = arm_.index && (get(axis, kProbeStatus) & kCaught) == 0;
   const double turns = waits ? a.home_turns + drive_[axis].beside_turns : plant_.turns(axis);

@@ -78,7 +78,7 @@ class Cia402Sim : public DriveSim {
   void watch(int axis) noexcept;
   void probe(int axis) noexcept;
   std::int32_t mark(int axis) const noexcept;
-  double counts(int axis) const noexcept;
+  double counts(int axis) noexcept;
   void make_dictionary(int axis);
   std::uint32_t get(int axis, std::uint32_t object) const noexcept;
   std::uint32_t statusword(int axis) const noexcept;

@@ -44,10 +44,16 @@ struct Options {
   bool move = false, push = false, json = false;
 };
 
+// A period that the drives' traffic fits: the usual one, or the half rate that the bus budget offers where it does not.
+double fitting_period_s(const ArmProfile& arm) {
+  constexpr double kUsual_s = 1e-3;
+  return check_drives_budget(arm, kUsual_s).fits ? kUsual_s : 2 * kUsual_s;
+}
+
 // Drives are found, identified and set up as before a run, and none is enabled.
 int run_drives_test(const DeviceAddress& address, const DeviceProfile& profile, const Options& options, Json& json) {
-  constexpr double kUsualPeriod_s = 1e-3;
   const ArmProfile& arm = *profile.arm;
+  const double period_s = fitting_period_s(arm);
   std::string error;
   const std::unique_ptr<Transport> transport = open_drives(address, arm, DeviceSide::kController, kTimeout_ms, error);
   if (!transport) {
@@ -56,8 +62,8 @@ int run_drives_test(const DeviceAddress& address, const DeviceProfile& profile, 
   }
   MonotonicClock clock;
   const AxisDrives::Pause pause = [&clock] { clock.wait_until(clock.now_ns() + 1'000'000); };
-  const std::unique_ptr<AxisDrives> drives = make_drives(*transport, arm, kUsualPeriod_s);
-  AxisDevice device(*drives, arm, profile.frame, kUsualPeriod_s);
+  const std::unique_ptr<AxisDrives> drives = make_drives(*transport, arm, period_s);
+  AxisDevice device(*drives, arm, profile.frame, period_s);
   // Joints beyond their limits are what moving them by hand explains.
   const std::string wrong = options.move ? device.find(pause) : device.start(pause);
   const std::string found = fmt::format("{} drives are those of the profile, with their watchdogs on", arm.axes.size());
@@ -73,7 +79,7 @@ int run_drives_test(const DeviceAddress& address, const DeviceProfile& profile, 
   const auto failed = std::ranges::count(rows, Verdict::kFail, &DoctorItem::verdict);
   json["items"] = items_json(rows);
   json["fail"] = failed;
-  fmt::print("{}{}.\n", doctor_table(rows),
+  fmt::print("{}{}{}.\n", doctor_table(rows), device.remarks(),
              push ? "Each motor pushed by itself, with a fifth of its torque at most" : "No motor was enabled");
   return failed == 0 ? kExitOk : kExitFailed;
 }
