@@ -154,6 +154,19 @@ if command -v aarch64-linux-gnu-g++ >/dev/null; then
   arm_gate fail 'double f(double a, double b, double c) { return -__builtin_fma(a, b, c); }\n'
 fi
 
+counted_on_arm() { # pass|fail NAME COUNTS
+  printf '%b' "$3" >"$work/counts"
+  printf '# limits\nring 100\nsnap_in 200\n' >"$work/budgets"
+  expect "$1" "AArch64's budgets on $2" "$gates/../aarch64/tick_count.sh" judge "$work/counts" "$work/budgets"
+}
+ring='ring worst tick 100 instructions (tick 7)\n' snap='snap_in worst tick 150 instructions (tick 7)\n'
+counted_on_arm pass "two scenes within" "$ring$snap"
+counted_on_arm fail "a scene over its budget" "${ring/100/101}$snap"
+counted_on_arm fail "a scene without a budget" "$ring${snap}half_shell worst tick 5 instructions\n"
+counted_on_arm fail "a scene that was not counted" "$ring"
+counted_on_arm fail "a program that did not run" "$ring${snap}snap_in no such file\n"
+counted_on_arm fail "nothing" ''
+
 program() { # NAME TEXT LIBRARY...
   local name=$1
   printf '%b' "$2" >"$work/$name.cpp"

@@ -11,7 +11,10 @@ jobs=${PALPATE_JOBS:-$(nproc)}
 every='faults usb kvaser vcan vcan_classic:21 determinism cyclictest'
 standard="$every scene_grasp_cylinder_5 scene_ring"
 scenes=$(cd "$root/config/scenes" && printf 'scene_%s ' *.toml | sed 's/\.toml//g')
-thorough="$every scenes buses vcan_classic vcan_clock vcan_odrive vcan_cia402 vcan_moteus falcon vcan_two_hands vcan_two_tools usb_unplug host_chaos viewer vcan:60 kvaser:60 usb:60 vcan_classic:600"
+# Drives and two devices: recorded for 10 s, and for 60,000 ticks, a second more than that because the loop follows the
+# device's clock. Those of two devices are recorded in any case.
+drives='vcan_odrive vcan_cia402 vcan_moteus falcon vcan_odrive:61 vcan_cia402:61 vcan_moteus:61 falcon:61 vcan_two_hands:61 vcan_two_tools:61'
+thorough="$every scenes buses vcan_classic vcan_clock $drives usb_kit usb_unplug host_chaos viewer vcan:60 kvaser:60 usb:60 vcan_classic:600"
 
 usage() {
   cat << TEXT
@@ -20,7 +23,7 @@ Usage: ./run lab [--all | --list] [SCENARIO[:SECONDS]...]
   --all            $thorough
   --list           every scenario with its first words; scene_NAME is a scene, and "scenes" all of them
   --judge          judges again what lies in out/lab; boots nothing
-  --docs           writes the table and the plots of what lies in out/lab into docs/laboratory.md; boots nothing
+  --docs           writes rows and plots of what lies in out/lab into docs/laboratory.md, other rows stay; boots nothing
   --programs DIR   where palpate, palpate-rt and palpate-device are; default build/release/laboratory
 PALPATE_LAB_CACHE: folder of the downloaded kernel (build/lab/cache). PALPATE_JOBS: scenarios at a time ($jobs).
 TEXT
@@ -156,13 +159,20 @@ this_commit() { # the last that touched a program or the laboratory; + if it has
   git -C "$root" diff --quiet HEAD "${but_docs[@]}" && echo "$commit" || echo "$commit+"
 }
 
-write_docs() { # the table between its marks in docs/laboratory.md, and the histograms of the long runs
+# The table between its marks in docs/laboratory.md, and the histograms of the long runs. What was not run this time keeps
+# its row, with the date and the commit of its own.
+write_docs() {
   local page=$root/docs/laboratory.md name
   [ -e "$results/table.md" ] || die "no results: run some scenarios first"
+  {
+    sed '/^|---/q' "$results/table.md"
+    { sed '1,/^|---/d' "$results/table.md"; sed -n '/^<!-- table/,/^<!-- end of table/p' "$page" | sed '1,/^|---/d' | grep '^| '; } |
+      LC_ALL=C sort -s -u -t '|' -k 2,2
+  } > "$results/page_table.md"
   for name in vcan_classic_600 vcan_60 kvaser_60 usb_60; do
     [ ! -e "$results/$name/latency.svg" ] || cp "$results/$name/latency.svg" "$root/docs/pictures/latency_$name.svg"
   done
-  awk -v table="$results/table.md" '/^<!-- table/ { print; while ((getline line < table) > 0) print line; skip = 1; next }
+  awk -v table="$results/page_table.md" '/^<!-- table/ { print; while ((getline line < table) > 0) print line; skip = 1; next }
     /^<!-- end of table/ { skip = 0 } !skip { print }' "$page" > "$page.new" && mv "$page.new" "$page"
 }
 
@@ -266,8 +276,27 @@ esac
 case " ${scenarios[*]} " in
   *" vcan_two_tools"*) bake two_tools ring --with "$root/config/scenes/hands/two_tools.toml" ;;
 esac
-bash "$here/guest.sh" "$cache" "$out" "$programs"/{palpate,palpate-rt,palpate-device,lab_host,lab_check,lab_readers,lab_idle} -- \
-  "$here"/{scenarios,faults,hand.csv,press.csv} "$root/config/devices" "$out/scenes" || die "cannot build the guest"
+# The device kit, with Debian's Python and the modules that it imports: what Python's home is has lib/python3.11 in it.
+python=/usr/bin/python3
+pack_kit() { # FOLDER
+  local home file
+  mkdir -p "$1"
+  cp "$root"/docs/examples/device_kit.py "$root"/sim_host/python/palpate_wire.py "$root"/docs/palpate.dbc "$1/"
+  home=$($python -c 'import sys; print(sys.base_prefix)')
+  (cd "$1" && $python -S -E -B -c 'import sys; sys.path.insert(0, "."); import device_kit
+for module in list(sys.modules.values()): print(getattr(module, "__file__", None) or "")') | grep "^$home/" | sort -u | while read -r file; do
+    mkdir -p "$1/$(dirname "${file#"$home"/}")"
+    cp "$file" "$1/${file#"$home"/}"
+  done
+}
+kit=()
+guest_programs=("$programs"/{palpate,palpate-rt,palpate-device,lab_host,lab_check,lab_readers,lab_idle})
+case " ${scenarios[*]} " in
+  *" usb_kit"*)
+    pack_kit "$out/kit" && kit=("$out/kit") guest_programs+=("$python") || die "the device kit cannot be packed: apt-get install python3" ;;
+esac
+bash "$here/guest.sh" "$cache" "$out" "${guest_programs[@]}" -- \
+  "$here"/{scenarios,faults,hand.csv,press.csv} "$root/config/devices" "$out/scenes" "${kit[@]}" || die "cannot build the guest"
 echo "lab: booting the guest" >&2
 bash "$here/boot.sh" save "$out" || die "the guest does not boot"
 mkdir -p "$results"
