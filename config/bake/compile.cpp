@@ -15,6 +15,7 @@
 #include "config/body/body.h"
 #include "config/body/patches.h"
 #include "config/body/supports.h"
+#include "config/hand/balanced_closing.h"
 #include "config/hand/hand_model.h"
 #include "config/hand/preshape.h"
 #include "config/scene/config_error.h"
@@ -248,15 +249,7 @@ class Compiler {
     image_.grasp_w.push_back({desc.grasp_position_m, rotation_of(desc.grasp_rotation_rad)});
     std::vector<double> stretched;
     for (const Joint& joint : image_.joint) stretched.push_back(joint.open);
-    Model model;  // what the planner needs of it
-    model.vertex_m = image_.vertex_m;
-    model.vertex_normal = image_.vertex_normal;
-    model.triangle = image_.triangle;
-    model.bvh = image_.bvh;
-    model.piece = image_.piece;
-    model.tool_point = image_.tool_point;
-    model.joint = image_.joint;
-    const Preshape plan = plan_preshape(model, desc, stretched);
+    const Preshape plan = plan_preshape(model_of(image_), desc, stretched);
     for (std::size_t j = 0; j < image_.joint.size(); ++j) {
       image_.joint[j].open = plan.open[j];
       image_.joint[j].closed = plan.closed[j];
@@ -455,9 +448,18 @@ class Compiler {
     image_.params.surface_work_max = kMaxSurfaceWork;
     state_most_costs(image_);
     check_bytes(scene_, write_image(image_));  // what is not sound must not be ticked
+    if (is_hand() && scene_.hand.closing == HandClosing::kBalanced) balance_hand();
     report_.cost = bake_costs(image_);
     if (const std::string wrong = cost_refusal(report_.cost, image_.params.period_s); !wrong.empty())
       fail("device.period_ms", wrong);
+  }
+
+  void balance_hand() {
+    const BalancedClosing grip = close_balanced(image_, scene_.hand);
+    for (std::size_t j = 0; j < image_.joint.size(); ++j) image_.joint[j].closed = grip.closed[j];
+    report_.grip_N = grip.normal_N;
+    report_.grip_left_N = grip.left_N;
+    if (!grip.warning.empty()) warn("hand: " + grip.warning);
   }
 
   void add_interpolation(const std::vector<AnchorPoint>& anchors) {

@@ -64,6 +64,8 @@ struct CompileReport {
   std::vector<ArrayBytes> array;                // of the image, in its order
   std::int32_t joints = 0, parts_touching = 0;  // of a hand: parts in contact when closed
   double clearance_m = 0;                       // of the open hand on its way in
+  FingerNumbers grip_N{};                       // hand.closing = "balanced": normal force of each finger
+  double grip_left_N = 0;                       // and what of their wrench is left for friction (balanced_closing.h)
   TickCost cost;
   std::vector<std::string>
       model;  // which model was taken for one left open, and with error_target which were tried; a line each

@@ -109,6 +109,9 @@ std::string report_text(const CompileReport& r) {
   if (r.parts_touching > 0)
     line(text, "hand       %d parts touch when closed; open it clears the body by %.3g mm", r.parts_touching,
          1e3 * r.clearance_m);
+  if (r.grip_N[0] > 0)
+    line(text, "grip       thumb %.4g N against %.4g, %.4g, %.4g, %.4g N; %.3g N of their wrench is left for friction",
+         r.grip_N[0], r.grip_N[1], r.grip_N[2], r.grip_N[3], r.grip_N[4], r.grip_left_N);
   if (r.cost.surface_work > 0)
     line(text, "surface    an adversary made a tick look at %d boxes and triangles; allowed %d", r.cost.surface_work,
          r.cost.surface_work_max);

@@ -144,6 +144,11 @@ FingerJoints finger_joints(std::int32_t finger) {
   return {first, 4, {first + 1, first + 2, first + 3}};
 }
 
+const char* finger_name(std::int32_t finger) {
+  static constexpr const char* kNames[kMaxFingers] = {"thumb", "index", "middle", "ring", "little"};
+  return kNames[finger];
+}
+
 bool takes_part(GraspFingers grasp, std::int32_t finger) {
   switch (grasp) {
     case GraspFingers::kTwo:

@@ -41,6 +41,8 @@ struct FingerJoints {
   std::array<std::int32_t, 3> flexion;
 };
 FingerJoints finger_joints(std::int32_t finger);
+// Thumb to little finger.
+const char* finger_name(std::int32_t finger);
 
 // Fingers that take part in a grasp.
 bool takes_part(GraspFingers grasp, std::int32_t finger);

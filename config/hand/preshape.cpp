@@ -75,9 +75,8 @@ class Planner {
   }
 
   static void warn_of_miss(std::int32_t finger, std::string& warning) {
-    constexpr const char* kNames[] = {"thumb", "index", "middle", "ring", "little"};
     warning += warning.empty() ? "fingertips that do not reach the body: " : ", ";
-    warning += kNames[finger];
+    warning += finger_name(finger);
   }
 
   void close(std::int32_t finger, Preshape& plan) {

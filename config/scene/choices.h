@@ -75,4 +75,9 @@ PALPATE_CHOICE(HandSide, PALPATE_HAND_SIDES);
 #define PALPATE_HAND_CONTACTS(X) X(kCapsules, capsules) X(kMesh, mesh)
 PALPATE_CHOICE(HandContact, PALPATE_HAND_CONTACTS);
 
+// Where a hand's fingers end: each part at a stated depth, or each finger at a stated force and the thumb at the one
+// that balances them.
+#define PALPATE_HAND_CLOSINGS(X) X(kDepth, depth) X(kBalanced, balanced)
+PALPATE_CHOICE(HandClosing, PALPATE_HAND_CLOSINGS);
+
 }  // namespace palpate

@@ -214,9 +214,11 @@ struct HandDesc {
   GraspFingers fingers = GraspFingers::kFive;
   HandSide side = HandSide::kRight;
   HandContact contact = HandContact::kCapsules;
+  HandClosing closing = HandClosing::kDepth;
   Vec3 grasp_position_m;  // palm's middle, when the hand holds the body
   Vec3 grasp_rotation_rad;
   FingerNumbers squeeze_m{0.003, 0.003, 0.003, 0.003, 0.003};
+  FingerNumbers grip_N{1, 1, 1, 1, 1};
   double clearance_m = 0.0015;
   double closing_s = 1.0;
   double stop_force_N = 5;

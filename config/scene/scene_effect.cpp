@@ -146,6 +146,8 @@ const EffectRule kRules[] = {
     {"contact.tip.body_radius_2_mm", has_round_tip, "without a round tip", kRemove},
     {"contact.layer.base", [](const SceneDesc& s) { return s.layer.thickness_m > 0 || is_pressed(s); },
      "without contact.layer.thickness_mm", "remove it or state the thickness"},
+    {"hand.grip_N", [](const SceneDesc& s) { return s.hand.closing == HandClosing::kBalanced; },
+     "on fingers that close to a depth", "remove it or state hand.closing = \"balanced\""},
     {"device.grip_mm",
      [](const SceneDesc& s) { return s.device.holds == HeldPart::kBody || s.device.holds == HeldPart::kBoth; },
      "where no hand holds the body", "remove it or state device.holds"},

@@ -249,6 +249,10 @@ const KeySpec kHand[] = {
     choice<&HandDesc::contact>("contact",
                                "what of a part touches: capsules, a round rod of the part's width; mesh, the palm's "
                                "side of the surface that is drawn, 9 points a part and more also beside its middle"),
+    choice<&HandDesc::closing>(
+        "closing",
+        "where fingers end: depth, each part squeeze_mm deep; balanced, each finger at grip_N and "
+        "the thumb at the force that balances them"),
     list<&HandDesc::grasp_position_m>(kVec3, "grasp_mm", -1e4, 1e4, kMilli,
                                       "the palm's middle when the hand holds the body; the preshape is made for it"),
     list<&HandDesc::grasp_rotation_rad>(
@@ -258,6 +262,9 @@ const KeySpec kHand[] = {
     list<&HandDesc::squeeze_m>(KeyKind::kNumberOrFingers, "squeeze_mm", 0.01, 20, kMilli,
                                "depth below the rest surface to which each finger part closes; a list: of each "
                                "finger's parts, thumb to little finger, also of fingers that take no part"),
+    list<&HandDesc::grip_N>(KeyKind::kNumberOrFingers, "grip_N", 0.01, 100, 1,
+                            "with closing = \"balanced\": normal force of each finger, shared evenly by its parts; a "
+                            "list: of thumb to little finger. The thumb's is not used: it opposes the others"),
     number<&HandDesc::clearance_m>("clearance_mm", 0, 100, kMilli,
                                    "gap of the open hand to the body on its way in, along the palm's normal"),
     number<&HandDesc::closing_s>("closing_s", 0.01, 100, 1, "shortest time from open to closed"),

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -65,12 +66,19 @@ Drawing history_plot(const GraspRun& run) {
 
 Json json_of(Vec3 v) { return {v.x, v.y, v.z}; }
 
+// A finger takes part when its closing moves a joint.
+bool takes_part(const Model& model, std::int32_t finger) {
+  return std::ranges::any_of(model.joint,
+                             [&](const Joint& joint) { return joint.finger == finger && joint.closed != joint.open; });
+}
+
 Json run_json(const Model& model, const GraspRun& run, const GraspStability& s) {
   Json json = {{"name", run.name},
                {"regions", run.regions},
                {"force_N", json_of(run.contact_w.force_N)},
                {"palm_force_N", json_of(run.palm_w.force_N)},
                {"holds", s.holds},
+               {"left_for_friction_N", left_for_friction_N(grasp_of(model, *run.held))},
                {"imbalance_N", s.imbalance_N},
                {"friction_needed", s.friction_needed < kHuge ? Json(s.friction_needed) : Json(nullptr)},
                {"force_closure", s.closed},
@@ -82,10 +90,23 @@ Json run_json(const Model& model, const GraspRun& run, const GraspStability& s) 
                {"unconverged_ticks", run.unconverged_ticks}};
   for (std::size_t part = 1; part < run.part_force_N.size(); ++part)
     if (run.part_force_N[part] > 0) json["part_force_N"][hand_parts()[part - 1].name] = run.part_force_N[part];
+  for (std::int32_t f = 0; f < kMaxFingers; ++f)
+    if (takes_part(model, f)) json["finger_force_N"][finger_name(f)] = run.finger_force_N[f];
   for (std::size_t a = 0; a < run.held_stress_Pa.size(); ++a)
     json["anchors"].push_back(
         {{"position_m", json_of(model.anchor[a].position_m)}, {"stress_Pa", run.held_stress_Pa[a]}});
   return json;
+}
+
+std::string fingers_text(const Model& model, const GraspRun& run) {
+  std::string text;
+  for (std::int32_t f = 0; f < kMaxFingers; ++f) {
+    if (!takes_part(model, f)) continue;
+    const double force_N = run.finger_force_N[f];
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", finger_name(f),
+                        force_N > 0 ? fmt::format("{:.4f} N", force_N) : "meets NOTHING");
+  }
+  return text;
 }
 
 Json print_run(const Model& model, const GraspRun& run) {
@@ -105,6 +126,8 @@ Json print_run(const Model& model, const GraspRun& run) {
   } else {
     fmt::print("  force closure: no\n");
   }
+  fmt::print("  normal force of each finger: {}; the palm's push leaves {:.3f} N of them for friction\n",
+             fingers_text(model, run), left_for_friction_N(grasp));
   fmt::print("  normal force on each part, and stress at each anchor\n");
   for (std::size_t part = 1; part < run.part_force_N.size(); ++part)
     if (run.part_force_N[part] > 0)

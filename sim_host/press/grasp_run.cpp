@@ -61,8 +61,10 @@ void keep_hold(const Model& model, const PressRow& row, const State& state, Gras
   run.part_force_N.assign(kHandParts + 1, 0);
   for (std::size_t p = 0; p < model.piece.size(); ++p) {
     const std::int32_t part = model.piece[p].part;
-    if (part >= 1 && part <= kHandParts)
-      run.part_force_N[static_cast<std::size_t>(part)] += norm(state.articulation.piece_force_tool_N.data()[p]);
+    if (part < 1 || part > kHandParts) continue;
+    const double force_N = norm(state.articulation.piece_force_tool_N.data()[p]);
+    run.part_force_N[static_cast<std::size_t>(part)] += force_N;
+    run.finger_force_N[model.piece[p].group] += force_N;
   }
 }
 

@@ -30,7 +30,8 @@ struct GraspRun {
   StatePtr held;
   std::vector<double> held_stress_Pa;  // per anchor
   Wrench contact_w, palm_w;
-  std::vector<double> part_force_N;  // sum of the normal forces on each finger part; [0] unused
+  std::vector<double> part_force_N;         // sum of the normal forces on each finger part; [0] unused
+  double finger_force_N[kMaxFingers] = {};  // and of each finger's parts
   std::int32_t regions = 0;
   double chatter = 0;         // largest relative change of the summed normal force per tick over the last 0.2 s of hold
   bool back_at_rest = false;  // no force, no region (so no displacement), no energy at the end

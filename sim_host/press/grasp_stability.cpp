@@ -5,7 +5,7 @@
 
 #include "rt_core/contact/friction.h"
 #include "rt_core/contact/regions.h"
-#include "sim_host/press/cone_combination.h"
+#include "config/hand/cone_combination.h"
 
 namespace palpate {
 
@@ -149,6 +149,12 @@ double imbalance_N(const Grasp& grasp, double scale) {
           wrench_of(grasp, corner.position_w, corner.push_w + scale * corner.friction_N * across(corner.push_w, k));
   if (next == 0) return target.norm();
   return cone_combination(column, target).residual.norm();
+}
+
+double left_for_friction_N(const Grasp& grasp) {
+  Grasp weightless = grasp;
+  weightless.weight_N = {};
+  return imbalance_N(weightless, 0);
 }
 
 bool holds(const Grasp& grasp) {

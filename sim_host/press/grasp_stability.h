@@ -53,6 +53,10 @@ GraspStability judge(const Grasp& grasp);
 // The first of these alone, at a hundredth of the work: can they balance the weight?
 bool holds(const Grasp& grasp);
 
+// What friction has to hold of the fingers' normal forces: what is left of their wrench by the palm's push, without the
+// body's weight (N, moments over the body's length).
+double left_for_friction_N(const Grasp& grasp);
+
 // Can forces within the cones, friction limits times `scale`, balance the weight? Returns what is left over (N).
 double imbalance_N(const Grasp& grasp, double scale);
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "sim_host/press/cone_combination.h"
+#include "config/hand/cone_combination.h"
 #include "sim_host/press/grasp_stability.h"
 
 namespace palpate {

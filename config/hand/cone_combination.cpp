@@ -1,4 +1,4 @@
-#include "sim_host/press/cone_combination.h"
+#include "config/hand/cone_combination.h"
 
 #include <algorithm>
 #include <limits>
