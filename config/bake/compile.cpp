@@ -398,10 +398,6 @@ class Compiler {
     }
     report_.baked_beams = true;
     report_.section_radius_m = image_.anchor[0].section_radius_m;
-    if (scene_.coupling.law == CouplingLaw::kTemporalPaper)
-      warn(
-          "coupling.law = \"temporal_paper\" displaces the surface under later contacts, but not the ends of circular "
-          "beams, which are baked from the anchors at rest");
     const BeamTableReport& beams = report_.beams;
     for (std::size_t a = 0; a < beams.dropped_by_anchor.size(); ++a)
       if (beams.dropped_by_anchor[a] == report_.vertices)

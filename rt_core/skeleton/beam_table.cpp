@@ -6,20 +6,39 @@
 namespace palpate {
 namespace {
 
-// First element of the beams of one vertex.
-std::size_t first_beam(const Model& model, const SurfaceSpot& spot, int corner) PALPATE_RT {
-  return static_cast<std::size_t>(spot.vertex[corner]) * static_cast<std::size_t>(model.sizes.n_anchor);
+// Element of the beam from one vertex to anchor `index`.
+std::size_t beam_at(const Model& model, const SurfaceSpot& spot, int corner, std::int32_t index) PALPATE_RT {
+  return static_cast<std::size_t>(spot.vertex[corner]) * static_cast<std::size_t>(model.sizes.n_anchor) +
+         static_cast<std::size_t>(index);
 }
 
-void clear(const Model& model, const SurfaceSpot& spot, BeamTableSkeleton& skeleton) PALPATE_RT {
+Vec3 point_of(const Model& model, const SurfaceSpot& spot) PALPATE_RT {
+  Vec3 sum;
+  for (int corner = 0; corner < 3; ++corner)
+    sum += spot.weight[corner] * model.vertex_m[static_cast<std::size_t>(spot.vertex[corner])];
+  return sum;
+}
+
+// What sees an anchor at rest as `spot` sees it moved.
+SurfaceSpot seen_from(const Model& model, const SurfaceSpot& spot, Vec3 moved_w) PALPATE_RT {
+  if (!(squared_norm(moved_w) > 0)) return spot;
+  const SurfaceSpot there = locate_from(model, point_of(model, spot) - moved_w, spot.triangle);
+  return there.found ? there : spot;
+}
+
+void clear(const Model& model, const SurfaceSpot& spot, std::span<const Vec3> moved_w,
+           BeamTableSkeleton& skeleton) PALPATE_RT {
   const std::int64_t n = model.sizes.n_anchor;
   skeleton.count = n < kMaxAnchors ? static_cast<std::int32_t>(n) : kMaxAnchors;
   skeleton.degenerate = false;
   skeleton.minimum_norm = false;
   skeleton.alpha = skeleton.beta = 0;
-  skeleton.spot = spot;
   skeleton.displacement_w = {};
-  for (std::int32_t i = 0; i < skeleton.count; ++i) skeleton.force_w[i] = {};
+  for (std::int32_t i = 0; i < skeleton.count; ++i) {
+    skeleton.spot[i] =
+        spot.found && !moved_w.empty() ? seen_from(model, spot, moved_w[static_cast<std::size_t>(i)]) : spot;
+    skeleton.force_w[i] = {};
+  }
 }
 
 // Six entries of the interpolated stiffness of every beam, and their sum.
@@ -28,10 +47,10 @@ using Stiffness6 = Real[6];
 bool share_by_stiffness(const Model& model, Vec3 force, BeamTableSkeleton& skeleton) PALPATE_RT {
   Stiffness6 beam[kMaxAnchors] = {};
   for (int corner = 0; corner < 3; ++corner) {
-    const Real weight = skeleton.spot.weight[corner];
-    const BeamStiffness* row = &model.beam_stiffness[first_beam(model, skeleton.spot, corner)];
-    for (std::int32_t i = 0; i < skeleton.count; ++i)  // <= kMaxAnchors
-      for (int k = 0; k < 6; ++k) beam[i][k] += weight * row[i].k_N_per_m[k];
+    for (std::int32_t i = 0; i < skeleton.count; ++i) {  // <= kMaxAnchors
+      const BeamStiffness& row = model.beam_stiffness[beam_at(model, skeleton.spot[i], corner, i)];
+      for (int k = 0; k < 6; ++k) beam[i][k] += skeleton.spot[i].weight[corner] * row.k_N_per_m[k];
+    }
   }
   Real sum[6] = {};
   for (std::int32_t i = 0; i < skeleton.count; ++i)  // <= kMaxAnchors
@@ -54,11 +73,11 @@ bool share_by_ratios(const Model& model, Vec3 force, BeamTableSkeleton& skeleton
   const Vec3 direction = unit_or(force, {});
   Vec3 first[kMaxAnchors], second[kMaxAnchors], u, v;
   for (int corner = 0; corner < 3; ++corner) {
-    const Real weight = skeleton.spot.weight[corner];
-    const BeamRatio* row = &model.beam_ratio[first_beam(model, skeleton.spot, corner)];
     for (std::int32_t i = 0; i < skeleton.count; ++i) {  // <= kMaxAnchors
-      first[i] += (weight * dot(row[i].f1_gain_N_per_m, direction)) * row[i].f1_axis;
-      second[i] += (weight * dot(row[i].f2_gain_N_per_m, direction)) * row[i].f2_axis;
+      const Real weight = skeleton.spot[i].weight[corner];
+      const BeamRatio& row = model.beam_ratio[beam_at(model, skeleton.spot[i], corner, i)];
+      first[i] += (weight * dot(row.f1_gain_N_per_m, direction)) * row.f1_axis;
+      second[i] += (weight * dot(row.f2_gain_N_per_m, direction)) * row.f2_axis;
     }
   }
   for (std::int32_t i = 0; i < skeleton.count; ++i) {
@@ -88,6 +107,7 @@ void barycentric(const Model& model, Vec3 p, std::int32_t triangle, Real (&weigh
 
 SurfaceSpot spot_of(const Model& model, std::int32_t triangle, const Real (&weight)[3]) PALPATE_RT {
   SurfaceSpot spot;
+  spot.triangle = triangle;
   Real sum = 0;
   for (int k = 0; k < 3; ++k) {
     spot.vertex[k] = model.triangle[static_cast<std::size_t>(triangle)].vertex[k];
@@ -136,9 +156,9 @@ SurfaceSpot locate_contact(const Model& model, const State& state, std::int32_t 
   return locate_from(model, centre, warm);
 }
 
-bool solve_beam_table(const Model& model, const SurfaceSpot& spot, Vec3 force_on_body_w,
-                      BeamTableSkeleton& skeleton) PALPATE_RT {
-  clear(model, spot, skeleton);
+bool solve_beam_table(const Model& model, const SurfaceSpot& spot, Vec3 force_on_body_w, BeamTableSkeleton& skeleton,
+                      std::span<const Vec3> moved_w) PALPATE_RT {
+  clear(model, spot, moved_w, skeleton);
   skeleton.degenerate = !(spot.found && is_finite(force_on_body_w) && skeleton.count > 0);
   if (skeleton.degenerate) return false;
   return model.params.skeleton_law == SkeletonLaw::kCircularPaper
@@ -151,9 +171,8 @@ Vec3 beam_table_displacement(const Model& model, const BeamTableSkeleton& skelet
   Vec3 moved;
   if (model.anchor[anchor].fixed != 0) return moved;
   for (int corner = 0; corner < 3; ++corner) {  // bound: 3
-    const Vec3 f = skeleton.spot.weight[corner] * skeleton.force_w[index];
-    const auto vertex = static_cast<std::size_t>(skeleton.spot.vertex[corner]);
-    const BeamResponse& row = model.beam_response[vertex * model.anchor.size() + anchor];
+    const Vec3 f = skeleton.spot[index].weight[corner] * skeleton.force_w[index];
+    const BeamResponse& row = model.beam_response[beam_at(model, skeleton.spot[index], corner, index)];
     moved += {dot(row.release_m_per_N[0], f), dot(row.release_m_per_N[1], f), dot(row.release_m_per_N[2], f)};
   }
   return moved;

@@ -25,7 +25,10 @@ Vec3 force_on_body(const Region& region) {
 bool add_table_beams(const Model& model, const State& state, std::int32_t slot, AnchorField& field) {
   BeamTableSkeleton skeleton;
   const SurfaceSpot spot = locate_contact(model, state, slot);
-  if (!solve_beam_table(model, spot, force_on_body(state.region[slot]), skeleton)) return false;
+  const bool temporal = model.params.coupling_law == CouplingLaw::kTemporalPaper;
+  std::vector<Vec3> moved;
+  for (std::int32_t a = 0; temporal && a < field.count; ++a) moved.push_back(field.anchor[a].displacement_w);
+  if (!solve_beam_table(model, spot, force_on_body(state.region[slot]), skeleton, moved)) return false;
   for (std::int32_t a = 0; a < skeleton.count; ++a) {
     const BeamTableAnchor result = beam_table_anchor(model, skeleton, a);
     field.by_region_w[slot][a] = result.displacement_w;
@@ -83,9 +86,10 @@ BeamTableAnchor beam_table_anchor(const Model& model, const BeamTableSkeleton& s
   const Vec3 force = skeleton.force_w[index];
   Real inner = 0, outer = 0, side = 0, shear_in = 0, shear_out = 0;
   for (int corner = 0; corner < 3; ++corner) {
-    const Vec3 f = skeleton.spot.weight[corner] * force;
+    const SurfaceSpot& spot = skeleton.spot[index];
+    const Vec3 f = spot.weight[corner] * force;
     const std::size_t at =
-        static_cast<std::size_t>(skeleton.spot.vertex[corner]) * model.anchor.size() + static_cast<std::size_t>(index);
+        static_cast<std::size_t>(spot.vertex[corner]) * model.anchor.size() + static_cast<std::size_t>(index);
     const BeamResponse& row = model.beam_response[at];
     inner += dot(row.inner_Pa_per_N, f);
     outer += dot(row.outer_Pa_per_N, f);

@@ -50,8 +50,8 @@ struct AnchorField {
   std::int32_t degenerate = 0;  // regions whose skeleton had no usable stiffness: their anchors keep still
 };
 
-// One skeleton per region in contact, first born first. With CouplingLaw::kTemporalPaper straight beams end at the
-// anchors as the earlier regions displaced them; baked beams always end at the anchors at rest.
+// One skeleton per region in contact, first born first. With CouplingLaw::kTemporalPaper beams end at the anchors
+// as the earlier regions displaced them.
 AnchorField anchors_of(const Model& model, const State& state);
 
 }  // namespace palpate

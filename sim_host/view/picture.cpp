@@ -66,8 +66,9 @@ class Renderer {
                  projection_, kTool);
     }
     draw_arrows();
-    make_shadow();
+    if (!options_.bare) make_shadow();
     Canvas canvas = resolve();
+    if (options_.bare) return canvas;
     draw_force_labels(canvas);
     draw_title(canvas);
     const double deep_m = projection_(shadow_centre_).z;
@@ -201,6 +202,7 @@ void Renderer::make_shadow() {
 }
 
 Colour Renderer::background(int x, int y) const {
+  if (options_.bare) return colour(0xffffff);
   const float down = static_cast<float>(y) / static_cast<float>(solid_.height());
   Colour c = mix(colour(0xfdfdfe), colour(0xe3e8ee), down * down);
   const Vec3 ray = projection_.ray(x + 0.5, y + 0.5);

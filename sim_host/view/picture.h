@@ -26,6 +26,7 @@ struct PictureOptions {
   SurfaceColour colour = SurfaceColour::kDisplacement;
   double colour_max = 0;   // top of the colour scale, m or Pa; 0: the largest value, rounded up
   double force_max_N = 0;  // force of the longest arrow; 0: the largest region's
+  bool bare = false;       // no words, scales or background: for a panel that has its own
 };
 
 // Sees the body, `points_w` and the tool (of a long one the end near the body), slightly from above, from the side on

@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # Effect gate, a mutation test of the tick: what changes nothing must not be in the tick. Every statement of tick(),
-# render(), find_forces() and contact(), the phases of every contact method one method at a time, and the skeletons of
-# `temporal_paper` and `mutual_paper` coupling are left out in turn: a copy of the source without that line is compiled and linked before
-# the library, whose own version is then not taken. Some scene's outputs must change over the scripted hand's eight
-# seconds, or the run must not end at all. Proves itself by a planted stage that computes what nobody reads.
+# render(), find_forces() and contact(), the phases of every contact method one method at a time, the skeletons of
+# `temporal_paper` and `mutual_paper` coupling and the printed laws of tips are left out in turn: a copy of the source
+# without that line is compiled and linked before the library, whose own version is then not taken. Some scene's outputs
+# must change over the scripted hand's eight seconds, or the run must not end at all. Proves itself by a planted stage
+# that computes what nobody reads.
 # Usage: effect.sh CXX ROOT LIBRT_CORE PALPATE IMAGE_DIR
 set -euo pipefail
 usage="usage: effect.sh CXX ROOT LIBRT_CORE PALPATE IMAGE_DIR"
@@ -21,10 +22,12 @@ methods=$(sed -n 's/^#define PALPATE_METHODS(X)//p' "$root/rt_core/laws.h" | gre
   >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
 "$palpate" bake "$root/config/scenes/heart_compass_paper.toml" --with "$root/config/scenes/laws/luo_xiao_2006.toml" -o "$work/mutual.pal" \
   >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
+"$palpate" bake "$root/config/scenes/tools_on_cylinder.toml" --with "$root/config/scenes/laws/mahvash_hayward_2002.toml" -o "$work/curves.pal" \
+  >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
 "$palpate" bake "$root/config/scenes/tools_on_layer.toml" --set device.holds=body -o "$work/held.pal" \
   >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
 scenes="$images/tools_on_layer.pal $images/ellipsoid_mallet_springs.pal $work/temporal.pal $images/grasp_cylinder_2.pal $work/held.pal"
-scenes+=" $images/pinch_block.pal $images/ring.pal $work/mutual.pal"
+scenes+=" $images/pinch_block.pal $images/ring.pal $work/mutual.pal $work/curves.pal"
 
 # shellcheck disable=SC2086
 "$cxx" $flags -c "$root/tests/gates/output_hash.cpp" -o "$work/output_hash.o"
@@ -91,6 +94,15 @@ sed 's/add_transferred_forces(model[^)]*)/true/' "$caller" >"$work/mutant.cpp"
 judge "skeletons of temporal coupling" "$work/mutant.cpp"
 sed 's/add_mutual_forces(model[^)]*)/true/' "$caller" >"$work/mutant.cpp"
 judge "skeletons of mutual coupling" "$work/mutant.cpp"
+# The printed laws of tips, which one overlay alone has: the curves' sum along the corners' normals, and friction with a
+# constant slip distance.
+judge_without() { # NAME FILE SED: a copy of FILE changed by SED, which must change it
+  sed "$3" "$root/$2" >"$work/mutant.cpp"
+  ! cmp -s "$root/$2" "$work/mutant.cpp" || { echo "$1: nothing to leave out in $2"; exit 1; }
+  judge "$1" "$work/mutant.cpp"
+}
+judge_without "printed interpolation of curves" rt_core/contact/tips/tips.cpp 's/return printed_aside(.*;/return {};/'
+judge_without "printed friction of tips" rt_core/contact/friction.cpp 's/== FrictionLaw::kPreslidingPaper/== FrictionLaw::kNone/'
 # libccd decides something: whether a piece still touches where none of its points does.
 for answer in 0 1; do
   echo "extern \"C\" int ccdGJKIntersect(const void*, const void*, const void*) { return $answer; }" >"$work/mutant.cpp"

@@ -17,8 +17,8 @@ bake heart_compass_paper coupled coupling.law=coupled skeleton.law=paper_guarded
 bake pinch_block gauss_seidel contact.nodal.solver=gauss_seidel
 bake tools_on_layer relaxing 'body.material.relaxation_share=[0.2, 0.1, 0.1]' 'body.material.relaxation_s=[0.1, 1, 10]'
 bake tools_on_layer losing body.material.lost_share=0.2
-printf 'depth_mm,force_N\n0,0\n1,2\n3,9\n' >"$work/curve.csv"
-bake tools_on_cylinder printed_table contact.law=table contact.table.file="$work/curve.csv" contact.table.interpolation=paper
+"$palpate" bake "$root/config/scenes/tools_on_cylinder.toml" --with "$root/config/scenes/laws/mahvash_hayward_2002.toml" \
+  -o "$work/printed_table.pal" >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
 shipped=()
 for scene in "$root"/config/scenes/*.toml; do shipped+=("$images/$(basename "$scene" .toml).pal"); done
 exec "$program" "$root" "${shipped[@]}" "$work"/*.pal

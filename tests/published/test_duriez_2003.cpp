@@ -10,6 +10,9 @@
 #include "rt_core/contact/nodes/friction_block.h"
 #include "rt_core/contact/nodes/pivoting.h"
 #include "rt_core/tool/virtual_coupling.h"
+#include "sim_host/bake/scene_model.h"
+#include "sim_host/press/press.h"
+#include "sim_host/tick_memory.h"
 #include "tests/published/worked.h"
 #include "tests/support/roomy.h"
 
@@ -173,6 +176,28 @@ TEST(Duriez2003, PushByItsXComponentWhereItIsDefined) {
     pushing += fx > 0;
   }
   EXPECT_GT(pushing, 0);
+}
+
+// Why no scene can choose the printed form: on the clip of section 5 it would pull one arm. Its normals point to both
+// sides, across the tube, and along the way in they turn round; no axis has a > 0 for all pushes of the snap.
+TEST(Duriez2003, OnTheClipThePrintedFormPullsAnArm) {
+  const SceneModel scene(std::string(PALPATE_SOURCE_DIR) + "/config/scenes/snap_in.toml", {{}, {"friction.law=none"}});
+  std::vector<TimedPose> poses;
+  for (int i = 0; i <= 280; ++i) poses.push_back({1e-3 * i, {{0, 14.5e-3 - 5e-5 * i, 0}, {}}, {}});
+  int pushes = 0, positive[3] = {};
+  const auto state = make_state(scene.model());
+  press(scene.model(), poses, {}, *state, nullptr, [&](const PressRow&, const State&, const Scratch& scratch) {
+    for (std::int32_t i = 0; i < scratch.contact_count; ++i) {
+      const Contact& c = scratch.contact[i];
+      if (!(c.force_N > 0)) continue;
+      pushes += 1;
+      const double n[3] = {c.normal_w.x, c.normal_w.y, c.normal_w.z};
+      for (int k = 0; k < 3; ++k) positive[k] += n[k] > 1e-12;
+    }
+  });
+  std::printf("  %d pushes; a > 0 along x %d, y %d, z %d\n", pushes, positive[0], positive[1], positive[2]);
+  ASSERT_GT(pushes, 1000);
+  for (const int count : positive) EXPECT_LT(count, 0.6 * pushes);
 }
 
 // --- Coupling and friction

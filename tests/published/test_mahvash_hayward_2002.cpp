@@ -43,6 +43,23 @@ TEST(MahvashHayward2002, TableOne) {
   }
 }
 
+// The curves of the overlay laws/mahvash_hayward_2002.toml are Table 1's parabola for the sphere of 12.7 mm, on their
+// rubber and on one half as stiff.
+TEST(MahvashHayward2002, CurvesOfTheOverlayAreTableOne) {
+  const std::string folder = std::string(PALPATE_SOURCE_DIR) + "/config/scenes/laws/";
+  const std::vector<ForceCurve> curves = read_curves(folder + "mahvash_hayward_2002.csv", false);
+  ASSERT_EQ(curves.size(), 2u);
+  for (std::size_t place = 0; place < 2; ++place) {
+    const double modulus_Pa = place == 0 ? kRubber_Pa : 0.5 * kRubber_Pa;
+    ASSERT_EQ(curves[place].depth_m.size(), 16u);
+    for (std::size_t i = 0; i < 16; ++i) {
+      const double depth_m = curves[place].depth_m[i];
+      EXPECT_NEAR(curves[place].force_N[i], 4.0 / 3 * std::sqrt(6.35e-3) * modulus_Pa * depth_m * std::sqrt(depth_m),
+                  1e-9);
+    }
+  }
+}
+
 // A true sphere of 6.35 mm (Segedin 1957): force, and contact radius as half the stiffness over E*.
 TEST(MahvashHayward2002, TrueSphere) {
   const BakedTip sphere({TipProfile::kSphere, 6.35e-3, 0});

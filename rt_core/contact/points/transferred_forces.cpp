@@ -7,11 +7,11 @@
 namespace palpate {
 namespace {
 
-// With baked beams, which stand on the anchors at rest but move them all the same.
+// With baked beams.
 bool share_table_beams(const Model& model, const State& state, std::int32_t slot, Vec3 force_w,
                        Vec3 (&moved_w)[kMaxAnchors], Skeleton& skeleton) PALPATE_RT {
   BeamTableSkeleton table;
-  if (!solve_beam_table(model, locate_contact(model, state, slot), force_w, table)) return false;
+  if (!solve_beam_table(model, locate_contact(model, state, slot), force_w, table, moved_w)) return false;
   skeleton.count = table.count;
   for (std::int32_t a = 0; a < table.count; ++a) {  // bound: kMaxAnchors
     skeleton.force_w[a] = table.force_w[a];
