@@ -135,7 +135,7 @@ std::vector<CheckPress> check_places(const SceneDesc& scene, const ImageContents
 }
 
 int press_elements(const SceneDesc& scene, const ImageContents& image, const TetMesh& mesh, CheckPress& press,
-                   double edge_share) {
+                   double edge_share, std::vector<elastic::MovedPlace>* surface) {
   const double modulus_Pa = contact_modulus_at(scene, image.params, mesh, press.place_m);
   const double patch = std::min(contact_radius_m(press.radius_m, press.depth_m.back()),
                                 pressed_radius_m(modulus_Pa, press.radius_m, expected_N(scene, image, press)));
@@ -160,19 +160,23 @@ int press_elements(const SceneDesc& scene, const ImageContents& image, const Tet
   fem::LargeStrainSolver<3> solver(solid, elastic_material(scene, image.params, fine), fixed, touched, {ball}, options);
   solver.place_tools({point(press.place_m + press.radius_m * press.normal)});
   const double most_N = kForces * scene.device.force_max_N;
+  std::vector<std::vector<double>> u_m;  // at each depth
   for (const double depth : press.depth_m) {
-    const auto state = solver.move_tools({point(press.place_m + (press.radius_m - depth) * press.normal)});
+    auto state = solver.move_tools({point(press.place_m + (press.radius_m - depth) * press.normal)});
     const Vec3 force = vec(state.force_on_tool_N[0]);
     const double along = dot(force, press.normal);
     press.slides = !state.converged || !(norm(force - along * press.normal) <= kSlides * along);
     if (press.slides || (along > most_N && !press.reference_N.empty())) break;
     press.reference_N.push_back(along);
     press.force_w_N.push_back(force);
+    u_m.push_back(std::move(state.u_m));
     if (along > most_N) break;
   }
   if (press.slides && !press.reference_N.empty()) press.reference_N.pop_back();
   press.depth_m.resize(press.reference_N.size());
   press.force_w_N.resize(press.reference_N.size());
+  if (surface != nullptr && !press.depth_m.empty())
+    *surface = elastic::moved_places(solid, u_m[press.depth_m.size() - 1]);
   return solid.node_count();
 }
 

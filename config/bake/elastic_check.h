@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "config/bake/image_writer.h"
+#include "config/elastic/moved_places.h"
 #include "config/fem/tet_mesh.h"
 #include "config/scene/progress.h"
 #include "config/scene/scene.h"
@@ -38,9 +39,10 @@ std::vector<CheckPress> check_places(const SceneDesc& scene, const ImageContents
 // ring by 0.0 to 0.7 % (2026-11-22).
 inline constexpr double kCheckEdgeShare = 0.45;
 // Solves for the reference of one press, with elements as fine as the force in the baked `image` asks for. Returns how
-// many nodes they have. Throws ConfigError when the finer mesh cannot be made.
+// many nodes they have. Throws ConfigError when the finer mesh cannot be made. `surface`: if not null, where the
+// middles of the elements' outer facets are at the deepest of the press's depths.
 int press_elements(const SceneDesc& scene, const ImageContents& image, const TetMesh& mesh, CheckPress& press,
-                   double edge_share = kCheckEdgeShare);
+                   double edge_share = kCheckEdgeShare, std::vector<elastic::MovedPlace>* surface = nullptr);
 
 // `image`, complete, with a frictionless ball of the press's radius as its only tool.
 ImageContents with_ball(const SceneDesc& scene, const ImageContents& image, double radius_m);

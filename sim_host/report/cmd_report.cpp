@@ -100,6 +100,9 @@ std::uint64_t text_hash(const std::string& text) {
   return hash;
 }
 
+// Of the files in OUT/runs: changed with their keys, so that older ones are made again.
+constexpr char kRunFormat[] = "surface";
+
 class Reporter {
  public:
   explicit Reporter(const ReportCommand& command) : command_(command) {
@@ -124,7 +127,8 @@ class Reporter {
     }
     if (fs::exists(reference)) report.reference = read_reference(reference);
     report.press = report.reference ? report.reference->press : stated_place(command_, scene);
-    const std::string key = scene_text + text_of(reference) + kBuildId + overlay_text();
+    const std::string key = kRunFormat + scene_text + text_of(reference) + text_of(reference_surface_path(reference)) +
+                            kBuildId + overlay_text();
     for (const ModelVariant& variant : model_variants())
       if (wanted(variant)) report.runs.push_back(run(variant, scene, report, key));
     return report;

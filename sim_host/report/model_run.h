@@ -17,6 +17,7 @@ struct ModelRun {
   std::string refused;              // why this model cannot take the case; the rest is then empty
   ForcePath path;                   // over depth
   std::optional<CurveError> error;  // against the reference, where there is one
+  SurfaceError surface;             // at the deepest; all 0 where the reference has no surface
   double step_N = 0;                // largest step per tick beyond the trend, sliding at half the depth
   double slide_force_N = 0;         // mean there
   int unconverged = 0, beyond_range = 0, ticks = 0;

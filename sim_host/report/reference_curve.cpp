@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <sstream>
@@ -56,6 +57,8 @@ ReferenceCurve read_reference(const std::string& path) {
   if (curve.depth_m.size() < 3) throw std::runtime_error(path + ": a reference needs three depths or more");
   if (table.has("coarse_N")) curve.coarse_N = table.column("coarse_N");
   curve.press.depth_m = curve.depth_m.back();
+  if (const std::string moved = reference_surface_path(path); std::filesystem::exists(moved))
+    curve.surface = read_reference_surface(moved);
   return curve;
 }
 
@@ -74,6 +77,7 @@ void write_reference(const std::string& path, const ReferenceCurve& curve) {
         i < curve.coarse_N.size() && std::isfinite(curve.coarse_N[i]) ? fmt::format("{:.7g}", curve.coarse_N[i]) : "");
   out.close();
   if (!out) throw std::runtime_error(path + ": cannot be written");
+  if (!curve.surface.place.empty()) write_reference_surface(reference_surface_path(path), curve.surface);
 }
 
 std::string reference_path(const std::string& scene_path) {

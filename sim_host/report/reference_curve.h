@@ -6,6 +6,7 @@
 
 #include "config/scene/progress.h"
 #include "sim_host/report/model_variants.h"
+#include "sim_host/report/surface_error.h"
 
 namespace palpate {
 
@@ -14,6 +15,7 @@ struct ReferenceCurve {
   std::vector<double> depth_m;   // rising, above 0
   std::vector<Vec3> force_N;     // of the body on the ball, world
   std::vector<double> coarse_N;  // along the normal, by a coarser mesh; NaN where that one ended earlier
+  ReferenceSurface surface;      // at the deepest; empty where the file has none
   std::string solver, mesh, made;
   double normal_N(std::size_t i) const { return dot(force_N[i], press.normal); }
   // How far the two meshes are apart at most, of the force; 0 without a second one.
@@ -24,8 +26,8 @@ struct ReferenceCurve {
 // refined under the ball. Throws ConfigError or std::runtime_error.
 ReferenceCurve solve_reference(const SceneDesc& scene, const PressPlace& press, const Progress& progress = {});
 
-// One CSV file: lines `# key = value`, then depth_mm, fx_N, fy_N, fz_N, coarse_N. Throws std::runtime_error naming
-// file and line.
+// One CSV file: lines `# key = value`, then depth_mm, fx_N, fy_N, fz_N, coarse_N; its surface in another beside it.
+// Throws std::runtime_error naming file and line.
 ReferenceCurve read_reference(const std::string& path);
 void write_reference(const std::string& path, const ReferenceCurve& curve);
 // Where a scene's reference lies: beside it.

@@ -11,30 +11,33 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // Every number of a run by its name, once for writing and for reading. X(name, member)
-#define PALPATE_RUN_VALUES(X)          \
-  X("name", name)                      \
-  X("family", family)                  \
-  X("meaning", meaning)                \
-  X("refused", refused)                \
-  X("step_N", step_N)                  \
-  X("slide_force_N", slide_force_N)    \
-  X("ticks", ticks)                    \
-  X("unconverged", unconverged)        \
-  X("beyond_range", beyond_range)      \
-  X("counted", count.counted)          \
-  X("not_counted", count.why_not)      \
-  X("worst_instructions", count.worst) \
-  X("mean_instructions", count.mean)   \
-  X("counted_ticks", count.ticks)      \
-  X("worst_stage", count.worst_stage)  \
-  X("p50_us", p50_us)                  \
-  X("p999_us", p999_us)                \
-  X("max_us", max_us)                  \
-  X("bake_s", bake_s)                  \
-  X("image_bytes", image_bytes)        \
-  X("state_bytes", state_bytes)        \
-  X("scratch_bytes", scratch_bytes)    \
-  X("hash", hash)
+#define PALPATE_RUN_VALUES(X)           \
+  X("name", name)                       \
+  X("family", family)                   \
+  X("meaning", meaning)                 \
+  X("refused", refused)                 \
+  X("step_N", step_N)                   \
+  X("slide_force_N", slide_force_N)     \
+  X("ticks", ticks)                     \
+  X("unconverged", unconverged)         \
+  X("beyond_range", beyond_range)       \
+  X("counted", count.counted)           \
+  X("not_counted", count.why_not)       \
+  X("worst_instructions", count.worst)  \
+  X("mean_instructions", count.mean)    \
+  X("counted_ticks", count.ticks)       \
+  X("worst_stage", count.worst_stage)   \
+  X("p50_us", p50_us)                   \
+  X("p999_us", p999_us)                 \
+  X("max_us", max_us)                   \
+  X("bake_s", bake_s)                   \
+  X("image_bytes", image_bytes)         \
+  X("state_bytes", state_bytes)         \
+  X("scratch_bytes", scratch_bytes)     \
+  X("hash", hash)                       \
+  X("surface_rms", surface.rms)         \
+  X("surface_largest", surface.largest) \
+  X("surface_still_rms", surface.still_rms)
 #define PALPATE_ERROR_VALUES(X)                 \
   X("force_rms", force_rms)                     \
   X("force_largest", force_largest)             \
@@ -114,7 +117,8 @@ std::string report_json(const std::vector<CaseReport>& cases, const ReportStamp&
 std::string report_csv(const std::vector<CaseReport>& cases) {
   std::string text =
       "case,model,family,force_rms,force_largest,at_mm,stiffness_rms,stiffness_largest,direction_deg,energy,"
-      "force_unnoticed,stiffness_unnoticed,step_N,slide_force_N,worst_instructions,mean_instructions,p50_us,p999_us,"
+      "force_unnoticed,stiffness_unnoticed,surface_rms,surface_largest,surface_still_rms,step_N,slide_force_N,worst_"
+      "instructions,mean_instructions,p50_us,p999_us,"
       "max_us,image_bytes,state_bytes,scratch_bytes,bake_s,unconverged_ticks,ticks,hash,refused\n";
   for (const CaseReport& report : cases)
     for (const ModelRun& run : report.runs) {
@@ -123,13 +127,14 @@ std::string report_csv(const std::vector<CaseReport>& cases) {
       for (char& c : refused)
         if (c == ',' || c == '\n' || c == '"') c = ';';
       text += fmt::format(
-          "{},{},{},{:.5g},{:.5g},{:.5g},{:.5g},{:.5g},{:.4g},{:.5g},{:.4g},{:.4g},{:.4g},{:.5g},{},{},{:.4g},{:.4g},"
+          "{},{},{},{:.5g},{:.5g},{:.5g},{:.5g},{:.5g},{:.4g},{:.5g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.5g},{"
+          "},{},{:.4g},{:.4g},"
           "{:.4g},{},{},{},{:.3g},{},{},{:016x},{}\n",
           report.name, run.name, run.family, e.force_rms, e.force_largest, 1e3 * e.at_largest, e.stiffness_rms,
           e.stiffness_largest, e.direction_rad * 180 / kPi, e.energy, e.force_unnoticed, e.stiffness_unnoticed,
-          run.step_N, run.slide_force_N, run.count.worst, run.count.mean, run.p50_us, run.p999_us, run.max_us,
-          run.image_bytes, run.state_bytes, run.scratch_bytes, run.bake_s, run.unconverged, run.ticks, run.hash,
-          refused);
+          run.surface.rms, run.surface.largest, run.surface.still_rms, run.step_N, run.slide_force_N, run.count.worst,
+          run.count.mean, run.p50_us, run.p999_us, run.max_us, run.image_bytes, run.state_bytes, run.scratch_bytes,
+          run.bake_s, run.unconverged, run.ticks, run.hash, refused);
     }
   return text;
 }

@@ -39,6 +39,10 @@ td.wide{text-align:left;color:#66717d;max-width:640px}.good{color:#1f7a50;font-w
 p.note{color:#66717d;max-width:900px}svg{max-width:100%;height:auto}.pair{display:flex;flex-wrap:wrap;gap:8px}
 .pair>div{flex:1 1 540px}code{background:#f2f4f7;padding:1px 4px})";
 
+std::string surface_text(const ModelRun& run) {
+  return run.surface.still_rms > 0 ? fmt::format("{:.1f} / {:.1f}", 100 * run.surface.rms, 100 * run.surface.largest)
+                                   : "-";
+}
 std::string per_cent(double share, int digits = 1) { return fmt::format("{:.{}f}", 100 * share, digits); }
 std::string thousands(std::int64_t value) {
   std::string text = std::to_string(value);
@@ -68,7 +72,7 @@ const ModelRun* most_exact(const CaseReport& report) {
 std::string run_row(const ModelRun& run) {
   std::string row = "<tr><td title=\"" + html(run.meaning) + "\">" + run.name + "</td>";
   if (!run.refused.empty())
-    return row + "<td class=wide colspan=13>not for this case: " + html(run.refused) + "</td></tr>\n";
+    return row + "<td class=wide colspan=14>not for this case: " + html(run.refused) + "</td></tr>\n";
   if (run.error) {
     const CurveError& e = *run.error;
     const char* grade = std::abs(e.force_largest) <= kForceNoticed ? " class=good"
@@ -81,6 +85,7 @@ std::string run_row(const ModelRun& run) {
   } else {
     row += "<td colspan=7></td>";
   }
+  row += "<td>" + surface_text(run) + "</td>";
   row += fmt::format("<td>{:.2f}</td><td>{}</td><td>{:.1f}</td><td>{:.1f}</td><td>{:.2f}</td><td>{:.2f}</td></tr>\n",
                      1e3 * run.step_N, run.count.counted ? thousands(run.count.worst) : "-", run.p50_us, run.p999_us,
                      static_cast<double>(run.image_bytes) / 1e6, run.bake_s);
@@ -90,7 +95,8 @@ std::string run_row(const ModelRun& run) {
 std::string model_table(const CaseReport& report) {
   std::string text =
       "<table><tr><th>model</th><th>force RMS %</th><th>largest %</th><th>stiffness RMS %</th><th>largest %</th>"
-      "<th>direction &deg;</th><th>energy %</th><th>path not felt %</th><th>step mN</th><th>worst tick, instr.</th>"
+      "<th>direction &deg;</th><th>energy %</th><th>path not felt %</th><th>surface RMS / largest %</th><th>step "
+      "mN</th><th>worst tick, instr.</th>"
       "<th>p50 &micro;s</th><th>p99.9</th><th>image MB</th><th>bake s</th></tr>\n";
   for (const ModelRun& run : report.runs) text += run_row(run);
   return text + "</table>\n";
@@ -191,18 +197,20 @@ std::string report_markdown(const std::vector<CaseReport>& cases, const ReportSt
     if (!report.reference) continue;
     text += fmt::format(
         "\n### {}\n{} Ball of radius {:.3g} mm, {:.3g} mm deep; the reference's meshes differ by {} %.\n\n"
-        "| model | force RMS / largest, % | stiffness RMS, % | direction, degrees | path not felt, % | step, mN | "
+        "| model | force RMS / largest, % | stiffness RMS, % | direction, degrees | path not felt, % | surface RMS / "
+        "largest, % | "
+        "step, mN | "
         "worst "
-        "tick, instructions | image, MB | bake, s |\n|---|---|---|---|---|---|---|---|---|\n",
+        "tick, instructions | image, MB | bake, s |\n|---|---|---|---|---|---|---|---|---|---|\n",
         report.name, report.about, 1e3 * report.press.radius_m, 1e3 * report.press.depth_m,
         per_cent(report.reference->uncertainty()));
     for (const ModelRun& run : report.runs) {
       if (!run.refused.empty() || !run.error) continue;
       const CurveError& e = *run.error;
-      text += fmt::format("| {} | {} / {} | {} | {:.1f} | {} | {:.2f} | {} | {:.2f} | {:.1f} |\n", run.name,
+      text += fmt::format("| {} | {} / {} | {} | {:.1f} | {} | {} | {:.2f} | {} | {:.2f} | {:.1f} |\n", run.name,
                           per_cent(e.force_rms), per_cent(e.force_largest), per_cent(e.stiffness_rms),
-                          e.direction_rad * 180 / kPi, per_cent(e.force_unnoticed, 0), 1e3 * run.step_N,
-                          run.count.counted ? thousands(run.count.worst) : "-",
+                          e.direction_rad * 180 / kPi, per_cent(e.force_unnoticed, 0), surface_text(run),
+                          1e3 * run.step_N, run.count.counted ? thousands(run.count.worst) : "-",
                           static_cast<double>(run.image_bytes) / 1e6, run.bake_s);
     }
   }

@@ -37,6 +37,13 @@ std::string today() {
   return text;
 }
 
+// Under the ball a fourth of its radius times kThinned apart.
+void keep_surface(ReferenceCurve& curve, const std::vector<elastic::MovedPlace>& places) {
+  constexpr double kFine = 0.25 * elastic::kThinned;
+  curve.surface.depth_m = curve.depth_m.back();
+  curve.surface.place = elastic::thinned(places, curve.press.place_m, kFine * curve.press.radius_m);
+}
+
 ReferenceCurve begun(const PressPlace& press) {
   ReferenceCurve curve;
   curve.press = press;
@@ -81,6 +88,8 @@ ReferenceCurve solve_revolved(const fem::PressBody& body, const PressPlace& pres
     curve.coarse_N.push_back(i < coarse.points.size() ? coarse.points[i].force_N
                                                       : std::numeric_limits<double>::quiet_NaN());
   }
+  if (!fine.points.empty())
+    keep_surface(curve, elastic::moved_places(fine.mesh, fine.points.back().u_m, press.place_m));
   curve.solver = "axisymmetric Q9, neo-Hookean, frictionless";
   curve.mesh = fmt::format("{} nodes, {} elements under the ball; coarse: {} nodes, {} elements",
                            fine.mesh.node_count(), kFineElements, coarse.mesh.node_count(), kCoarseElements);
@@ -88,7 +97,8 @@ ReferenceCurve solve_revolved(const fem::PressBody& body, const PressPlace& pres
 }
 
 // One mesh in space. `nodes`: how many it has.
-CheckPress solve_solid(const SceneDesc& elastic, const ReferenceCurve& curve, double edge_share, int& nodes) {
+CheckPress solve_solid(const SceneDesc& elastic, const ReferenceCurve& curve, double edge_share, int& nodes,
+                       std::vector<elastic::MovedPlace>* surface = nullptr) {
   const SceneModel baked(elastic);
   ImageContents image = contents_of(baked.model());
   std::vector<std::string> unheard;
@@ -96,7 +106,7 @@ CheckPress solve_solid(const SceneDesc& elastic, const ReferenceCurve& curve, do
   CheckPress press{curve.press.place_m, curve.press.normal, curve.press.radius_m, curve.depth_m, false, {}, {}};
   SceneDesc strong = elastic;
   strong.device.force_max_N = 1e6;  // the curve ends where the caller says, not at what a device renders
-  nodes = press_elements(strong, image, mesh, press, edge_share);
+  nodes = press_elements(strong, image, mesh, press, edge_share, surface);
   return press;
 }
 
@@ -108,10 +118,12 @@ ReferenceCurve solve_tets(const SceneDesc& scene, const PressPlace& press, const
   const CheckPress coarse = solve_solid(elastic, curve, kCoarseShare, coarse_nodes);
   if (progress) progress("fine elements", 0);
   if (!is_auto(elastic.fem.edge_m)) elastic.fem.edge_m *= kFineBody;
-  const CheckPress fine = solve_solid(elastic, curve, kFineShare, nodes);
+  std::vector<elastic::MovedPlace> surface;
+  const CheckPress fine = solve_solid(elastic, curve, kFineShare, nodes, &surface);
   if (progress) progress("fine elements", 1);
   curve.depth_m = fine.depth_m;
   curve.force_N = fine.force_w_N;
+  if (!surface.empty()) keep_surface(curve, surface);
   for (std::size_t i = 0; i < fine.depth_m.size(); ++i)
     curve.coarse_N.push_back(i < coarse.reference_N.size() ? coarse.reference_N[i]
                                                            : std::numeric_limits<double>::quiet_NaN());

@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "rt_core/contact/elastic/linearised.h"
+#include "rt_core/contact/elastic/near_field.h"
+#include "rt_core/contact/region_solve.h"
 #include "rt_core/tool/articulate.h"
 #include "sim_host/view/contact_profile.h"
 
@@ -81,6 +83,9 @@ Vec3 linear_displacement(const Model& model, std::int32_t vertex,
   return sum;
 }
 
+// What the near field leaves of 1 / r.
+double left_of_half_space(double by_cut) { return 1 - by_cut / std::sqrt(by_cut * by_cut + 1); }
+
 TipDent dent_of(const TouchingTip& tip, double depth_m) {
   const ElasticRow& row = tip.row;
   TipDent dent;
@@ -114,17 +119,21 @@ std::vector<TipDent> tip_dents(const Model& model, const State& state) {
   Amplitudes soft(model, state);
   const std::vector<TouchingTip> tips = touching_tips(model, state, soft);
   const std::array<double, kMaxLinearModes> linear = linear_amplitudes(model, state, tips);
+  const NearField near{far_field_scale_m2_per_N(model.params.youngs_modulus_Pa, model.params.poisson_ratio)};
   std::vector<TipDent> dents;
   for (const TouchingTip& tip : tips) {
-    double along[kMaxLinearModes], given_m = 0;
+    double along[kMaxLinearModes], given_m = 0, modes_m_per_N = 0;
     show_linear_modes(model, tip.row, along);
-    for (std::int32_t m = 0; m < model.params.elastic_linear; ++m)
+    for (std::int32_t m = 0; m < model.params.elastic_linear; ++m) {
       given_m -= along[m] * linear[static_cast<std::size_t>(m)];
+      modes_m_per_N += along[m] * along[m];
+    }
     const double depth_m = tip.row.travel_m - given_m;
     if (!(depth_m > 0)) continue;
     TipDent dent = dent_of(tip, depth_m);
     dent.mean_Pa = state.live.stiffness * force_of(tip, state, tips) / (kPi * dent.across_m * dent.along_m);
     dent.foot_w += given_m * dent.inward;
+    dent.cut_1_per_m = near.cut_1_per_m(modes_m_per_N, tip.row.c_m_per_N);
     dents.push_back(dent);
   }
   return dents;
@@ -137,7 +146,9 @@ Vec3 TipDent::at(Vec3 point_w, Vec3 normal) const {
   const Vec3 from = point_w - foot_w;
   const double rho = ContactEllipse{along, across_m, along_m}.radii(from);
   const double fade = fade_out(rho, 0.5 * kReach, kReach);
-  return (depth_m * contact_profile(TipShape::kBall, rho) * fade * std::min(1.0, 2 * facing)) * inward;
+  const double edge = across_m * cut_1_per_m,
+               ends = left_of_half_space(std::max(rho, 1.0) * edge) / left_of_half_space(edge);
+  return (depth_m * contact_profile(TipShape::kBall, rho) * ends * fade * std::min(1.0, 2 * facing)) * inward;
 }
 
 double TipDent::pressure_Pa(Vec3 point_w, Vec3 normal) const {

@@ -12,14 +12,17 @@ namespace palpate {
 std::vector<Vec3> mode_displacement_m(const Model& model, const State& state);
 
 // What a tip in contact adds: the profile of a frictionless contact on a half space (Hertz; Johnson 1985, eq. 3.42),
-// an ellipse where a capsule lies on its side, deep enough that the surface meets the tip.
+// an ellipse where a capsule lies on its side, deep enough that the surface meets the tip. Around the contact it falls
+// as two tips' lean on one another does (rt_core/contact/elastic/near_field.h), where the linear modes take over or a
+// wall or a layer ends: a dent of half a space around a ball on a pad was 15 % of the travel off, RMS (2026-11-25).
 struct TipDent {
   Vec3 foot_w;               // deepest place, on the surface as the modes carry it
   Vec3 inward;               // unit
   Vec3 along;                // unit, of the ellipse's longer axis
   double depth_m;            // what the modes leave of the tip's overlap
   double across_m, along_m;  // the contact's half axes
-  double mean_Pa;            // its force over its area
+  double mean_Pa = 0;        // its force over its area
+  double cut_1_per_m = 0;    // 1 / the length that the half space ends at; 0: never
 
   // At a point of the carried surface whose normal at rest is `normal`; nothing on sides that face away.
   Vec3 at(Vec3 point_w, Vec3 normal) const;

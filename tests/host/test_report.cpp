@@ -129,6 +129,20 @@ TEST(Reference, ComesBackFromItsFile) {
   EXPECT_EQ(back.made, "2026-11-22");
 }
 
+TEST(Reference, ItsSurfaceLiesBesideIt) {
+  const TemporaryFile file("moved.reference.csv", ""), surface("moved.surface.csv", "");
+  ReferenceCurve curve = reference();
+  curve.surface = {3e-3, {{{1e-3, 2e-3, 3e-3}, {0, -2.5e-3, 1e-4}, 4e-6}, {{0, 0, 0}, {0, 0, 0}, 1e-6}}};
+  write_reference(file.path, curve);
+  EXPECT_EQ(reference_surface_path(file.path), surface.path);
+  const ReferenceSurface back = read_reference(file.path).surface;
+  ASSERT_EQ(back.place.size(), 2u);
+  EXPECT_NEAR(back.depth_m, 3e-3, 1e-12);
+  EXPECT_NEAR(norm(back.place[0].rest_m - curve.surface.place[0].rest_m), 0, 1e-9);
+  EXPECT_NEAR(norm(back.place[0].displacement_m - curve.surface.place[0].displacement_m), 0, 1e-7);
+  EXPECT_NEAR(back.place[0].area_m2, 4e-6, 1e-12);
+}
+
 TEST(Reference, DepthsThatFallAreRefused) {
   const TemporaryFile file("fall.csv",
                            "# place_mm = 0 0 0\n# normal = 0 1 0\n# radius_mm = 8\ndepth_mm,fx_N,fy_N,fz_N\n"
