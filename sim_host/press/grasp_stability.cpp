@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "config/hand/cone_combination.h"
 #include "rt_core/contact/friction.h"
 #include "rt_core/contact/regions.h"
-#include "config/hand/cone_combination.h"
 
 namespace palpate {
 
