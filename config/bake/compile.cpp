@@ -348,6 +348,8 @@ class Compiler {
     report_.rotational_bound = admissible_stiffness(d.damping_Nms_per_rad / hands, d.friction_Nm,
                                                     hands * d.encoder_step_rad, d.period_s, d.delay_s);
     p.coupling_N_per_m = coupling(d.coupling_N_per_m, report_.bound, 1, "device.coupling_N_per_m", "N/m");
+    if (is_auto(d.coupling_N_per_m))
+      p.coupling_N_per_m = std::min(p.coupling_N_per_m, impact_coupling_N_per_m(d.local_Hz, d.delay_s, d.force_max_N));
     p.coupling_Nm_per_rad = std::min(
         coupling(d.coupling_Nm_per_rad, report_.rotational_bound, 1e-6, "device.coupling_Nm_per_rad", "N m/rad"), 1e4);
     report_.coupling_N_per_m = p.coupling_N_per_m;

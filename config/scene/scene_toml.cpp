@@ -361,9 +361,33 @@ void lay_over(toml::table& base, toml::table&& over) {
 
 // A device's profile is laid over a scene with its [device]; where the device stands and how it is driven is no
 // property of a scene (hal/device/arm_profile.h).
-toml::table without_drives(toml::table&& over) {
+// The frame's scale is one of the device, as the scene has it.
+toml::table without_drives(toml::table&& over, const std::string& file, double& scale) {
+  if (const toml::node_view<toml::node> given = over["frame"]["scale"]; given) {
+    scale = given.value<double>().value_or(0);
+    if (!(scale >= 0.01 && scale <= 100))
+      throw ConfigError(file + ":" + std::to_string(given.node()->source().begin.line) +
+                        ": frame.scale: must be a number in the range 0.01 to 100");
+  }
   for (const char* table : {"frame", "linkage", "drives", "axis"}) over.erase(table);
   return std::move(over);
+}
+
+// The device of a profile whose motion is magnified, as a scene has it: the handle goes `scale` times as far under the
+// same force and turns as far under `scale` times the torque (hal/device/kinematics.h). Only what that profile gave.
+void magnify(double scale, const std::string& profile, SceneDesc& scene) {
+  const auto times = [&](double factor, const char* key, double& value) {
+    const auto file = scene.source.overlay.find(std::string("device.") + key);
+    if (file != scene.source.overlay.end() && file->second == profile) value *= factor;
+  };
+  DeviceDesc& d = scene.device;
+  times(1 / scale, "mass_kg", d.mass_kg);
+  times(1 / scale, "damping_Ns_per_m", d.damping_Ns_per_m);
+  times(scale, "encoder_step_mm", d.encoder_step_m);
+  times(scale, "inertia_kg_m2", d.inertia_kg_m2);
+  times(scale, "damping_Nms_per_rad", d.damping_Nms_per_rad);
+  times(scale, "friction_Nm", d.friction_Nm);
+  times(scale, "torque_max_Nm", d.torque_max_Nm);
 }
 
 // "key=value" with a dotted key; a value that is not TOML is taken as text, so that words need no quotes.
@@ -383,9 +407,14 @@ SceneDesc scene_from(toml::table&& root, const std::string& file, const SceneOve
   scene.source.file = file;
   const std::filesystem::path parent = std::filesystem::path(file).parent_path();
   scene.source.directory = parent.empty() ? "" : parent.string() + "/";
-  for (const std::string& path : overlays.file) lay_over(root, without_drives(parse_text(read_text_file(path), path)));
+  std::vector<double> scale(overlays.file.size(), 1);
+  for (std::size_t i = 0; i < overlays.file.size(); ++i) {
+    const std::string& path = overlays.file[i];
+    lay_over(root, without_drives(parse_text(read_text_file(path), path), path, scale[i]));
+  }
   for (const std::string& setting : overlays.setting) lay_over(root, parse_setting(setting));
   Reader(scene).read(root);
+  for (std::size_t i = 0; i < scale.size(); ++i) magnify(scale[i], overlays.file[i], scene);
   if (!scene.source.has("body.shape"))
     throw ConfigError(file + ": body.shape: missing; add a [body] table with a shape");
   cut_tool_meshes(scene);

@@ -74,12 +74,11 @@ void compare(std::string& text, const char* key, double asked, double has, const
           unit + ", the device " + why + " " + short_text(has) + " " + unit;
 }
 
-struct Bounds {
-  StiffnessBound translation, rotation;
-};
-Bounds bounds_of(const DeviceProfile& p, double period_s) {
-  return {admissible_stiffness(p.damping_Ns_per_m, p.friction_N, p.encoder_step_m, period_s, p.delay_s, p.local_Hz),
-          admissible_stiffness(p.damping_Nms_per_rad, p.friction_Nm, p.encoder_step_rad, period_s, p.delay_s)};
+// The rule of a bound, and what made it another: "2b / (T + 2 tau) over frame.scale = 2".
+std::string rule_of(const StiffnessBound& bound, const DeviceProfile& profile, const char* by_scale) {
+  const double scale = profile.frame.scale;
+  return std::string(reason_of(bound)) +
+         (scale != 1 ? std::string(by_scale) + "frame.scale = " + short_text(scale) : "");
 }
 
 }  // namespace
@@ -122,30 +121,43 @@ std::optional<DeviceProfile> read_device_profile(const std::string& path, std::s
   return parse_device_profile({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path, error);
 }
 
+AdmittedCoupling admitted_coupling(const DeviceProfile& p, double period_s, HeldPart held) {
+  const double hands = held == HeldPart::kBoth ? 2 : 1, scale = p.frame.scale;
+  AdmittedCoupling admitted{admissible_stiffness(p.damping_Ns_per_m / hands, p.friction_N, hands * p.encoder_step_m,
+                                                 period_s, p.delay_s, p.local_Hz),
+                            admissible_stiffness(p.damping_Nms_per_rad / hands, p.friction_Nm,
+                                                 hands * p.encoder_step_rad, period_s, p.delay_s)};
+  admitted.translation.value /= scale;
+  admitted.rotation.value *= scale;
+  return admitted;
+}
+
 std::string profile_contradictions(const DeviceProfile& profile, const ModelParams& scene) {
-  const Bounds bounds = bounds_of(profile, scene.period_s);
+  const AdmittedCoupling bounds = admitted_coupling(profile, scene.period_s, scene.held_part);
+  const double scale = profile.frame.scale;
   std::string text;
   compare(text, "force_max_N", scene.force_max_N, profile.force_max_N, "N", "has");
-  compare(text, "torque_max_Nm", scene.torque_max_Nm, profile.torque_max_Nm, "N m", "has");
+  compare(text, "torque_max_Nm", scene.torque_max_Nm, scale * profile.torque_max_Nm, "N m",
+          scale != 1 ? "has, times frame.scale = " + short_text(scale) + "," : "has");
   compare(text, "coupling_N_per_m", scene.coupling_N_per_m, bounds.translation.value, "N/m",
-          std::string("admits, by ") + reason_of(bounds.translation) + ",");
+          "admits, by " + rule_of(bounds.translation, profile, " over ") + ",");
   if (scene.local_period_s > 0)
     compare(text, "local_kHz", 1e-3 / scene.local_period_s, 1e-3 * profile.local_Hz, "kHz",
             "evaluates the local contact model with");
   // Without torque the rotational spring moves nothing.
   if (scene.torque_max_Nm > 0)
     compare(text, "coupling_Nm_per_rad", scene.coupling_Nm_per_rad, bounds.rotation.value, "N m/rad",
-            std::string("admits, by ") + reason_of(bounds.rotation) + ",");
+            "admits, by " + rule_of(bounds.rotation, profile, " times ") + ",");
   return text;
 }
 
 std::string profile_text(const DeviceProfile& profile, const ModelParams& scene) {
-  const Bounds bounds = bounds_of(profile, scene.period_s);
+  const AdmittedCoupling bounds = admitted_coupling(profile, scene.period_s, scene.held_part);
   const auto part = [](double asked, double has, const char* unit) {
     return short_text(asked) + " of " + short_text(has) + " " + unit;
   };
   return profile.name + ": the scene asks " + part(scene.force_max_N, profile.force_max_N, "N") + ", " +
-         part(scene.torque_max_Nm, profile.torque_max_Nm, "N m") + ", a coupling of " +
+         part(scene.torque_max_Nm, profile.frame.scale * profile.torque_max_Nm, "N m") + ", a coupling of " +
          part(scene.coupling_N_per_m, bounds.translation.value, "N/m") + " and " +
          part(scene.coupling_Nm_per_rad, bounds.rotation.value, "N m/rad");
 }
@@ -165,7 +177,8 @@ std::string refuse_profile(bool real_device, const std::string& device, const st
   const std::string against = profile_contradictions(*found, scene);
   if (against.empty()) return "";
   return "refused: the scene asks more than " + profile + " allows:\n" + against +
-         "\nbake it for this device: palpate bake SCENE --with " + profile;
+         "\nbake it for this device: palpate bake SCENE --with " + profile +
+         (found->frame.scale != 1 ? " (which counts frame.scale in), or set frame.scale nearer to 1" : "");
 }
 
 }  // namespace palpate

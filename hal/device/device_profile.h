@@ -29,8 +29,17 @@ std::optional<DeviceProfile> read_device_profile(const std::string& path, std::s
 // The same from text; `file` names it in errors.
 std::optional<DeviceProfile> parse_device_profile(const std::string& text, const std::string& file, std::string& error);
 
+// Stiffest coupling of a scene that the device keeps passive at this period. A handle whose motion is magnified by
+// `scale` feels the scene's spring that many times as stiff, and its turning as many times as soft
+// (hal/device/kinematics.h). Two handles against one another have half the damping of one and twice its encoder step.
+struct AdmittedCoupling {
+  StiffnessBound translation, rotation;
+};
+AdmittedCoupling admitted_coupling(const DeviceProfile& profile, double period_s, HeldPart held);
+
 // Where the scene's numbers contradict the profile: its largest force or torque above the device's, or a coupling above
-// what damping, delay, friction and encoder admit at the scene's period. One line each; empty when there is none.
+// what damping, delay, friction, encoder and frame.scale admit at the scene's period. One line each; empty when there
+// is none.
 std::string profile_contradictions(const DeviceProfile& profile, const ModelParams& scene);
 // What a scene asks of what the device has, in one line.
 std::string profile_text(const DeviceProfile& profile, const ModelParams& scene);

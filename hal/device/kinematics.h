@@ -11,8 +11,9 @@ namespace palpate {
 
 // world = position_w + rotation * (scale * device). `scale` > 1 magnifies motion: the hand moves 1 cm, the tool
 // `scale` cm. A turn is passed on as the device sent it, not normalised: the core refuses what is no rotation. Forces
-// are not scaled, so the stiffness the hand feels is the scene's times `scale`: the device's own stiffness limit
-// applies to that product.
+// are not scaled, so the stiffness the hand feels is the scene's times `scale`; torques are divided by it, as the lever
+// of a force is: the work at the handle is then the world's over `scale`, and a closed path of a coupled motion gives
+// back what it took. The device's own limits apply to these products (admitted_coupling of device_profile.h).
 struct CartesianKinematics {
   Vec3 position_w;      // of the device's origin
   Quat orientation_w;   // device frame to world, unit
@@ -34,10 +35,10 @@ inline Pose pose_in_device(const CartesianKinematics& k, const Pose& pose_w) noe
   const Quat back = conjugate(k.orientation_w);
   return {(1.0 / k.scale) * rotate(back, pose_w.position_m - k.position_w), normalised(back * pose_w.orientation)};
 }
-// A wrench only turns: force and torque about the handle's origin keep their size.
+// Force and torque about the handle's origin: the force keeps its size, its lever is as much shorter as motion is.
 inline Wrench wrench_in_device(const CartesianKinematics& k, const Wrench& wrench_w) noexcept {
   const Quat back = conjugate(k.orientation_w);
-  return {rotate(back, wrench_w.force_N), rotate(back, wrench_w.torque_Nm)};
+  return {rotate(back, wrench_w.force_N), rotate(back, (1.0 / k.scale) * wrench_w.torque_Nm)};
 }
 // Comparison written so that a NaN position is outside.
 inline bool in_workspace(const CartesianKinematics& k, const DeviceSample& sample) noexcept {

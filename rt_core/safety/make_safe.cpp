@@ -63,10 +63,10 @@ Wrench rate_limited(const Model& model, const Wrench& last, const Wrench& wanted
 
 // What a device that evaluates the local model has made of the last output by now: the rate is limited from there. It
 // followed a tap of 0.3 m/s on 4 N/mm by 1.2 N in a tick, which from the last output itself would be cut to 0.85.
+// Before the first force of a contact it was told nothing to follow.
 Wrench followed(const State& state, const FeltStiffness& felt, Wrench last) PALPATE_RT {
-  const Vec3 way = state.device_w.position_m - state.device_previous_w.position_m, d = felt.along, o = felt.across;
-  last.force_N += -Vec3{d.x * way.x + o.z * way.y + o.y * way.z, o.z * way.x + d.y * way.y + o.x * way.z,
-                        o.y * way.x + o.x * way.y + d.z * way.z};
+  if (squared_norm(last.force_N) == 0) return last;
+  last.force_N += -(felt * (state.device_w.position_m - state.device_previous_w.position_m));
   return last;
 }
 
@@ -142,18 +142,21 @@ void find_mode(const Model& model, State& state, Scratch& scratch, const Input& 
   if (safety.ramp < 1 && safety.mode != Mode::kIdle) scratch.status |= Status::kRamping;
 }
 
-// What one hand's device is sent, into state.safety.last_device_w.
-void put_out(const Model& model, State& state, Scratch& scratch, const Input& input,
-             const FeltStiffness& felt) PALPATE_RT {
+// What one hand's device is sent, into state.safety.last_device_w; and how that answers the handle's motion.
+LocalFelt put_out(const Model& model, State& state, Scratch& scratch, const Input& input,
+                  const FeltStiffness& felt) PALPATE_RT {
   SafetyState& safety = state.safety;
   const Wrench scaled{safety.ramp * safety.last_good_w.force_N, safety.ramp * safety.last_good_w.torque_Nm};
   if (input.drive != Drive::kDevice) {
     safety.last_device_w = scaled;
-    return;
+    return {{}, state.device_w.position_m};
   }
-  const Wrench now = within_limits(model, followed(state, felt, safety.last_device_w));
+  const FeltStiffness before = safety.ramp * share_below_limit(model, state, felt, -1, 0) * felt;
+  const Wrench now = within_limits(model, followed(state, before, safety.last_device_w));
   safety.last_device_w = rate_limited(model, now, scaled, scratch);
   remember_output(safety);
+  const LocalFelt told = local_felt(model, state, felt);
+  return {safety.ramp * told.felt, told.point_w_m};
 }
 
 void put_out_second(const Model& model, State& state, Scratch& scratch, const Input& input, const FeltStiffness& felt,
@@ -166,11 +169,11 @@ void put_out_second(const Model& model, State& state, Scratch& scratch, const In
   safety.ramp = first.ramp;
   safety.stopping = first.stopping;
   safety.last_commands = first.last_commands;
-  put_out(model, state, scratch, input, felt);
+  const LocalFelt told = put_out(model, state, scratch, input, felt);
   output.second_w = safety.last_device_w;
-  output.second_handle_w_m = state.device_w.position_m;
-  output.second_felt_along_N_per_m = safety.ramp * felt.along;
-  output.second_felt_across_N_per_m = safety.ramp * felt.across;
+  output.second_handle_w_m = told.point_w_m;
+  output.second_felt_along_N_per_m = told.felt.along;
+  output.second_felt_across_N_per_m = told.felt.across;
   output.second_tool_w = state.tool_w;
 }
 
@@ -188,13 +191,13 @@ void make_safe(const Model& model, State& state, Scratch& scratch, const Input& 
   }
   const Asked asked = judge(model, state, scratch, input, given_J);
   find_mode(model, state, scratch, input, two_tools ? together(asked.found, second.found) : asked.found);
-  put_out(model, state, scratch, input, asked.felt);
+  const LocalFelt told = put_out(model, state, scratch, input, asked.felt);
 
   const SafetyState& safety = state.safety;
   output.device_w = safety.last_device_w;
-  output.handle_w_m = state.device_w.position_m;
-  output.felt_along_N_per_m = safety.ramp * asked.felt.along;
-  output.felt_across_N_per_m = safety.ramp * asked.felt.across;
+  output.handle_w_m = told.point_w_m;
+  output.felt_along_N_per_m = told.felt.along;
+  output.felt_across_N_per_m = told.felt.across;
   output.ramp = safety.ramp;
   output.fault = safety.fault;
   output.mode = safety.mode;

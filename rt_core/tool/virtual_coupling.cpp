@@ -159,8 +159,7 @@ Wrench coupling_wrench(const Model& model, const Pose& device_w, const Pose& too
 }
 
 FeltStiffness felt_stiffness(const Model& model, const State& state, const Scratch& scratch) PALPATE_RT {
-  const bool held = (scratch.status & Status::kForceClamped) != 0;
-  if (!(model.params.local_period_s > 0) || scratch.held_by_hand == 0 || scratch.contact_count == 0 || held) return {};
+  if (!(model.params.local_period_s > 0) || scratch.held_by_hand == 0 || scratch.contact_count == 0) return {};
   // The contact was found in units of the stiffness that is set during the run (live_model.h).
   Real matrix[kDof * kDof], contact[kDof * kDof];
   for (std::int32_t i = 0; i < kDof * kDof; ++i)  // bound: 36
@@ -175,6 +174,52 @@ FeltStiffness felt_stiffness(const Model& model, const State& state, const Scrat
   const auto across = [&](int i, int j) { return -0.5 * k * (answer[i][j] + answer[j][i]); };
   return {{k * max_of(0, 1 - answer[0][0]), k * max_of(0, 1 - answer[1][1]), k * max_of(0, 1 - answer[2][2])},
           {across(1, 2), across(0, 2), across(0, 1)}};
+}
+
+namespace {
+
+// Where the handle stands on a spring whose force ends at F_max.
+struct OnSpring {
+  Vec3 inward;    // unit, from the tool to the handle
+  Real beyond_m;  // the place of F_max; below 0: so far before it, the object giving way too
+  Real tick_m;    // inwards in the last tick
+};
+OnSpring on_spring(const ModelParams& p, const State& state, const FeltStiffness& felt) PALPATE_RT {
+  const Vec3 stretch = state.device_w.position_m - state.safety.tool_corrected_w.position_m;
+  const Vec3 inward = unit_or(stretch, {});
+  const Real stiffness = dot(inward, felt * inward), over_m = norm(stretch) - p.force_max_N / p.coupling_N_per_m;
+  const Real before_m = stiffness > 0 ? over_m * p.coupling_N_per_m / stiffness : -kHuge;
+  return {inward, over_m > 0 ? over_m : before_m,
+          dot(state.device_w.position_m - state.device_previous_w.position_m, inward)};
+}
+
+}  // namespace
+
+Real share_below_limit(const Model& model, const State& state, const FeltStiffness& felt, Real from_ticks,
+                       Real to_ticks) PALPATE_RT {
+  if (!(model.params.local_period_s > 0)) return 1;
+  const OnSpring at = on_spring(model.params, state, felt);
+  const Real from_m = at.beyond_m + from_ticks * at.tick_m, to_m = at.beyond_m + to_ticks * at.tick_m;
+  constexpr Real kStill_m = 1e-9;
+  if (!(abs_of(to_m - from_m) > kStill_m)) return at.beyond_m < 0 ? 1 : 0;
+  return clamp_to((min_of(to_m, 0) - min_of(from_m, 0)) / (to_m - from_m), 0, 1);
+}
+
+LocalFelt local_felt(const Model& model, const State& state, const FeltStiffness& felt) PALPATE_RT {
+  // What a hand's acceleration adds to its motion of the last tick; 100 m/s^2 is a fist that is let go.
+  constexpr Real kAcceleration_m_per_s2 = 100;
+  const ModelParams& p = model.params;
+  const Vec3 handle_m = state.device_w.position_m;
+  if (!(p.local_period_s > 0)) return {{}, handle_m};
+  const Real until_s = p.period_s + p.delay_s, until_ticks = until_s / p.period_s;
+  const bool full =
+      norm(state.safety.last_device_w.force_N) >= (1 - 1e-9) * p.force_max_N && state.live.force_limit == 1;
+  const OnSpring at = on_spring(p, state, felt);
+  if (!(at.beyond_m > 0) && state.safety.ramp >= 1 && state.live.force_limit == 1) return {felt, handle_m};
+  if (!full) return {share_below_limit(model, state, felt, 0, until_ticks) * felt, handle_m};
+  const Real reach_m = until_ticks * abs_of(at.tick_m) + 0.5 * kAcceleration_m_per_s2 * until_s * until_s;
+  if (at.beyond_m > reach_m) return {{}, handle_m};
+  return {felt, handle_m - max_of(0, at.beyond_m) * at.inward};
 }
 
 }  // namespace palpate

@@ -65,12 +65,38 @@ Wrench coupling_wrench(const Model& model, const Pose& device_w, const Pose& too
 
 // How the coupling's force answers a motion of the handle's origin, its turn held: coupling and contact in series,
 // Kc - Kc^2 [(K_contact + Kc)^-1] of the translations. Symmetric, positive semi-definite and below Kc by construction;
-// zero without contact, where the coupling is held at its end, and for a device that holds forces
-// (ModelParams::local_period_s). Bound: one factor, three solves; 1,000 instructions.
+// zero without contact, and for a device that holds forces (ModelParams::local_period_s). Bound: one factor, three
+// solves; 1,000 instructions.
 struct FeltStiffness {
   Vec3 along;   // xx, yy, zz
   Vec3 across;  // yz, xz, xy
 };
+inline Vec3 operator*(const FeltStiffness& felt, Vec3 way_m) PALPATE_RT {
+  const Vec3 d = felt.along, o = felt.across, x = way_m;
+  return {d.x * x.x + o.z * x.y + o.y * x.z, o.z * x.x + d.y * x.y + o.x * x.z, o.y * x.x + o.x * x.y + d.z * x.z};
+}
+inline FeltStiffness operator*(Real share, const FeltStiffness& felt) PALPATE_RT {
+  return {share * felt.along, share * felt.across};
+}
 FeltStiffness felt_stiffness(const Model& model, const State& state, const Scratch& scratch) PALPATE_RT;
+
+// Share of `felt` that the handle meets between two times of a motion that goes on as in the last tick, in ticks from
+// now (-1: the sample before): the secant of a spring whose force ends at F_max. From 1 where all of the motion is
+// below the limit to 0 where all of it lies beyond, and in between what is left before F_max.
+Real share_below_limit(const Model& model, const State& state, const FeltStiffness& felt, Real from_ticks,
+                       Real to_ticks) PALPATE_RT;
+
+// What a device that evaluates F - K (x - p) is told. At F_max the handle is beyond the end at which the coupling is
+// held: p is then that end, where the spring begins to let go, and the device's own limit cuts what would be more,
+// which is the scene's (profile_contradictions of hal/device/device_profile.h). Farther beyond than it may come back
+// while the command is in force K is 0. Where something takes from F_max (a brake, a setting, a ramp) p is the handle
+// and K the share above. Before, K was 0 as soon as the force was at its limit, and a push at 0.5 m/s on
+// tools_on_cylinder held F_max for the tick in which the hand had come back into the spring: a step of 20 %, and with
+// 3 ms of delay 4.0 mJ to the hand in a tap (2026-11-25).
+struct LocalFelt {
+  FeltStiffness felt;
+  Vec3 point_w_m;
+};
+LocalFelt local_felt(const Model& model, const State& state, const FeltStiffness& felt) PALPATE_RT;
 
 }  // namespace palpate

@@ -123,9 +123,7 @@ std::vector<DoctorItem> examine_profile(const std::string& device, const std::st
   const std::optional<DeviceProfile> found = read_device_profile(profile, error);
   if (!found) return {judged("device profile", false, error, "docs/devices.md says what a profile holds")};
   constexpr double kUsualPeriod_s = 1e-3;
-  const double admitted = admissible_stiffness(found->damping_Ns_per_m, found->friction_N, found->encoder_step_m,
-                                               kUsualPeriod_s, found->delay_s, found->local_Hz)
-                              .value;
+  const double admitted = admitted_coupling(*found, kUsualPeriod_s, HeldPart::kTool).translation.value;
   std::vector<DoctorItem> items{judged("device profile", true,
                                        fmt::format("{}: {:.4g} N, {:.4g} N m, admits {:.4g} N/m at 1 kHz", found->name,
                                                    found->force_max_N, found->torque_max_Nm, admitted),

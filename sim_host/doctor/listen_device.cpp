@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <memory>
 
 #include "hal/bus/device_address.h"
@@ -5,9 +7,26 @@
 #include "hal/device/device_profile.h"
 #include "hal/loop/clock.h"
 #include "hal/system/device_lock.h"
+#include "rt_core/limits.h"
 #include "sim_host/doctor/doctor.h"
 
 namespace palpate {
+
+namespace {
+
+// Whether scenes of 1 kHz would be rendered (Fault::kSamplesSparse).
+DoctorItem judge_rate(double samples_Hz) {
+  constexpr double kUsual_Hz = 1000;
+  const bool enough = samples_Hz >= (1 - kStaleShareMost) * kUsual_Hz;
+  return {
+      "samples", enough ? Verdict::kPass : Verdict::kFail,
+      fmt::format("{:.0f} a second, {:.0f} % of what a scene of 1 kHz asks", samples_Hz, 100 * samples_Hz / kUsual_Hz),
+      enough ? ""
+             : fmt::format("let the device send one a tick, or bake scenes with device.period_ms = {:.3g}",
+                           1e3 / samples_Hz)};
+}
+
+}  // namespace
 
 std::vector<DoctorItem> listen_to_device(const std::string& device, const std::string& profile) {
   std::string line, error;
@@ -29,12 +48,17 @@ std::vector<DoctorItem> listen_to_device(const std::string& device, const std::s
   DeviceSample sample;
   MonotonicClock clock;
   constexpr int kPeriods = 1000;
+  const std::int64_t begin_ns = clock.now_ns();
   for (int i = 0; i < kPeriods; ++i) {
     clock.wait_until(clock.now_ns() + 1'000'000);
     bus.receive(sample);
   }
   const LinkReport report = report_link(bus, transport->state());
-  return {{"device answers", report.good ? Verdict::kPass : Verdict::kFail, report.found, report.remedy}};
+  const auto accepted = static_cast<double>(bus.counters().accepted);
+  std::vector<DoctorItem> items{
+      {"device answers", report.good ? Verdict::kPass : Verdict::kFail, report.found, report.remedy}};
+  if (report.good) items.push_back(judge_rate(accepted / (1e-9 * static_cast<double>(clock.now_ns() - begin_ns))));
+  return items;
 }
 
 }  // namespace palpate

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "config/bake/time_params.h"
 #include "rt_core/device_profile.h"
 
 namespace palpate {
@@ -19,20 +20,6 @@ constexpr const char* kHead =
 
 // As the baker's: what is left to a device that is not quite what it was said to be.
 constexpr double kCouplingShare = 0.8;
-
-// `model` as baked for this device (config/bake/compile.cpp: add_device).
-Model baked_for(const Model& model, const SceneDesc& scene, double damping, double delay_s, double encoder_m) {
-  Model baked = model;
-  ModelParams& p = baked.params;
-  p.delay_s = delay_s;
-  p.encoder_step_m = p.encoder_step_m > 0 ? encoder_m : 0;  // where it is smoothed
-  const StiffnessBound bound =
-      admissible_stiffness(damping, scene.device.friction_N, encoder_m, p.period_s, delay_s, scene.device.local_Hz);
-  p.coupling_N_per_m = std::clamp(kCouplingShare * bound.value, 1.0, 1e4);
-  const double late_s = p.local_period_s > 0 ? 0.5 * p.local_period_s : 0.5 * p.period_s + delay_s;
-  p.coupling_Ns_per_m = p.coupling_N_per_m * late_s;
-  return baked;
-}
 
 void add_run(const FeelRun& run, const std::string& where, GridCell& cell) {
   const FeelFigures& f = run.figures;
@@ -59,6 +46,21 @@ std::string row_of(const std::string& scene, const GridCell& c) {
 }
 
 }  // namespace
+
+Model baked_for(const Model& model, const SceneDesc& scene, double damping, double delay_s, double encoder_m) {
+  Model baked = model;
+  ModelParams& p = baked.params;
+  p.delay_s = delay_s;
+  p.encoder_step_m = p.encoder_step_m > 0 ? encoder_m : 0;  // where it is smoothed
+  const StiffnessBound bound =
+      admissible_stiffness(damping, scene.device.friction_N, encoder_m, p.period_s, delay_s, scene.device.local_Hz);
+  p.coupling_N_per_m = std::clamp(
+      std::min(kCouplingShare * bound.value, impact_coupling_N_per_m(scene.device.local_Hz, delay_s, p.force_max_N)),
+      1.0, 1e4);
+  const double late_s = p.local_period_s > 0 ? 0.5 * p.local_period_s : 0.5 * p.period_s + delay_s;
+  p.coupling_Ns_per_m = p.coupling_N_per_m * late_s;
+  return baked;
+}
 
 std::vector<GridCell> grid_cells(bool coarse) {
   const std::vector<std::string> ends{hand_models().front().title, hand_models().back().title};

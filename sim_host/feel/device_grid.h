@@ -22,6 +22,9 @@ struct GridCell {
 // Up to here what a hand is given counts as none: it lifts a handle of 0.1 kg by 10 um.
 inline constexpr double kGridHandMost_J = 1e-5;
 
+// `model` as the baker makes it for this device, of which the scene's [device] says the rest (config/bake/compile.cpp).
+Model baked_for(const Model& model, const SceneDesc& scene, double damping, double delay_s, double encoder_m);
+
 // Damping 0.05, 0.5 and 2.5 N s/m; delay 0, 0.5, 1 and 3 ms; encoders of 0, 30 and 100 um; light, medium, firm and
 // strong hands. `coarse`: its corners (the ends of all four) and its centre (0.5 N s/m, 0.5 ms, 30 um, medium).
 std::vector<GridCell> grid_cells(bool coarse);

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "rt_core/tick.h"
+#include "rt_core/tool/virtual_coupling.h"
 #include "sim_host/feel/finger_work.h"
 #include "sim_host/press/pose_csv.h"
 #include "sim_host/run/device_process.h"
@@ -72,7 +73,7 @@ FeelRun run_feel(const Model& model, const SceneDesc& scene, const TouchPlace& p
     };
   const StatePtr state = make_state(model);
   const ScratchPtr scratch = make_scratch(model);
-  FeelMeters meters(model.params, setup.plant.encoder_m);
+  FeelMeters meters(model.params, setup.plant.encoder_m, setup.encoder_rad);
   FingerWork fingers(model, *state, *scratch);
   run_feel_loop(
       setup,
@@ -82,6 +83,9 @@ FeelRun run_feel(const Model& model, const SceneDesc& scene, const TouchPlace& p
       },
       [&](FeelTick now) {
         now.fingers_J = fingers.work_J();
+        const Twist stretch = twist_between(state->safety.tool_corrected_w, scratch->grip_w);
+        now.stretch_m = norm(stretch.translation_m);
+        now.stretch_rad = norm(stretch.rotation_rad);
         meters.add(now);
         if (listen) listen(now);
       });

@@ -42,7 +42,8 @@ struct FeelTick {
   Output output;
   PlantEnergy energy;  // until now
   double kinetic_J = 0;
-  double fingers_J = 0;  // work of driven fingers on the object; the controller's to tell
+  // The controller's to tell: work of driven fingers on the object; how far its coupling is stretched.
+  double fingers_J = 0, stretch_m = 0, stretch_rad = 0;
 };
 
 using FeelController = std::function<void(const Input&, Output&)>;

@@ -9,9 +9,21 @@ namespace palpate {
 
 namespace {
 
-// Swings count from twice what one step of the encoder makes through the coupling, and from 2 % of the largest force.
-double least_swing_N(const ModelParams& params, double encoder_m) {
-  return std::max(2 * params.coupling_N_per_m * encoder_m, 0.02 * params.force_max_N);
+// Swings count from twice what one step of the encoder makes through the coupling, and from 2 % of the largest force;
+// of the torque from the same two.
+SwingMeter force_swings(const ModelParams& params, double encoder_m) {
+  return SwingMeter(std::max(2 * params.coupling_N_per_m * encoder_m, 0.02 * params.force_max_N));
+}
+SwingMeter torque_swings(const ModelParams& params, double encoder_rad) {
+  return SwingMeter(std::max(2 * params.coupling_Nm_per_rad * encoder_rad, 0.02 * params.torque_max_Nm));
+}
+
+// Adds a tick's components; returns the ticks that swung so far, of the worst component.
+int add_swings(Vec3 value, SwingMeter (&swing)[3]) {
+  swing[0].add(value.x);
+  swing[1].add(value.y);
+  swing[2].add(value.z);
+  return std::max({swing[0].turns(), swing[1].turns(), swing[2].turns()});
 }
 
 }  // namespace
@@ -20,7 +32,7 @@ void SwingMeter::add(double value) {
   const double step = value - last_;
   const bool turned = step * step_ < 0 && std::min(std::abs(step), std::abs(step_)) > least_;
   run_ = turned ? run_ + 1 : 0;
-  turns_ += run_ > 1 ? 1 : 0;
+  turns_ += run_ > 2 ? 1 : run_ == 2 ? 2 : 0;
   longest_ = std::max(longest_, run_);
   step_ = step;
   last_ = value;
@@ -53,10 +65,11 @@ double band_rms(const std::vector<double>& sample, double period_s, double lowes
   return std::sqrt(power / (static_cast<double>(n) * weight));
 }
 
-FeelMeters::FeelMeters(const ModelParams& params, double encoder_m)
+FeelMeters::FeelMeters(const ModelParams& params, double encoder_m, double encoder_rad)
     : params_(params),
-      swing_{SwingMeter(least_swing_N(params, encoder_m)), SwingMeter(least_swing_N(params, encoder_m)),
-             SwingMeter(least_swing_N(params, encoder_m))} {
+      swing_{force_swings(params, encoder_m), force_swings(params, encoder_m), force_swings(params, encoder_m)},
+      torque_swing_{torque_swings(params, encoder_rad), torque_swings(params, encoder_rad),
+                    torque_swings(params, encoder_rad)} {
   figures_.force_limit_N = params.force_max_N;
 }
 
@@ -78,20 +91,26 @@ void FeelMeters::add(const FeelTick& tick) {
 }
 
 void FeelMeters::add_steps(const FeelTick& tick) {
-  const Vec3 f = tick.output.device_w.force_N;
-  const double values[] = {f.x, f.y, f.z};
-  int turns = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    swing_[i].add(values[i]);
-    turns = std::max(turns, swing_[i].turns());
-    figures_.alternation_run = std::max(figures_.alternation_run, swing_[i].longest());
-  }
-  figures_.alternations = turns;
+  const ModelParams& p = params_;
+  figures_.alternations = add_swings(tick.output.device_w.force_N, swing_);
+  for (const SwingMeter& swing : swing_) figures_.alternation_run = std::max(figures_.alternation_run, swing.longest());
   const LocalModel local = local_model_in_device({}, last_, kLocalValid_s);
-  const Vec3 expected = local_force_N(last_.device_w.force_N, local, tick.output.handle_w_m);
-  const double step = force_.empty() ? 0 : norm(f - expected) / params_.force_max_N;
-  last_ = tick.output;
+  Vec3 expected = local_force_N(last_.device_w.force_N, local, tick.input.pose_w.position_m);
+  expected = std::min(1.0, p.force_max_N / std::max(norm(expected), 1e-9)) * expected;  // the device's own limit
+  const double step = force_.empty() ? 0 : norm(tick.output.device_w.force_N - expected) / p.force_max_N;
   if (step > figures_.step_share) figures_.step_share = step, figures_.step_at_s = tick.time_s;
+  figures_.leash_share = std::max(figures_.leash_share, tick.stretch_m * p.coupling_N_per_m / p.force_max_N);
+  if (p.torque_max_Nm > 0) add_torque(tick);  // a device without torque: its tool turns with the handle
+  last_ = tick.output;
+}
+
+void FeelMeters::add_torque(const FeelTick& tick) {
+  const ModelParams& p = params_;
+  const Vec3 torque_Nm = tick.output.device_w.torque_Nm;
+  figures_.torque_alternations = add_swings(torque_Nm, torque_swing_);
+  figures_.torque_step_share =
+      std::max(figures_.torque_step_share, norm(torque_Nm - last_.device_w.torque_Nm) / p.torque_max_Nm);
+  figures_.leash_share = std::max(figures_.leash_share, tick.stretch_rad * p.coupling_Nm_per_rad / p.torque_max_Nm);
 }
 
 void FeelMeters::add_energy(const FeelTick& tick) {

@@ -15,13 +15,16 @@ struct FeelFigures {
   double force_max_N = 0;  // commanded
   double model_max_N = 0;  // of the object on the virtual tool
   double depth_max_m = 0;  // penetration told by the tick
-  // Largest change of the commanded force in a tick, beyond what the device made of the last one by the local model, of
-  // the device's largest force.
-  double step_share = 0;
+  // Largest change of the force, and of the torque, that a command made at once, beyond what the device made of the
+  // last one by the local model, of the device's largest.
+  double step_share = 0, torque_step_share = 0;
   double step_at_s = 0;
-  int alternations = 0;      // ticks in which the force swung back; see SwingMeter
-  int alternation_run = 0;   // most of them in a row
-  double lag_m = 0;          // largest distance from handle to tool
+  int alternations = 0;         // ticks in which the force swung to and fro; see SwingMeter
+  int torque_alternations = 0;  // and the torque
+  int alternation_run = 0;      // most of them in a row
+  double lag_m = 0;             // largest distance from handle to tool
+  // Largest stretch of the coupling that acted, force and torque, of what F_max and the largest torque stretch it.
+  double leash_share = 0;
   double force_limit_N = 0;  // the device's largest force: no object is pressed harder
   double felt_N_per_m = 0;   // rise of the force over the way of the handle, between half and all of the largest force
   double noise_N = 0;        // RMS at 50 to 500 Hz in the last second
@@ -35,7 +38,7 @@ struct FeelFigures {
 };
 
 // Swings: ticks in which a component of the force changes by more than `least` against its change of the tick before,
-// which was as large and had turned too. One turn alone is a peak, not a swing.
+// which was as large. One such turn alone is a peak, not a swing; with a second right behind it both count.
 class SwingMeter {
  public:
   explicit SwingMeter(double least) : least_(least) {}
@@ -53,19 +56,20 @@ double band_rms(const std::vector<double>& sample, double period_s, double lowes
 
 class FeelMeters {
  public:
-  FeelMeters(const ModelParams& params, double encoder_m);
+  FeelMeters(const ModelParams& params, double encoder_m, double encoder_rad);
   void add(const FeelTick& tick);
   FeelFigures figures() const;
 
  private:
   void add_steps(const FeelTick& tick);
+  void add_torque(const FeelTick& tick);
   void add_energy(const FeelTick& tick);
   double felt_stiffness() const;
   double noise() const;
 
   const ModelParams& params_;
   FeelFigures figures_;
-  SwingMeter swing_[3];
+  SwingMeter swing_[3], torque_swing_[3];
   std::vector<Vec3> force_, handle_;
   Output last_;
   bool touching_ = false;

@@ -89,6 +89,10 @@ Json summary_json(const RunSummary& s, std::uint64_t lost_records) {
                {"longest_gap_ms", 1e-6 * static_cast<double>(s.longest_gap_ns)},
                {"status", status},
                {"faults", faults_json(s.fault)}};
+  if ((s.fault & Fault::kSamplesSparse) != 0) {
+    json["samples_Hz"] = samples_Hz(s);
+    json["felt_share"] = felt_share(s);
+  }
   if (s.ticks == 0 || is_virtual(s)) return json;
   json["stages"] = stages_json(s);
   json["worst_ticks"] = worst_json(s.worst);

@@ -46,6 +46,10 @@ std::string fault_detail(const RunSummary& summary, std::uint32_t fault) {
     return fmt::format("        {} ticks in a row came late, up to tick {}; {}\n", summary.fault_late_run,
                        summary.fault_tick, own);
   }
+  if (fault == Fault::kSamplesSparse) {
+    return fmt::format("        you felt {:.0f} % of the force; the device sends {:.0f} samples a second\n",
+                       100 * felt_share(summary), samples_Hz(summary));
+  }
   return "";
 }
 
@@ -101,6 +105,16 @@ void add_gap(RunSummary& summary, const TickRecord& record) {
   if (summary.armed_ticks > 0) summary.paused_ticks += slots;
 }
 
+Samples together(const Samples& a, const Samples& b) { return {a.ticks + b.ticks, a.stale + b.stale, a.gain + b.gain}; }
+
+void add_samples(RunSummary& summary, const TickRecord& record) {
+  if (summary.lately.ticks == Samples::kTicks) {
+    summary.before = summary.lately;
+    summary.lately = {};
+  }
+  summary.lately = together(summary.lately, {1, record.input.stale_ticks > 0 ? 1u : 0u, record.output.ramp});
+}
+
 void add_felt(RunSummary& summary, const TickRecord& record) {
   const Output& output = record.output;
   const bool riding = (record.input.commands & Command::kStall) != 0;
@@ -111,6 +125,7 @@ void add_felt(RunSummary& summary, const TickRecord& record) {
   }
   summary.armed_ticks += 1;
   summary.armed_stale_ticks += record.input.stale_ticks > 0 ? 1 : 0;
+  add_samples(summary, record);
   summary.armed_clamped_ticks += (output.status & Status::kForceClamped) != 0 ? 1 : 0;
 }
 
@@ -144,6 +159,7 @@ void add(RunSummary& summary, const TickRecord& record) {
     summary.fault_tick = record.tick;
     summary.fault_gap_ns = summary.gap_ns;
     summary.fault_late_run = summary.late_run;
+    summary.fault_samples = together(summary.before, summary.lately);
   }
   summary.fault |= output.fault;
   summary.last_mode = output.mode;
@@ -151,6 +167,17 @@ void add(RunSummary& summary, const TickRecord& record) {
 
 bool is_virtual(const RunSummary& summary) {
   return summary.ticks > 0 && summary.busy.max_ns == 0 && summary.publish.max_ns == 0;
+}
+
+double samples_Hz(const RunSummary& summary) {
+  const Samples& s = summary.fault_samples;
+  const double ticks_Hz = summary.period_ns > 0 ? 1e9 / static_cast<double>(summary.period_ns) : 0;
+  return s.ticks > 0 ? ticks_Hz * static_cast<double>(s.ticks - s.stale) / static_cast<double>(s.ticks) : 0;
+}
+
+double felt_share(const RunSummary& summary) {
+  const Samples& s = summary.fault_samples;
+  return s.ticks > 0 ? s.gain / static_cast<double>(s.ticks) : 0;
 }
 
 double rate_Hz(const RunSummary& summary) {

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "config/bake/compile.h"
 #include "config/bake/contact_fit.h"
 #include "config/scene/config_error.h"
 #include "config/scene/scene.h"
@@ -195,6 +196,36 @@ TEST(SceneToml, EveryTruncationIsReadOrRefused) {
 }
 
 // Every default lies in its own range, so that writing a default into a scene changes nothing.
+// A profile whose frame magnifies motion twice: the handle's force and work are a device's with half the damping, twice
+// the encoder step and twice the torque, whose coupling is half as stiff. What the profile does not give is not
+// touched.
+TEST(SceneToml, AMagnifiedProfileIsTheDeviceAsTheSceneHasIt) {
+  const std::string scene = testing::TempDir() + "magnified.toml", profile = testing::TempDir() + "profile.toml";
+  std::ofstream(scene) << kSmall << "[device]\ninertia_kg_m2 = 3e-4\n";
+  const auto loaded = [&](const std::string& frame) {
+    std::ofstream(profile) << "[device]\ndamping_Ns_per_m = 2\nmass_kg = 1\nfriction_N = 1\nencoder_step_mm = 0.03\n"
+                              "torque_max_Nm = 0.1\ndamping_Nms_per_rad = 2e-3\nfriction_Nm = 1\n"
+                           << frame;
+    SceneOverlays overlays;
+    overlays.file = {profile};
+    return load_scene(scene, overlays);
+  };
+  const SceneDesc plain = loaded(""), twice = loaded("[frame]\nscale = 2\n");
+  EXPECT_DOUBLE_EQ(twice.device.damping_Ns_per_m, 1);
+  EXPECT_DOUBLE_EQ(twice.device.mass_kg, 0.5);
+  EXPECT_DOUBLE_EQ(twice.device.friction_N, 1);
+  EXPECT_DOUBLE_EQ(twice.device.encoder_step_m, 6e-5);
+  EXPECT_DOUBLE_EQ(twice.device.torque_max_Nm, 0.2);
+  EXPECT_DOUBLE_EQ(twice.device.inertia_kg_m2, 3e-4);  // the scene's own
+  const CompileReport a = compile_scene(plain).report, b = compile_scene(twice).report;
+  EXPECT_DOUBLE_EQ(a.coupling_N_per_m, 0.8 * 2 * 2 / (1e-3 + 2 * 5e-4));
+  EXPECT_DOUBLE_EQ(b.coupling_N_per_m, 0.5 * a.coupling_N_per_m);
+  EXPECT_DOUBLE_EQ(b.coupling_Nm_per_rad, 2 * a.coupling_Nm_per_rad);
+  for (const char* scale : {"0", "-1", "101", "nan", "\"2\""})
+    EXPECT_THAT(test::refusal_by([&] { loaded("[frame]\nscale = " + std::string(scale) + "\n"); }),
+                HasSubstr("profile.toml:10: frame.scale: must be a number in the range 0.01 to 100"));
+}
+
 TEST(Schema, DefaultsLieInTheirRanges) {
   for (const TableSpec& table : scene_schema()) {
     SceneDesc scene;

@@ -83,14 +83,78 @@ TEST(FeltStiffness, IsCouplingAndContactInSeries) {
   state->live.stiffness = 2;  // contact of 6000 N/m, found in units of two newtons
   EXPECT_NEAR(felt_stiffness(model, *state, *scratch).along.z, 1500.0 * 6000 / 7500 * n.z * n.z, 1e-9);
   state->live.stiffness = 1;
-  scratch->status = Status::kForceClamped;  // the force is the device's largest, wherever the handle goes
-  EXPECT_EQ(felt_stiffness(model, *state, *scratch).along, Vec3{});
-  scratch->status = 0;
   scratch->contact_count = 0;
   EXPECT_EQ(felt_stiffness(model, *state, *scratch).along, Vec3{});
   scratch->contact_count = 1;
   model.params.local_period_s = 0;  // a device that holds forces
   EXPECT_EQ(felt_stiffness(model, *state, *scratch).along, Vec3{});
+}
+
+// A handle that moves by 0.4 mm a tick towards and through the place where the force ends at F_max, and back: the share
+// told is the secant of min(K x, F_max) over each way, whatever part of it lies on either side.
+TEST(FeltStiffness, OfWhatIsLeftBeforeTheLargestForce) {
+  Model model;
+  model.params = tiny_params();
+  model.params.local_period_s = 1e-4;
+  const double coupling = model.params.coupling_N_per_m, force_N = model.params.force_max_N;
+  const double series = 500;  // with a softer object: the handle goes as much farther as it gives way
+  const FeltStiffness felt{{series, 0, 0}, {}};
+  const StatePtr state = roomy_state();
+  const auto force_at = [&](double x_m) { return std::min(force_N, series * x_m); };  // handle at x, of the contact
+  const double limit_m = force_N / series;
+  for (const double tick_m : {4e-4, -4e-4, 1e-5, -1e-5})
+    for (const double from_ticks : {-1.0, 0.0})
+      for (double x_m = limit_m - 1e-3; x_m < limit_m + 1e-3; x_m += 1.3e-5) {
+        // The tool's place by which the coupling has this force; beyond the limit the tool stays.
+        const double tool_m = x_m < limit_m ? x_m - series * x_m / coupling : limit_m - force_N / coupling;
+        state->safety.tool_corrected_w.position_m = {tool_m, 0, 0};
+        state->device_w.position_m = {x_m, 0, 0};
+        state->device_previous_w.position_m = {x_m - tick_m, 0, 0};
+        const double to_ticks = from_ticks < 0 ? 0 : 1.5;
+        const double begin_m = x_m + from_ticks * tick_m, end_m = x_m + to_ticks * tick_m;
+        EXPECT_NEAR(share_below_limit(model, *state, felt, from_ticks, to_ticks) * series * (end_m - begin_m),
+                    force_at(end_m) - force_at(begin_m), 1e-9)
+            << x_m - limit_m << " by " << tick_m;
+      }
+  state->device_previous_w = state->device_w;  // at rest beyond the limit: the force is held
+  EXPECT_EQ(share_below_limit(model, *state, felt, 0, 1.5), 0);
+  state->safety.tool_corrected_w.position_m = state->device_w.position_m - Vec3{0.5 * force_N / coupling, 0, 0};
+  EXPECT_EQ(share_below_limit(model, *state, felt, 0, 1.5), 1);  // below it: all of it
+}
+
+// Told so that the device's own limit cuts where the force ends: what it makes of the command at any place it can reach
+// is the spring's force. Farther beyond the limit, and with less than F_max to give, it is told nothing that pushes on.
+TEST(FeltStiffness, IsToldFromTheEndOfTheSpring) {
+  Model model;
+  model.params = tiny_params();
+  model.params.local_period_s = 1e-4;
+  const double coupling = model.params.coupling_N_per_m, force_N = model.params.force_max_N, series = 500;
+  const FeltStiffness felt{{series, 0, 0}, {}};
+  const StatePtr state = roomy_state();
+  SafetyState& safety = state->safety;
+  safety.ramp = 1;
+  safety.last_device_w.force_N = {-force_N, 0, 0};
+  const auto told_at = [&](double beyond_m, double tick_m) {
+    state->device_w.position_m = {force_N / coupling + beyond_m, 0, 0};  // the tool at 0
+    state->device_previous_w.position_m = state->device_w.position_m - Vec3{tick_m, 0, 0};
+    return local_felt(model, *state, felt);
+  };
+  for (const double tick_m : {4e-4, -4e-4, 0.0}) {
+    const LocalFelt told = told_at(5e-5, tick_m);
+    EXPECT_EQ(told.felt.along.x, series);
+    EXPECT_NEAR(told.point_w_m.x, force_N / coupling, 1e-15);
+    EXPECT_EQ(told_at(1e-2, tick_m).felt.along, Vec3{});  // it cannot come back so soon
+    EXPECT_EQ(told_at(-1e-4, tick_m).felt.along.x, series);
+    EXPECT_EQ(told_at(-1e-4, tick_m).point_w_m, state->device_w.position_m);
+  }
+  safety.last_device_w.force_N = {-0.9 * force_N, 0,
+                                  0};  // braked: that stays, and what is left is the share of the way
+  EXPECT_EQ(told_at(5e-5, 4e-4).felt.along, Vec3{});
+  EXPECT_EQ(told_at(5e-5, 4e-4).point_w_m, state->device_w.position_m);
+  EXPECT_GT(told_at(5e-5, -4e-4).felt.along.x, 0.5 * series);
+  safety.last_device_w.force_N = {-force_N, 0, 0};
+  state->live.force_limit = 0.5;  // less than the device would cut at
+  EXPECT_EQ(told_at(5e-5, 4e-4).felt.along, Vec3{});
 }
 
 // A wall of 100 N/mm, and a hand that goes 50 mm behind it and back at 0.2 m/s: the wall is pressed with what the

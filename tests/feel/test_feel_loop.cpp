@@ -6,6 +6,7 @@
 
 #include "sim_host/feel/feel_meters.h"
 #include "sim_host/feel/z_width.h"
+#include "tests/support/tiny_image.h"
 
 namespace palpate {
 namespace {
@@ -114,6 +115,66 @@ TEST(FeelMeters, SeeWhatBuzzes) {
   EXPECT_EQ(still.turns(), 0);
   EXPECT_LE(slow.longest(), 1);
   EXPECT_GT(buzzing.longest(), 90);
+}
+
+// A turn alone is a peak; with a second one behind it both count.
+TEST(FeelMeters, TheFirstTurnOfASwingCounts) {
+  SwingMeter peak(0.02), swing(0.02);
+  for (const double x : {0.0, 1.0, 0.0, 0.0}) peak.add(x);
+  for (const double x : {0.0, 1.0, 0.0, 1.0, 1.0}) swing.add(x);
+  EXPECT_EQ(peak.turns(), 0);
+  EXPECT_EQ(swing.turns(), 2);
+}
+
+// Torque is judged as force is: by its own limit, and not at all where a device has none. A coupling that is stretched
+// beyond what the largest force or torque does is not held.
+TEST(FeelMeters, SeeTorqueAndTheLeash) {
+  ModelParams params = test::tiny_params();
+  const auto figures = [&](double torque_Nm, double stretch_m, double stretch_rad) {
+    FeelMeters meters(params, 0, 0);
+    FeelTick tick;
+    for (int i = 0; i < 20; ++i) {
+      tick.time_s = 1e-3 * i;
+      tick.output.device_w.torque_Nm.y = i % 2 == 0 ? torque_Nm : 0;
+      tick.output.device_w.force_N.x = i >= 7 ? 0.05 * params.force_max_N : 0;
+      tick.stretch_m = stretch_m;
+      tick.stretch_rad = stretch_rad;
+      meters.add(tick);
+    }
+    return meters.figures();
+  };
+  const double longest_m = params.force_max_N / params.coupling_N_per_m;
+  const double longest_rad = params.torque_max_Nm / params.coupling_Nm_per_rad;
+  const FeelFigures buzz = figures(0.03 * params.torque_max_Nm, 0.5 * longest_m, 0.7 * longest_rad);
+  EXPECT_EQ(buzz.torque_alternations, 19);
+  EXPECT_NEAR(buzz.torque_step_share, 0.03, 1e-12);
+  EXPECT_NEAR(buzz.step_share, 0.05, 1e-12);
+  EXPECT_NEAR(buzz.step_at_s, 7e-3, 1e-12);
+  EXPECT_EQ(buzz.alternations, 0);
+  EXPECT_NEAR(buzz.leash_share, 0.7, 1e-12);
+  EXPECT_EQ(figures(0.015 * params.torque_max_Nm, 0, 0).torque_alternations, 0);
+  EXPECT_NEAR(figures(0, 3 * longest_m, 0).leash_share, 3, 1e-12);
+  params.torque_max_Nm = 0;
+  EXPECT_EQ(figures(0.1, 0, 1).torque_alternations, 0);
+  EXPECT_EQ(figures(0.1, 0, 1).leash_share, 0);
+}
+
+// A spring whose force the device has made by itself, up to its own limit, is no step when the command says so too.
+TEST(FeelMeters, AStepIsWhatTheDeviceHadNotMadeByItself) {
+  const ModelParams params = test::tiny_params();
+  const auto largest = [&](double felt_N_per_m) {
+    FeelMeters meters(params, 0, 0);
+    FeelTick tick;
+    for (int i = 0; i < 20; ++i) {
+      tick.input.pose_w.position_m.x = tick.output.handle_w_m.x = -2e-4 * i;
+      tick.output.device_w.force_N.x = std::min(params.force_max_N, 0.1 + 4000 * 2e-4 * i);  // 0.8 N a tick
+      tick.output.felt_along_N_per_m.x = felt_N_per_m;
+      meters.add(tick);
+    }
+    return meters.figures().step_share;
+  };
+  EXPECT_NEAR(largest(0), 0.8 / params.force_max_N, 1e-12);
+  EXPECT_LT(largest(4000), 1e-12);
 }
 
 // A sine within the band counts with its RMS; one below it does not; the window's leakage is below a percent.

@@ -221,6 +221,39 @@ TEST(DeviceProfile, ASceneThatAsksMoreIsRefusedKeyByKey) {
   EXPECT_THAT(profile_contradictions(good(), asks), HasSubstr("1666.67 N/m"));
 }
 
+// The hand feels the scene's stiffness times the scale and its turning over it: a coupling of 0.8 of the bound would be
+// 1.6 times the bound in a frame of scale 2.
+TEST(DeviceProfile, AMagnifiedFrameAdmitsLess) {
+  DeviceProfile profile = good();
+  profile.frame.scale = 2;
+  ModelParams asks = scene();
+  asks.coupling_N_per_m = 0.8 * 2500;
+  EXPECT_EQ(
+      profile_contradictions(profile, asks),
+      "device.coupling_N_per_m: the scene states 2000 N/m, the device admits, by 2b / (T + 2 tau) over frame.scale "
+      "= 2, 1250 N/m");
+  asks.coupling_N_per_m = 0.8 * 1250;
+  EXPECT_EQ(profile_contradictions(profile, asks), "");
+  asks.coupling_Nm_per_rad = 1.9;  // half as stiff at the handle
+  EXPECT_EQ(profile_contradictions(profile, asks), "");
+  profile.frame.scale = 0.5;
+  EXPECT_THAT(profile_contradictions(profile, asks),
+              testing::AllOf(HasSubstr("by 2b / (T + 2 tau) times frame.scale = 0.5, 0.5 N m/rad"),
+                             HasSubstr("the device has, times frame.scale = 0.5, 0.1 N m")));
+  EXPECT_DOUBLE_EQ(admitted_coupling(profile, 1e-3, HeldPart::kTool).translation.value, 5000);
+  EXPECT_DOUBLE_EQ(admitted_coupling(profile, 1e-3, HeldPart::kBoth).translation.value, 2500);  // two handles
+}
+
+// What is refused says what to do: --with counts the scale in, as this file does.
+TEST(DeviceProfile, AScaleThatASceneWasNotBakedForIsRefused) {
+  const auto path = std::filesystem::temp_directory_path() / ("palpate_scaled_" + std::to_string(getpid()));
+  std::ofstream(path) << kGood << "[frame]\nscale = 2\n";
+  const std::string refused = refuse_profile(false, "loopback", path, scene());
+  std::filesystem::remove(path);
+  EXPECT_THAT(refused, HasSubstr("1250 N/m"));
+  EXPECT_THAT(refused, HasSubstr("--with " + path.string() + " (which counts frame.scale in)"));
+}
+
 TEST(DeviceProfile, ARealDeviceNeedsOneAndASimulatedOneDoesNot) {
   EXPECT_EQ(refuse_profile(false, "loopback", "", scene()), "");
   EXPECT_THAT(refuse_profile(true, "can:can0", "", scene()),

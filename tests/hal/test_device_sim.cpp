@@ -29,9 +29,11 @@ TEST(Kinematics, RoundTripsAndKeepsPower) {
     const Pose back = pose_in_device(k, world);
     EXPECT_LT(norm(back.position_m - sample.position_m), 1e-12);
     EXPECT_LT(norm(small_rotation_vector(back.orientation * conjugate(sample.orientation))), 1e-12);
-    // Virtual work: force times velocity in the world is `scale` times that at the device.
-    const Vec3 v = vec();
+    // Virtual work: force times velocity in the world is `scale` times that at the device, and so is torque times spin.
+    const Vec3 v = vec(), spin = vec();
     const Wrench w{vec(), vec()};
+    EXPECT_NEAR(dot(w.torque_Nm, rotate(k.orientation_w, spin)), k.scale * dot(wrench_in_device(k, w).torque_Nm, spin),
+                1e-10);
     EXPECT_NEAR(dot(w.force_N, rotate(k.orientation_w, k.scale * v)), k.scale * dot(wrench_in_device(k, w).force_N, v),
                 1e-10);
   }

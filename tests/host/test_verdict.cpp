@@ -182,6 +182,25 @@ TEST(RunSummary, AStallAndARowOfLateTicksAreToldApart) {
   EXPECT_THAT(late, testing::Not(testing::HasSubstr("stood still")));
 }
 
+// A device at 400 Hz on a scene of 1 kHz, whose force is at 14 % for it after a while: what came and was felt lately,
+// not of the whole run.
+TEST(RunSummary, TooFewSamplesAreToldWithTheFigures) {
+  RunSummary summary;
+  for (std::uint64_t i = 0; i < 5000; ++i) {
+    TickRecord record = tick(i, Mode::kForce);
+    record.timing.deadline_ns = static_cast<std::int64_t>(i) * 1'000'000;
+    const bool sparse = i >= 4000;
+    record.input.stale_ticks = sparse && i % 5 != 0 && i % 5 != 2 ? 1 : 0;
+    record.output.ramp = sparse ? 0.14 : 1;
+    record.output.fault = i >= 4900 ? Fault::kSamplesSparse : 0;
+    add(summary, record);
+  }
+  EXPECT_NEAR(samples_Hz(summary), 400, 2);
+  EXPECT_NEAR(felt_share(summary), 0.14, 1e-9);
+  EXPECT_THAT(summary_text(summary, 0),
+              testing::ContainsRegex("you felt 14 % of the force; the device sends (399|40.) samples a second"));
+}
+
 std::string docs_text(const std::string& name) {
   std::ifstream file(std::string(PALPATE_SOURCE_DIR) + "/docs/" + name);
   return {std::istreambuf_iterator<char>(file), {}};
