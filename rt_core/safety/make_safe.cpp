@@ -151,10 +151,14 @@ LocalFelt put_out(const Model& model, State& state, Scratch& scratch, const Inpu
     safety.last_device_w = scaled;
     return {{}, state.device_w.position_m};
   }
-  const FeltStiffness before = safety.ramp * share_below_limit(model, state, felt, -1, 0) * felt;
-  const Wrench now = within_limits(model, followed(state, before, safety.last_device_w));
-  safety.last_device_w = rate_limited(model, now, scaled, scratch);
+  const bool local = model.params.local_period_s > 0;
+  if (local) {
+    const FeltStiffness before = safety.ramp * share_below_limit(model, state, felt, -1, 0) * felt;
+    safety.last_device_w = followed(state, before, safety.last_device_w);
+  }
+  safety.last_device_w = rate_limited(model, within_limits(model, safety.last_device_w), scaled, scratch);
   remember_output(safety);
+  if (!local) return {{}, state.device_w.position_m};
   const LocalFelt told = local_felt(model, state, felt);
   return {safety.ramp * told.felt, told.point_w_m};
 }

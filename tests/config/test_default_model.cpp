@@ -11,10 +11,10 @@ namespace {
 
 using testing::HasSubstr;
 
-const std::string kBody = "[body]\nshape = \"ellipsoid\"\ntriangles = 500\n";
+const std::string kBody = "name = \"soft\"\n[body]\nshape = \"ellipsoid\"\ntriangles = 500\n";
 const std::string kModulus = "[body.material]\nyoungs_modulus_Pa = 8e3\npoisson_ratio = 0.47\n";
 const std::string kBall = "[[tool.piece]]\nshape = \"sphere\"\nradius_mm = 8\n";
-const std::string kBox = "[[tool.piece]]\nshape = \"box\"\nsize_mm = [9, 9, 9]\nmargin_mm = 2\n";
+const std::string kBox = "[[tool.piece]]\nshape = \"box\"\nsize_mm = [9, 9, 9]\npoints = 8\n";
 
 SceneDesc scene_of(const std::string& text) { return parse_scene(text, "s.toml"); }
 
