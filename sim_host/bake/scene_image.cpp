@@ -25,6 +25,7 @@ SceneImage prepare_scene(const std::string& scene, const std::string& image, con
     result.image_path = (std::filesystem::path(record).parent_path() / source.stem()).string() + ".pal";
   }
   const CompileResult compiled = compile_scene(*result.scene);
+  for (const std::string& line : compiled.report.model) fmt::print("model   {}\n", line);
   for (const std::string& warning : compiled.report.warnings) fmt::print(stderr, "warning: {}\n", warning);
   std::string error;
   if (!save_image(result.image_path, compiled.bytes, error)) throw std::runtime_error(error);

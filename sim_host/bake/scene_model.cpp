@@ -18,6 +18,7 @@ SceneModel::SceneModel(const std::string& path, const SceneOverlays& overlays) {
     return;
   }
   scene_ = load_scene(path, overlays);
+  if (!scene_->default_model.empty()) fmt::print(stderr, "model   {}\n", scene_->default_model);
   compile();
 }
 
