@@ -1,5 +1,6 @@
 #include "hal/drives/falcon_sim.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <utility>
@@ -34,7 +35,7 @@ void FalconSim::say(const std::uint8_t* bytes, int count) noexcept {
   Frame frame{.id = usb::kIn, .length = static_cast<std::uint8_t>(kStatusBytes + count), .fd = true};
   frame.data[0] = 0x01;
   frame.data[1] = 0x60;
-  std::memcpy(frame.data + kStatusBytes, bytes, static_cast<std::size_t>(count));
+  std::copy_n(bytes, count, frame.data + kStatusBytes);
   send_frames(transport_, &frame, 1);
   spoke_ = true;
 }
