@@ -19,7 +19,8 @@ class RunDrives : public BallRun {
  protected:
   RunDrives() {
     options_.time = RunTime::kVirtual;
-    options_.duration_s = 2.5;  // the search for the drives takes up to 0.8 s of it
+    options_.duration_s = 2.5;                         // the search for the drives takes up to 0.8 s of it
+    options_.record = (folder_ / "run.plr").string();  // tests of this file run side by side
   }
   static std::string read(const std::string& file) {
     std::ifstream stream(file);
@@ -110,7 +111,6 @@ TEST_F(RunDrives, AFalconFeelsLikeADeviceThatReportsItsPose) {
 // The same bytes in the same order, whatever the machine does meanwhile.
 TEST_F(RunDrives, GiveTheSameRecordingTwice) {
   options_.profile = shipped("example-delta-cia402.toml");
-  options_.record = (folder_ / "run.plr").string();
   run_session(options_);
   const std::string first = read(options_.record);
   run_session(options_);
