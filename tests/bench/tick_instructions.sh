@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
 # Gate on instruction counts, which are the same on every run: the worst tick of each scene against its budget, and the
-# same ellipsoid meshed three ways; and a tick with sixty nodes that push and slip. `scenes` plays the scripted hand,
+# same ellipsoid meshed three ways; and a tick with sixty nodes that push and slip. `scene` plays the scripted hand,
 # `paths` the scene's own path as `palpate run` and the laboratory do. Usage:
-#   tick_instructions.sh scenes PROGRAM IMAGE_DIR SCENE_DIR
+#   tick_instructions.sh scene PROGRAM IMAGE_DIR SCENE.toml
 #   tick_instructions.sh paths PATH_PROGRAM IMAGE_DIR SCENE_DIR
 #   tick_instructions.sh meshes PROGRAM PALPATE SCENE.toml
 #   tick_instructions.sh nodal NODAL_PROGRAM
 #   tick_instructions.sh overlays PROGRAM PALPATE SCENE_DIR
 set -euo pipefail
-usage="usage: tick_instructions.sh scenes PROGRAM IMAGE_DIR SCENE_DIR | paths PROGRAM IMAGE_DIR SCENE_DIR |"
+usage="usage: tick_instructions.sh scene PROGRAM IMAGE_DIR SCENE.toml | paths PROGRAM IMAGE_DIR SCENE_DIR |"
 usage+=" meshes PROGRAM PALPATE SCENE.toml |"
 usage+=" overlays PROGRAM PALPATE SCENE_DIR | nodal PROGRAM"
 mode=${1:?$usage} program=${2:?$usage}
@@ -64,17 +64,14 @@ if [ "$mode" = paths ]; then
     if [ "$worst" -le "$budget" ]; then verdict=ok; else verdict="OVER BUDGET" status=1; fi
     echo "worst tick $worst of $budget instructions: $verdict"
   done
-elif [ "$mode" = scenes ]; then
-  images=${3:?$usage} scenes=${4:?$usage}
-  for file in "$scenes"/*.toml; do budget_of "$file" >/dev/null; done
-  for file in "$scenes"/*.toml; do
-    scene=$(basename "$file" .toml) budget=$(budget_of "$file")
-    echo "== $scene"
-    count "$images/$scene.pal"
-    within_bounds || status=1
-    if [ "$worst" -le "$budget" ]; then verdict=ok; else verdict="OVER BUDGET" status=1; fi
-    echo "worst tick $worst of $budget instructions: $verdict"
-  done
+elif [ "$mode" = scene ]; then
+  images=${3:?$usage} file=${4:?$usage}
+  scene=$(basename "$file" .toml) budget=$(budget_of "$file")
+  echo "== $scene"
+  count "$images/$scene.pal"
+  within_bounds || status=1
+  if [ "$worst" -le "$budget" ]; then verdict=ok; else verdict="OVER BUDGET" status=1; fi
+  echo "worst tick $worst of $budget instructions: $verdict"
 elif [ "$mode" = meshes ]; then
   palpate=${3:?$usage} scene=${4:?$usage}
   grep -qE '^triangles *=' "$scene" || { echo "$scene has no key 'triangles' to vary"; exit 1; }
