@@ -137,7 +137,13 @@ void main() {
       low = min(low, m);
       high = max(high, m);
     }
-  float dash = mod(gl_FragCoord.x + gl_FragCoord.y, 14.0 * thick) < 8.0 * thick ? 1.0 : 0.0;
+  // Dashes along the edge: counted across where it runs across, and upward where it runs upward.
+  vec2 slope = vec2(0.0);
+  for (int i = -3; i <= 3; ++i)
+    for (int j = -3; j <= 3; ++j)
+      slope += vec2(i, j) * texelFetch(mask, clamp(at + ivec2(i, j), ivec2(0), textureSize(mask, 0) - 1), 0).r;
+  float along = abs(slope.x) > abs(slope.y) ? gl_FragCoord.y : gl_FragCoord.x;
+  float dash = mod(along, 10.0 * thick) < 6.0 * thick ? 1.0 : 0.0;
   colour = vec4(dash * (high - low));
 })";
 

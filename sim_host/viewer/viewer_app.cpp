@@ -359,7 +359,7 @@ class Viewer {
     save_picture(options_.screenshot);
   }
 
-  void print_stats() const {
+  void print_stats() {
     const auto ms = [](std::int64_t ns) { return 1e-6 * static_cast<double>(ns); };
     fmt::print("drawn   {} frames of {} x {}: median {:.1f} ms, 99 % {:.1f} ms, longest {:.1f} ms\n", frames_,
                window_.width(), window_.height(), ms(percentile_ns(frame_times_, 0.5)),
