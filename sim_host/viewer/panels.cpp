@@ -151,9 +151,10 @@ void stage_plot(const PanelScene& scene, const TrackTiming& timing, double now_s
   std::iota(stage.begin(), stage.end(), 0u);
   std::ranges::sort(stage, std::greater{}, [&](std::size_t i) { return percentile_ns(timing.stage[i], 0.5); });
   std::vector<PlotLine> lines;
-  for (std::size_t k = kShown; k-- > 0;)  // the dearest last, beside the whole
+  // The whole lies below its parts; they are seen in front of it, the dearest in front.
+  lines.push_back({"tick", theme::kInk, data.compute_us, 1.4f, 0.35f});
+  for (std::size_t k = kShown; k-- > 0;)
     lines.push_back({stage_name(static_cast<Stage>(stage[k])), kColours[k], data.stage_us[stage[k]], 1.4f});
-  lines.push_back({"tick", theme::kInk, data.compute_us, 1.4f});
   history_plot("Stages", "us", lines, from_s, until_s, now_s, plot_height.of(8));
 }
 
@@ -201,8 +202,10 @@ void stage_table(const TrackTiming& timing, const TrackTick& tick) {
     cell(theme::kInk, us(static_cast<double>(percentile_ns(histogram, 0.999))), true);
     cell(theme::kInk, us(static_cast<double>(histogram.max_ns)), true);
   };
+  constexpr std::int64_t kWorthARow_ns = 1000;  // ever
   for (std::int32_t i = 0; i < kStageCount; ++i)
-    if (timing.stage[i].max_ns > 0) row(stage_name(static_cast<Stage>(i)), tick.stage_ns[i], timing.stage[i]);
+    if (timing.stage[i].max_ns >= kWorthARow_ns)
+      row(stage_name(static_cast<Stage>(i)), tick.stage_ns[i], timing.stage[i]);
   row("whole tick", tick.compute_ns, timing.compute);
   ImGui::EndTable();
 }

@@ -10,7 +10,8 @@ layout(location = 1) in vec3 normal;
 layout(location = 2) in vec2 value;  // displacement, pressure
 uniform mat4 projection, place;
 uniform float pressed;  // 1: the pressure is shown
-out vec3 at_w, normal_w;
+// Where a triangle covers a pixel in part, within that part: beyond its edge a normal at a rim is none.
+centroid out vec3 at_w, normal_w;
 out float shown;
 void main() {
   vec4 world = place * vec4(position, 1.0);
@@ -32,7 +33,7 @@ void main() {
   "}\n"
 
 inline constexpr char kBody[] = "#version 330 core\n" PALPATE_LIGHT R"(
-in vec3 at_w, normal_w;
+centroid in vec3 at_w, normal_w;
 in float shown;
 uniform sampler2D colours;
 uniform float top, tick[12];
@@ -51,7 +52,7 @@ void main() {
 })";
 
 inline constexpr char kSolid[] = "#version 330 core\n" PALPATE_LIGHT R"(
-in vec3 at_w, normal_w;
+centroid in vec3 at_w, normal_w;
 in float shown;
 uniform vec4 paint;      // colour and opacity
 uniform float gloss, rim, plain;  // rim: opacity added where seen edge-on, like glass; plain: share without shading
