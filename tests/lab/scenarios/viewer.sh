@@ -41,7 +41,7 @@ read_all() {
 }
 
 # By turns, and of each the largest of three: once or twice in a run the kernel holds a frame up by 8 to 10 us, with readers
-# or without (two of four runs without, all of four with a viewer, 2026-11-25), so that one maximum alone says little.
+# or without (three of seven runs without, all of seven with a viewer, 2026-11-25), so that one maximum alone says little.
 for turn in 1 2 3; do
   part alone_$turn
   read_all follow flood 2> /dev/null & watched=$!
