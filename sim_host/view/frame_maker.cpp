@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <tuple>
 
 #include "rt_core/contact/contact.h"
 
@@ -16,7 +17,7 @@ DrawnBody drawn_body(const std::vector<std::array<std::int32_t, 3>>& triangle,
   for (std::size_t t = 0; t < triangle.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k)
       corner.push_back({triangle[t][k], static_cast<std::int32_t>(t), static_cast<std::int32_t>(k)});
-  std::ranges::stable_sort(corner, {}, &DrawnBody::Source::vertex);
+  std::ranges::sort(corner, {}, [](const DrawnBody::Source& s) { return std::tuple(s.vertex, s.triangle, s.corner); });
   DrawnBody body;
   body.triangle.resize(triangle.size());
   // Vertices already made of each surface vertex: a smooth one has one, a point on a crease one for each side.
