@@ -24,9 +24,13 @@ constexpr std::array<const char*, 7> kColumns = {"x_mm", "y_mm", "z_mm", "ux_mm"
 class DrawnSurface {
  public:
   DrawnSurface(const Model& model, const State& state) : model_(model) {
-    const bool elastic = method_of(model) == Method::kElastic;
-    displacement_m_ = elastic ? mode_displacement_m(model, state) : deformed_surface(model, state).displacement_m;
-    if (elastic) dents_ = tip_dents(model, state);
+    if (method_of(model) == Method::kElastic) {
+      ElasticShape shape = elastic_shape(model, state);
+      displacement_m_ = mode_displacement_m(model, shape);
+      dents_ = std::move(shape.dent);
+    } else {
+      displacement_m_ = deformed_surface(model, state).displacement_m;
+    }
   }
   Vec3 displacement_m(Vec3 rest_m) const {
     const SurfacePoint nearest = closest_surface_point(model_, rest_m, kHuge, -1);

@@ -81,8 +81,10 @@ void Comparison::measure(double from_s, double until_s) {
     ++difference_.ticks;
     const double force_N = norm(a.contact_N - b.contact_N);
     const double depth_mm = 1e3 * std::abs(std::max(0.0, a.depth_m) - std::max(0.0, b.depth_m));
-    if (norm(a.contact_N) > strongest_N) {
-      strongest_N = norm(a.contact_N);
+    // Both are to be seen pressing: the weaker one counts, and the first where they never touch together.
+    const double seen_N = std::min(norm(a.contact_N), norm(b.contact_N)) + 1e-6 * norm(a.contact_N);
+    if (seen_N > strongest_N) {
+      strongest_N = seen_N;
       difference_.strongest_at_s = at_s;
     }
     force2 += force_N * force_N;

@@ -35,7 +35,7 @@ class Comparison {
     std::size_t ticks = 0;                              // none: nothing else is known
     double rms_N = 0, largest_N = 0, largest_at_s = 0;  // of the force vectors on the tool
     double rms_mm = 0, largest_mm = 0;                  // of the depth
-    double strongest_at_s = 0;                          // the first run's largest force
+    double strongest_at_s = 0;                          // where the weaker of both forces is largest
   };
   const Difference& difference() const { return difference_; }
 

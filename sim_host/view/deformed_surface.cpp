@@ -16,23 +16,9 @@ namespace {
 
 using Corners = std::array<std::int32_t, 3>;
 using TriangleNormals = std::array<Vec3, 3>;
+using Ends = std::pair<std::int32_t, std::int32_t>;
 
 std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
-
-// Angle-weighted vertex normals, as the rest surface's are (Baerentzen & Aanaes 2005).
-std::vector<Vec3> mesh_normals(const std::vector<Vec3>& position, const std::vector<Corners>& triangles) {
-  std::vector<Vec3> normal(position.size());
-  for (const Corners& t : triangles) {
-    const Vec3 p[3] = {position[at(t[0])], position[at(t[1])], position[at(t[2])]};
-    const Vec3 n = unit_or(cross(p[1] - p[0], p[2] - p[0]), {});
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3 a = unit_or(p[(k + 1) % 3] - p[k], {}), b = unit_or(p[(k + 2) % 3] - p[k], {});
-      normal[at(t[k])] += std::acos(std::clamp(dot(a, b), -1.0, 1.0)) * n;
-    }
-  }
-  for (Vec3& n : normal) n = unit_or(n, {0, 0, 1});
-  return normal;
-}
 
 DeformedSurface rest_surface(const Model& model) {
   DeformedSurface surface;
@@ -91,8 +77,7 @@ std::vector<double> nodal_pressure_Pa(const Model& model, const State& state, co
 
 // Modes at the vertices, straight between them; the dents at every point. `rest_normal` may be empty: then they are
 // made.
-void add_dents(const Model& model, const State& state, DeformedSurface& surface, std::span<const Vec3> rest_normal) {
-  const std::vector<TipDent> dents = tip_dents(model, state);
+void add_dents(const std::vector<TipDent>& dents, DeformedSurface& surface, std::span<const Vec3> rest_normal) {
   surface.pressure_Pa.assign(surface.rest_m.size(), 0);
   if (dents.empty()) return;
   std::vector<Vec3> made;
@@ -107,7 +92,7 @@ void add_dents(const Model& model, const State& state, DeformedSurface& surface,
   }
 }
 
-void displace(const Model& model, const State& state, DeformedSurface& surface,
+void displace(const Model& model, const State& state, DeformedSurface& surface, std::span<const Ends> parents = {},
               std::span<const Vec3> rest_normal = {}) {
   if (method_of(model) == Method::kNodes) {
     surface.displacement_m = nodal_displacement_m(model, state);
@@ -115,8 +100,11 @@ void displace(const Model& model, const State& state, DeformedSurface& surface,
     return;
   }
   if (method_of(model) == Method::kElastic) {
-    if (surface.displacement_m.empty()) surface.displacement_m = mode_displacement_m(model, state);
-    add_dents(model, state, surface, rest_normal);
+    const ElasticShape shape = elastic_shape(model, state);
+    surface.displacement_m = mode_displacement_m(model, shape);
+    for (const auto& [a, b] : parents)
+      surface.displacement_m.push_back(0.5 * (surface.displacement_m[at(a)] + surface.displacement_m[at(b)]));
+    add_dents(shape.dent, surface, rest_normal);
     return;
   }
   ShapeField field;
@@ -173,26 +161,40 @@ struct HalvedEdge {
   Vec3 lift, low_normal, high_normal;
 };
 
-using Ends = std::pair<std::int32_t, std::int32_t>;
+}  // namespace
 
-// Halves every edge; `corner` goes along. `parents`: the ends between which each new point stands.
-void refine(DeformedSurface& surface, std::vector<TriangleNormals>& corner, std::vector<Ends>& parents) {
+std::vector<Vec3> mesh_normals(const std::vector<Vec3>& position, const std::vector<Corners>& triangles) {
+  std::vector<Vec3> normal(position.size());
+  for (const Corners& t : triangles) {
+    const Vec3 p[3] = {position[at(t[0])], position[at(t[1])], position[at(t[2])]};
+    const Vec3 n = unit_or(cross(p[1] - p[0], p[2] - p[0]), {});
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 a = unit_or(p[(k + 1) % 3] - p[k], {}), b = unit_or(p[(k + 2) % 3] - p[k], {});
+      normal[at(t[k])] += std::acos(std::clamp(dot(a, b), -1.0, 1.0)) * n;
+    }
+  }
+  for (Vec3& n : normal) n = unit_or(n, {0, 0, 1});
+  return normal;
+}
+
+void refine(std::vector<Vec3>& point, std::vector<Corners>& triangle, std::vector<TriangleNormals>& corner,
+            std::vector<Ends>& parents) {
   constexpr double kRounding = 0.5;  // exact for a circle to second order
   std::map<std::pair<std::int32_t, std::int32_t>, HalvedEdge> edges;
   const auto same = [](Vec3 a, Vec3 b) { return squared_norm(a - b) < 1e-6; };
   for (std::size_t t = 0; t < corner.size(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t next = (k + 1) % 3;
-      std::int32_t a = surface.triangle[t][k], b = surface.triangle[t][next];
+      std::int32_t a = triangle[t][k], b = triangle[t][next];
       Vec3 na = corner[t][k], nb = corner[t][next];
       if (b < a) std::swap(a, b), std::swap(na, nb);
-      const Vec3 pa = surface.rest_m[at(a)], pb = surface.rest_m[at(b)], p = 0.5 * (pa + pb);
+      const Vec3 pa = point[at(a)], pb = point[at(b)], p = 0.5 * (pa + pb);
       const Vec3 lift = dot(pa - p, na) * na + dot(pb - p, nb) * nb;
       const auto [entry, is_new] =
-          edges.try_emplace({a, b}, HalvedEdge{static_cast<std::int32_t>(surface.rest_m.size()), lift, na, nb});
+          edges.try_emplace({a, b}, HalvedEdge{static_cast<std::int32_t>(point.size()), lift, na, nb});
       HalvedEdge& edge = entry->second;
       if (is_new) {
-        surface.rest_m.push_back(p);
+        point.push_back(p);
         parents.emplace_back(a, b);
       }
       // On a crease each side lifts by its own curvature: at a cylinder's rim the wall does and the lid does not.
@@ -200,13 +202,13 @@ void refine(DeformedSurface& surface, std::vector<TriangleNormals>& corner, std:
         edge.lift += lift;
     }
   }
-  for (const auto& [ends, edge] : edges) surface.rest_m[at(edge.middle)] += (0.5 * kRounding) * edge.lift;
+  for (const auto& [ends, edge] : edges) point[at(edge.middle)] += (0.5 * kRounding) * edge.lift;
   std::vector<Corners> finer;
   std::vector<TriangleNormals> finer_normal;
   finer.reserve(4 * corner.size());
   finer_normal.reserve(4 * corner.size());
   for (std::size_t t = 0; t < corner.size(); ++t) {
-    const auto [a, b, c] = surface.triangle[t];
+    const auto [a, b, c] = triangle[t];
     const auto [na, nb, nc] = corner[t];
     const std::int32_t ab = edges.at(std::minmax(a, b)).middle, bc = edges.at(std::minmax(b, c)).middle,
                        ca = edges.at(std::minmax(c, a)).middle;
@@ -214,11 +216,9 @@ void refine(DeformedSurface& surface, std::vector<TriangleNormals>& corner, std:
     finer.insert(finer.end(), {{a, ab, ca}, {b, bc, ab}, {c, ca, bc}, {ab, bc, ca}});
     finer_normal.insert(finer_normal.end(), {{na, nab, nca}, {nb, nbc, nab}, {nc, nca, nbc}, {nab, nbc, nca}});
   }
-  surface.triangle = std::move(finer);
+  triangle = std::move(finer);
   corner = std::move(finer_normal);
 }
-
-}  // namespace
 
 DeformedSurface deformed_surface(const Model& model, std::vector<Vec3> displacement_m) {
   DeformedSurface surface = rest_surface(model);
@@ -239,7 +239,8 @@ RefinedBody::RefinedBody(const Model& model, std::size_t most_triangles) : model
   corner_normal_ = smooth_normals(surface.rest_m, surface.triangle);
   const bool everywhere =
       method_of(model) != Method::kNodes && model.params.shape_law != ShapeLaw::kDisplacementAnglePaper;
-  while (everywhere && 4 * surface.triangle.size() <= most_triangles) refine(surface, corner_normal_, parents_);
+  for (; everywhere && 4 * surface.triangle.size() <= most_triangles; ++halvings_)
+    refine(surface.rest_m, surface.triangle, corner_normal_, parents_);
   rest_m_ = std::move(surface.rest_m);
   triangle_ = std::move(surface.triangle);
   normal_ = mesh_normals(rest_m_, triangle_);
@@ -254,9 +255,9 @@ void RefinedBody::turn_normals(DeformedSurface& surface) const {
     for (std::size_t k = 0; k < 3; ++k) {
       Vec3& n = surface.corner_normal[t][k];
       const std::size_t vertex = at(surface.triangle[t][k]);
-      const bool smooth = dot(n, normal_[vertex]) > 0.97;
-      n = smooth ? unit_or(n + surface.normal[vertex] - normal_[vertex], surface.normal[vertex])
-                 : rotate(rotation_between(face_normal_[t], face[t]), n);
+      n = turns_with_point(n, normal_[vertex])
+              ? unit_or(n + surface.normal[vertex] - normal_[vertex], surface.normal[vertex])
+              : rotate(rotation_between(face_normal_[t], face[t]), n);
     }
   }
 }
@@ -265,12 +266,7 @@ DeformedSurface RefinedBody::shape(const State& state) const {
   DeformedSurface surface;
   surface.rest_m = rest_m_;
   surface.triangle = triangle_;
-  if (method_of(model_) == Method::kElastic) {
-    std::vector<Vec3>& u = surface.displacement_m;
-    u = mode_displacement_m(model_, state);
-    for (const auto& [a, b] : parents_) u.push_back(0.5 * (u[at(a)] + u[at(b)]));
-  }
-  displace(model_, state, surface, normal_);
+  displace(model_, state, surface, parents_, normal_);
   finish(surface);
   surface.corner_normal = corner_normal_;
   turn_normals(surface);

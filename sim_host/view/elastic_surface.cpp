@@ -16,9 +16,7 @@ namespace {
 
 using elastic_layout::kMaxTerms;
 
-// A dent is drawn out to this many radii, fading over the second half: beyond, the modes hold what the body does.
-constexpr double kReach = 8;
-// Nor longer than this many times as wide: the contact of a rod on a flat.
+// A dent is not longer than this many times as wide: the contact of a rod on a flat.
 constexpr double kLongest = 12;
 
 struct TouchingTip {
@@ -72,8 +70,7 @@ std::array<double, kMaxLinearModes> linear_amplitudes(const Model& model, const 
   return amplitude;
 }
 
-Vec3 linear_displacement(const Model& model, std::int32_t vertex,
-                         const std::array<double, kMaxLinearModes>& amplitude) {
+Vec3 linear_displacement(const Model& model, std::int32_t vertex, const std::vector<double>& amplitude) {
   const float* shape = elastic_layout::linear_shapes(model, vertex);
   Vec3 sum;
   for (std::int32_t m = 0; m < model.params.elastic_linear; ++m)
@@ -105,22 +102,14 @@ TipDent dent_of(const TouchingTip& tip, double depth_m) {
 
 }  // namespace
 
-std::vector<Vec3> mode_displacement_m(const Model& model, const State& state) {
-  Amplitudes soft(model, state);
-  const CarriedSurface carried{model, soft.product, &soft.looked, &soft.shown};
-  const std::array<double, kMaxLinearModes> linear = linear_amplitudes(model, state, touching_tips(model, state, soft));
-  std::vector<Vec3> displacement;
-  for (std::int32_t v = 0; v < model.sizes.n_vertex; ++v)
-    displacement.push_back(carried.displacement(v) + linear_displacement(model, v, linear));
-  return displacement;
-}
-
-std::vector<TipDent> tip_dents(const Model& model, const State& state) {
+ElasticShape elastic_shape(const Model& model, const State& state) {
   Amplitudes soft(model, state);
   const std::vector<TouchingTip> tips = touching_tips(model, state, soft);
   const std::array<double, kMaxLinearModes> linear = linear_amplitudes(model, state, tips);
+  ElasticShape shape{{soft.product, soft.product + elastic_layout::terms(model.params.elastic_soft)},
+                     {linear.begin(), linear.begin() + model.params.elastic_linear},
+                     {}};
   const NearField near{far_field_scale_m2_per_N(model.params.youngs_modulus_Pa, model.params.poisson_ratio)};
-  std::vector<TipDent> dents;
   for (const TouchingTip& tip : tips) {
     double along[kMaxLinearModes], given_m = 0, modes_m_per_N = 0;
     show_linear_modes(model, tip.row, along);
@@ -134,9 +123,18 @@ std::vector<TipDent> tip_dents(const Model& model, const State& state) {
     dent.mean_Pa = state.live.stiffness * force_of(tip, state, tips) / (kPi * dent.across_m * dent.along_m);
     dent.foot_w += given_m * dent.inward;
     dent.cut_1_per_m = near.cut_1_per_m(modes_m_per_N, tip.row.c_m_per_N);
-    dents.push_back(dent);
+    shape.dent.push_back(dent);
   }
-  return dents;
+  return shape;
+}
+
+std::vector<Vec3> mode_displacement_m(const Model& model, const ElasticShape& shape) {
+  std::int32_t looked = 0, shown = 0;
+  const CarriedSurface carried{model, shape.soft.data(), &looked, &shown};
+  std::vector<Vec3> displacement;
+  for (std::int32_t v = 0; v < model.sizes.n_vertex; ++v)
+    displacement.push_back(carried.displacement(v) + linear_displacement(model, v, shape.linear));
+  return displacement;
 }
 
 Vec3 TipDent::at(Vec3 point_w, Vec3 normal) const {
@@ -145,7 +143,7 @@ Vec3 TipDent::at(Vec3 point_w, Vec3 normal) const {
   // The whole distance: what lies far below the tip, as a ring's other side, is far from it.
   const Vec3 from = point_w - foot_w;
   const double rho = ContactEllipse{along, across_m, along_m}.radii(from);
-  const double fade = fade_out(rho, 0.5 * kReach, kReach);
+  const double fade = fade_out(rho, 0.5 * kDentReach, kDentReach);
   const double edge = across_m * cut_1_per_m,
                ends = left_of_half_space(std::max(rho, 1.0) * edge) / left_of_half_space(edge);
   return (depth_m * contact_profile(TipShape::kBall, rho) * ends * fade * std::min(1.0, 2 * facing)) * inward;

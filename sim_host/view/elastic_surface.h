@@ -8,8 +8,8 @@
 
 namespace palpate {
 
-// By the soft modes (with their second order) and the linear ones, under the forces of the regions; of every vertex.
-std::vector<Vec3> mode_displacement_m(const Model& model, const State& state);
+// A dent is drawn out to this many radii, fading over the second half: beyond, the modes hold what the body does.
+inline constexpr double kDentReach = 8;
 
 // What a tip in contact adds: the profile of a frictionless contact on a half space (Hertz; Johnson 1985, eq. 3.42),
 // an ellipse where a capsule lies on its side, deep enough that the surface meets the tip. Around the contact it falls
@@ -28,6 +28,17 @@ struct TipDent {
   Vec3 at(Vec3 point_w, Vec3 normal) const;
   double pressure_Pa(Vec3 point_w, Vec3 normal) const;
 };
-std::vector<TipDent> tip_dents(const Model& model, const State& state);
+
+// All that the surface of a state follows from, few numbers: whoever has the modes' shapes makes the surface of it,
+// here or in the viewer's vertex shader (sim_host/viewer/shader_surface.h).
+struct ElasticShape {
+  std::vector<double> soft;    // soft_products: amplitudes, then their pairs
+  std::vector<double> linear;  // amplitudes, J^1/2, under the forces of the regions
+  std::vector<TipDent> dent;
+};
+ElasticShape elastic_shape(const Model& model, const State& state);
+
+// By the soft modes (with their second order) and the linear ones; of every vertex.
+std::vector<Vec3> mode_displacement_m(const Model& model, const ElasticShape& shape);
 
 }  // namespace palpate

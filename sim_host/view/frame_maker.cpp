@@ -2,34 +2,33 @@
 
 #include <algorithm>
 #include <chrono>
-#include <map>
+#include <tuple>
+
+#include "rt_core/contact/contact.h"
 
 namespace palpate {
 
-DrawnBody drawn_body(const DeformedSurface& surface) {
+DrawnBody drawn_body(const std::vector<std::array<std::int32_t, 3>>& triangle,
+                     const std::vector<std::array<Vec3, 3>>& corner_normal) {
+  const auto normal_of = [&](const DrawnBody::Source& s) {
+    return corner_normal[static_cast<std::size_t>(s.triangle)][static_cast<std::size_t>(s.corner)];
+  };
+  std::vector<DrawnBody::Source> corner;  // all of them, by vertex
+  for (std::size_t t = 0; t < triangle.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k)
+      corner.push_back({triangle[t][k], static_cast<std::int32_t>(t), static_cast<std::int32_t>(k)});
+  std::ranges::sort(corner, {}, [](const DrawnBody::Source& s) { return std::tuple(s.vertex, s.triangle, s.corner); });
   DrawnBody body;
+  body.triangle.resize(triangle.size());
   // Vertices already made of each surface vertex: a smooth one has one, a point on a crease one for each side.
-  std::vector<std::vector<std::uint32_t>> made(surface.rest_m.size());
-  for (std::size_t t = 0; t < surface.triangle.size(); ++t) {
-    std::array<std::uint32_t, 3> corners{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto vertex = surface.triangle[t][k];
-      const Vec3 normal = surface.corner_normal[t][k];
-      auto& candidates = made[static_cast<std::size_t>(vertex)];
-      const auto same = std::ranges::find_if(candidates, [&](std::uint32_t i) {
-        const DrawnBody::Source& s = body.source[i];
-        const auto& other = surface.corner_normal[static_cast<std::size_t>(s.triangle)];
-        return squared_norm(other[static_cast<std::size_t>(s.corner)] - normal) < 1e-6;
-      });
-      if (same != candidates.end()) {
-        corners[k] = *same;
-        continue;
-      }
-      corners[k] = static_cast<std::uint32_t>(body.source.size());
-      body.source.push_back({vertex, static_cast<std::int32_t>(t), static_cast<std::int32_t>(k)});
-      candidates.push_back(corners[k]);
-    }
-    body.triangle.push_back(corners);
+  std::size_t first = 0;
+  for (const DrawnBody::Source& s : corner) {
+    if (first < body.source.size() && body.source[first].vertex != s.vertex) first = body.source.size();
+    std::size_t made = first;
+    while (made < body.source.size() && !(squared_norm(normal_of(body.source[made]) - normal_of(s)) < 1e-6)) ++made;
+    if (made == body.source.size()) body.source.push_back(s);
+    body.triangle[static_cast<std::size_t>(s.triangle)][static_cast<std::size_t>(s.corner)] =
+        static_cast<std::uint32_t>(made);
   }
   return body;
 }
@@ -49,11 +48,15 @@ std::vector<DrawnVertex> drawn_vertices(const DrawnBody& body, const DeformedSur
   return vertices;
 }
 
-FrameMaker::FrameMaker(const Model& model, const RunTrack& track, StatePtr initial, std::size_t most_triangles)
-    : model_(model), refined_(model, most_triangles), states_(model, track, copy_of(*initial)), track_(track) {
-  const DeformedSurface surface = refined_.shape(*initial);
-  drawn_ = drawn_body(surface);
-  at_rest_ = drawn_vertices(drawn_, surface);
+FrameMaker::FrameMaker(const Model& model, const RunTrack& track, StatePtr initial, std::size_t most_triangles,
+                       bool in_shader)
+    : model_(model),
+      refined_(model, most_triangles),
+      in_shader_(in_shader && method_of(model) == Method::kElastic),
+      states_(model, track, copy_of(*initial)),
+      drawn_(drawn_body(refined_.triangle(), refined_.corner_normal())),
+      at_rest_(drawn_vertices(drawn_, refined_.shape(*initial))),
+      track_(track) {
   thread_ = std::thread([this] { run(); });
 }
 
@@ -93,11 +96,16 @@ std::shared_ptr<const ViewFrame> FrameMaker::make(std::size_t index) {
   constexpr std::size_t kTicksAtOnce = 500;
   const auto start = std::chrono::steady_clock::now();
   const State& state = states_.go_to(index, kTicksAtOnce);
-  const DeformedSurface surface = refined_.shape(state);
   auto frame = std::make_shared<ViewFrame>();
   frame->index = states_.reached();
   frame->state = copy_of(state);
-  frame->vertex = drawn_vertices(drawn_, surface);
+  DeformedSurface surface;
+  if (in_shader_) {
+    frame->elastic = elastic_shape(model_, state);
+  } else {
+    surface = refined_.shape(state);
+    frame->vertex = drawn_vertices(drawn_, surface);
+  }
   const AnchorField anchors = anchors_of(model_, state);
   for (const auto& [name, colour] : surface_colours())
     frame->largest[static_cast<std::size_t>(colour)] = largest_value(surface, anchors, colour);

@@ -31,9 +31,21 @@ GlProgram::GlProgram(const char* vertex_source, const char* fragment_source) : p
   const GLuint fragment = compile(GL_FRAGMENT_SHADER, fragment_source);
   glAttachShader(program_, vertex);
   glAttachShader(program_, fragment);
-  glLinkProgram(program_);
+  link();
   glDeleteShader(vertex);
   glDeleteShader(fragment);
+}
+GlProgram::GlProgram(const char* vertex_source, std::span<const char* const> kept, bool into_one)
+    : program_(glCreateProgram()) {
+  const GLuint vertex = compile(GL_VERTEX_SHADER, vertex_source);
+  glAttachShader(program_, vertex);
+  glTransformFeedbackVaryings(program_, static_cast<GLsizei>(kept.size()), kept.data(),
+                              into_one ? GL_INTERLEAVED_ATTRIBS : GL_SEPARATE_ATTRIBS);
+  link();
+  glDeleteShader(vertex);
+}
+void GlProgram::link() const {
+  glLinkProgram(program_);
   GLint good = 0;
   glGetProgramiv(program_, GL_LINK_STATUS, &good);
   if (good == 0) throw std::runtime_error("the graphics driver cannot link a shader");
@@ -74,30 +86,78 @@ GlMesh::GlMesh(GlMesh&& other) noexcept
     : array_(std::exchange(other.array_, 0)),
       vertices_(std::exchange(other.vertices_, 0)),
       indices_(std::exchange(other.indices_, 0)),
+      fewer_(std::exchange(other.fewer_, 0)),
       count_(other.count_),
+      fewer_count_(other.fewer_count_),
       bytes_(other.bytes_) {}
 GlMesh::~GlMesh() {
   if (array_ == 0) return;
   glDeleteVertexArrays(1, &array_);
   glDeleteBuffers(1, &vertices_);
   glDeleteBuffers(1, &indices_);
+  if (fewer_ != 0) glDeleteBuffers(1, &fewer_);
 }
 void GlMesh::set_triangles(std::span<const std::array<std::uint32_t, 3>> triangles) {
   glBindVertexArray(array_);
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_);
   glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(triangles.size_bytes()), triangles.data(),
                GL_STATIC_DRAW);
   count_ = static_cast<GLsizei>(3 * triangles.size());
 }
+void GlMesh::set_fewer_triangles(std::span<const std::array<std::uint32_t, 3>> triangles) {
+  glBindVertexArray(array_);
+  if (fewer_ == 0) glGenBuffers(1, &fewer_);
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, fewer_);
+  glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(triangles.size_bytes()), triangles.data(),
+               GL_STATIC_DRAW);
+  fewer_count_ = static_cast<GLsizei>(3 * triangles.size());
+}
 void GlMesh::set_vertices(std::span<const DrawnVertex> vertices) {
   glBindBuffer(GL_ARRAY_BUFFER, vertices_);
   const auto bytes = static_cast<GLsizeiptr>(vertices.size_bytes());
-  if (bytes_ == vertices.size_bytes()) return glBufferSubData(GL_ARRAY_BUFFER, 0, bytes, vertices.data());
+  if (bytes_ >= vertices.size_bytes()) return glBufferSubData(GL_ARRAY_BUFFER, 0, bytes, vertices.data());
   glBufferData(GL_ARRAY_BUFFER, bytes, vertices.data(), GL_STREAM_DRAW);
   bytes_ = vertices.size_bytes();
 }
-void GlMesh::draw() const {
+void GlMesh::draw(bool fewer) const {
+  fewer = fewer && fewer_ != 0;
   glBindVertexArray(array_);
-  glDrawElements(GL_TRIANGLES, count_, GL_UNSIGNED_INT, nullptr);
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, fewer ? fewer_ : indices_);
+  glDrawElements(GL_TRIANGLES, fewer ? fewer_count_ : count_, GL_UNSIGNED_INT, nullptr);
+}
+
+GlTable::GlTable(GLenum format) {
+  glGenBuffers(1, &buffer_);
+  glGenTextures(1, &texture_);
+  glBindBuffer(GL_TEXTURE_BUFFER, buffer_);
+  glBindTexture(GL_TEXTURE_BUFFER, texture_);
+  glTexBuffer(GL_TEXTURE_BUFFER, format, buffer_);
+}
+GlTable::~GlTable() {
+  glDeleteTextures(1, &texture_);
+  glDeleteBuffers(1, &buffer_);
+}
+void GlTable::set(const void* data, std::size_t bytes, GLenum use) {
+  glBindBuffer(GL_TEXTURE_BUFFER, buffer_);
+  glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(bytes), data, use);
+}
+void GlTable::look_up(const GlProgram& program, const char* name, int unit) const {
+  program.set(name, unit);
+  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+  glBindTexture(GL_TEXTURE_BUFFER, texture_);
+  glActiveTexture(GL_TEXTURE0);
+}
+
+void keep_vertices(GLuint array, std::size_t count, std::initializer_list<GLuint> buffers) {
+  GLuint place = 0;
+  for (const GLuint buffer : buffers) glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, place++, buffer);
+  glBindVertexArray(array);
+  glEnable(GL_RASTERIZER_DISCARD);
+  glBeginTransformFeedback(GL_POINTS);
+  glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(count));
+  glEndTransformFeedback();
+  glDisable(GL_RASTERIZER_DISCARD);
+  while (place > 0) glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, --place, 0);
 }
 
 GlMesh gl_mesh(const RenderMesh& mesh) {

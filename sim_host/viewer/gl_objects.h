@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <initializer_list>
 #include <span>
 #include <string>
 #include <vector>
@@ -20,6 +21,8 @@ class GlProgram {
  public:
   // Throws std::runtime_error with the compiler's text.
   GlProgram(const char* vertex_source, const char* fragment_source);
+  // A vertex shader alone, whose outputs `kept` go into buffers: all into one, or one into each.
+  GlProgram(const char* vertex_source, std::span<const char* const> kept, bool into_one);
   ~GlProgram();
   GlProgram(const GlProgram&) = delete;
   GlProgram& operator=(const GlProgram&) = delete;
@@ -33,6 +36,7 @@ class GlProgram {
 
  private:
   GLint place(const char* name) const;
+  void link() const;
   GLuint program_ = 0;
 };
 
@@ -45,15 +49,39 @@ class GlMesh {
   GlMesh(const GlMesh&) = delete;
   GlMesh& operator=(const GlMesh&) = delete;
   void set_triangles(std::span<const std::array<std::uint32_t, 3>> triangles);
+  // Fewer triangles of the same vertices, for draw(true).
+  void set_fewer_triangles(std::span<const std::array<std::uint32_t, 3>> triangles);
+  // The first of them alone, where there are more already.
   void set_vertices(std::span<const DrawnVertex> vertices);
-  void draw() const;
+  void draw(bool fewer = false) const;
+  GLuint vertices() const { return vertices_; }
 
  private:
-  GLuint array_ = 0, vertices_ = 0, indices_ = 0;
-  GLsizei count_ = 0;
+  GLuint array_ = 0, vertices_ = 0, indices_ = 0, fewer_ = 0;
+  GLsizei count_ = 0, fewer_count_ = 0;
   std::size_t bytes_ = 0;
 };
 GlMesh gl_mesh(const RenderMesh& mesh);
+
+// Numbers that a shader looks up by index, or that one keeps for another.
+class GlTable {
+ public:
+  // `format`: of a texel, GL_RGBA32F and such.
+  explicit GlTable(GLenum format);
+  ~GlTable();
+  GlTable(const GlTable&) = delete;
+  GlTable& operator=(const GlTable&) = delete;
+  // Null `data`: room for it.
+  void set(const void* data, std::size_t bytes, GLenum use);
+  void look_up(const GlProgram& program, const char* name, int unit) const;
+  GLuint buffer() const { return buffer_; }
+
+ private:
+  GLuint buffer_ = 0, texture_ = 0;
+};
+
+// Runs the vertex shader in use for `count` vertices of `array`, and keeps what it says in the buffers.
+void keep_vertices(GLuint array, std::size_t count, std::initializer_list<GLuint> buffers);
 
 // Colour and depth; with samples > 1 it must be resolved into one without before it can be read.
 class GlFramebuffer {

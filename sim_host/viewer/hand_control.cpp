@@ -11,10 +11,8 @@
 
 #include "rt_core/tool/articulate.h"
 #include "sim_host/run/joint_script.h"
+#include "sim_host/viewer/keyboard.h"
 #include "sim_host/viewer/panels.h"
-
-#define GLFW_INCLUDE_NONE
-#include <GLFW/glfw3.h>
 
 namespace palpate {
 
@@ -37,7 +35,7 @@ std::string short_name(const Model& model, std::size_t joint) {
 std::vector<std::int32_t> held(std::span<const int> keys) {
   std::vector<std::int32_t> which;
   for (std::size_t i = 0; i < keys.size(); ++i)
-    if (ImGui::IsKeyDown(keys[i])) which.push_back(static_cast<std::int32_t>(i));
+    if (key_down(keys[i])) which.push_back(static_cast<std::int32_t>(i));
   return which;
 }
 
@@ -48,7 +46,7 @@ void HandControl::keys(const Model& model, const State& state, Steering& steerin
   if (!is_articulated(model)) return;
   std::vector<std::int32_t> fingers = has_fingers(model) ? held(kFingerKeys) : std::vector<std::int32_t>{};
   if (!fingers.empty()) finger_ = fingers.back();
-  const double way = (ImGui::IsKeyDown(GLFW_KEY_C) ? 1 : 0) - (ImGui::IsKeyDown(GLFW_KEY_O) ? 1 : 0);
+  const double way = (key_down(GLFW_KEY_C) ? 1 : 0) - (key_down(GLFW_KEY_O) ? 1 : 0);
   if (way == 0) return;
   const double share = way * kRate_per_s * std::min(elapsed_s, kMostAtOnce_s);
   const std::vector<std::int32_t> letters = held(kJointKeys);

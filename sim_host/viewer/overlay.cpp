@@ -99,11 +99,13 @@ class Overlay {
   void force_numbers() {
     // Of a whole hand only what counts: the rest are arrows alone.
     constexpr double kWorthANumber = 0.2;
+    constexpr double kLeastNumber_N = 0.005;  // less is written 0.00
     const std::vector<DrawnForce> forces = drawn_forces(*scene_.state);
     for (const DrawnForce& force : forces) {
       const double least_N = kWorthANumber * norm(forces.front().force_N);
-      if (norm(force.force_N) >= least_N) label_arrow(force.tail_w, force.force_N, theme::kForce);
-      if (forces.size() <= 3 && norm(force.friction_N) > 0.04 * norm(force.force_N))
+      if (norm(force.force_N) >= std::max(least_N, kLeastNumber_N))
+        label_arrow(force.tail_w, force.force_N, theme::kForce);
+      if (forces.size() <= 3 && norm(force.friction_N) > std::max(0.04 * norm(force.force_N), kLeastNumber_N))
         label_arrow(force.tail_w, force.friction_N, theme::kFriction);
     }
   }

@@ -95,23 +95,48 @@ std::string slider_name(std::string name) {
   return name;
 }
 
+// How high plots are: all as high as asked where the panel has room for everything, lower where it has not; below half
+// of that, what mouse and keys do is not written out.
+class PlotHeight {
+ public:
+  float of(float lines) {
+    const float height = share_ * lines * ImGui::GetTextLineHeight();
+    used_ += height;
+    return height;
+  }
+  bool hint_fits() const { return hint_fits_; }
+  // At the end of a panel `high` pixels high: for its next picture.
+  void settle(float high) {
+    const float left = high - ImGui::GetCursorPosY() - ImGui::GetStyle().WindowPadding.y;
+    if (used_ > 0) {
+      if (left < 0 && share_ <= kLeast) hint_fits_ = false;
+      if (left > 0.5f * high) hint_fits_ = true;
+      share_ = std::clamp(share_ * (used_ + left) / used_, kLeast, 1.0f);
+    }
+    used_ = 0;
+  }
+
+ private:
+  static constexpr float kLeast = 0.5f;
+  float share_ = 0.8f, used_ = 0;
+  bool hint_fits_ = true;
+};
+PlotHeight plot_height;
+
 void plots(const PanelScene& scene, double now_s) {
   double from_s = 0, until_s = 1;
   time_span(scene, now_s, from_s, until_s);
   const auto columns = static_cast<std::size_t>(std::max(50.0f, ImGui::GetContentRegionAvail().x));
   const TrackColumns data = scene.track->columns(from_s, until_s, columns);
-  const float line = ImGui::GetTextLineHeight();
   // They cover one another when all is well: what is felt lies below, broad.
   const PlotLine force[] = {{"felt", theme::kFelt, data.felt_N, 4.0f, 0.55f},
                             {"on the tool", theme::kForce, data.contact_N}};
-  // A hand's sliders need the room.
-  const float share = is_articulated(*scene.model) && scene.can_steer ? 0.6f : 0.8f;
-  history_plot("Force", "N", force, from_s, until_s, now_s, 11 * share * line);
+  history_plot("Force", "N", force, from_s, until_s, now_s, plot_height.of(10));
   const PlotLine depth[] = {{"deepest", theme::kDepth, data.depth_mm}};
-  history_plot("Depth", "mm", depth, from_s, until_s, now_s, 9 * share * line);
+  history_plot("Depth", "mm", depth, from_s, until_s, now_s, plot_height.of(8));
   const PlotLine energy[] = {{"given by the hand", theme::kFelt, data.given_mJ},
                              {"stored", theme::kForce, data.stored_mJ}};
-  history_plot("Energy", "mJ", energy, from_s, until_s, now_s, 9 * share * line);
+  history_plot("Energy", "mJ", energy, from_s, until_s, now_s, plot_height.of(8));
 }
 
 // The whole tick and its dearest stages; nothing in virtual time.
@@ -126,10 +151,11 @@ void stage_plot(const PanelScene& scene, const TrackTiming& timing, double now_s
   std::iota(stage.begin(), stage.end(), 0u);
   std::ranges::sort(stage, std::greater{}, [&](std::size_t i) { return percentile_ns(timing.stage[i], 0.5); });
   std::vector<PlotLine> lines;
-  for (std::size_t k = kShown; k-- > 0;)  // the dearest last, beside the whole
+  // The whole lies below its parts; they are seen in front of it, the dearest in front.
+  lines.push_back({"tick", theme::kInk, data.compute_us, 1.4f, 0.35f});
+  for (std::size_t k = kShown; k-- > 0;)
     lines.push_back({stage_name(static_cast<Stage>(stage[k])), kColours[k], data.stage_us[stage[k]], 1.4f});
-  lines.push_back({"tick", theme::kInk, data.compute_us, 1.4f});
-  history_plot("Stages", "us", lines, from_s, until_s, now_s, 8 * ImGui::GetTextLineHeight());
+  history_plot("Stages", "us", lines, from_s, until_s, now_s, plot_height.of(8));
 }
 
 // What the tick says in numbers.
@@ -176,8 +202,10 @@ void stage_table(const TrackTiming& timing, const TrackTick& tick) {
     cell(theme::kInk, us(static_cast<double>(percentile_ns(histogram, 0.999))), true);
     cell(theme::kInk, us(static_cast<double>(histogram.max_ns)), true);
   };
+  constexpr std::int64_t kWorthARow_ns = 1000;  // ever
   for (std::int32_t i = 0; i < kStageCount; ++i)
-    if (timing.stage[i].max_ns > 0) row(stage_name(static_cast<Stage>(i)), tick.stage_ns[i], timing.stage[i]);
+    if (timing.stage[i].max_ns >= kWorthARow_ns)
+      row(stage_name(static_cast<Stage>(i)), tick.stage_ns[i], timing.stage[i]);
   row("whole tick", tick.compute_ns, timing.compute);
   ImGui::EndTable();
 }
@@ -189,7 +217,7 @@ void times(const PanelScene& scene, const TrackTick& tick, double now_s) {
     return;
   }
   duration_plot("Time of a tick (us; 99.9 %, maximum, period)", timing.compute, scene.track->period_s(),
-                7.5f * ImGui::GetTextLineHeight());
+                plot_height.of(7.5f));
   stage_plot(scene, timing, now_s);
   stage_table(timing, tick);
 }
@@ -265,13 +293,15 @@ void side_panel(ImVec2 low, ImVec2 size, const PanelScene& scene, ViewLayers& la
   ImGui::Separator();
   switches(layers, wish);
   ImGui::Separator();
-  wrapped(theme::kGrey,
-          scene.can_steer
-              ? "Drag the tool to feel: it is the device. Wheel while dragging: nearer, farther. "
-                "C, O: close, open fingers. L: scenes, tools and materials to go over to. K: colours. P: picture. "
-                "Drag elsewhere: turn; right button: shift."
-              : "Drag: turn. Right button: shift. Wheel: zoom. K: colours. P: picture. Space: play. Arrows: one tick, "
-                "with Ctrl 100. Tab: this panel.");
+  const char* hint = scene.can_steer
+                         ? "Drag the tool to feel: it is the device. Wheel while dragging: nearer, farther. "
+                           "C, O: close, open fingers. L: other scenes. K: colours. P: picture. Tab: this panel. "
+                           "Drag elsewhere: turn; right button: shift."
+                         : "Drag: turn. Right button: shift. Wheel: zoom. K: colours. P: picture. Space: play. Arrows: "
+                           "one tick, with Ctrl 100. Tab: this panel.";
+  wrapped(theme::kGrey, plot_height.hint_fits() ? hint : "Mouse and keys: rest the mouse here.");
+  if (!plot_height.hint_fits() && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", hint);
+  plot_height.settle(size.y);
   ImGui::End();
 }
 

@@ -50,9 +50,12 @@ float height_of(const Frame& frame, const Values& values, double value) {
 }
 
 void value_axis(const Frame& frame, const Values& values) {
+  float last = 1e9f;  // of the labels, from the foot: where a plot is low, not every line has one
   for (const double value : axis_ticks(values.bottom, values.top, 3)) {
     const float y = height_of(frame, values, value);
     frame.list->AddLine({frame.low.x, y}, {frame.high.x, y}, packed(theme::kLine));
+    if (last - y < frame.text) continue;
+    last = y;
     const std::string label = tick_label(value);
     small_text(frame, {frame.low.x - width_of(frame, label) - 5, y - 0.55f * frame.text}, theme::kGrey, label);
   }

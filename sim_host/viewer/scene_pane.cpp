@@ -13,15 +13,18 @@ namespace palpate {
 
 ScenePane::ScenePane(const ViewerRun& run, std::size_t most_triangles)
     : run_(run),
-      maker_(*run.model, *run.track, copy_of(*run.initial), most_triangles),
-      renderer_(*run.model, maker_.body(), maker_.at_rest()) {}
+      maker_(*run.model, *run.track, copy_of(*run.initial), most_triangles,
+             ShaderSurface::can(*run.model, most_triangles)),
+      renderer_(*run.model, maker_) {}
 
 bool ScenePane::take_frame() {
   const std::shared_ptr<const ViewFrame> frame = maker_.newest();
   if (!frame || frame == shown_) return false;
-  renderer_.show(*frame);
+  const auto start = std::chrono::steady_clock::now();
+  const auto largest = renderer_.show(*frame);
+  shader_ms_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   shown_ = frame;
-  for (std::size_t i = 0; i < largest_.size(); ++i) largest_[i] = std::max(largest_[i], frame->largest[i]);
+  for (std::size_t i = 0; i < largest_.size(); ++i) largest_[i] = std::max(largest_[i], largest[i]);
   ++surfaces_;
   surface_ms_ += frame->made_ms;
   return true;
@@ -41,7 +44,7 @@ void ScenePane::draw(const PaneView& view, ImVec2 size, bool full) {
   ViewLayers layers = view.layers;
   // The outline is drawn anew for each view: not for one that is gone with the next picture.
   if (!full && !(now.eye_m == drawn_.eye_m)) layers.rest_outline = false;
-  renderer_.draw(*shown_, view.camera, layers, view.colours, view.forces, picture_, full ? 4 : 1);
+  renderer_.draw(*shown_, view.camera, layers, view.colours, view.forces, picture_, full ? 4 : 1, !full);
   glFinish();
   const double took_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   if (full && moved) slow_ = took_ms > kSlow_ms;
@@ -89,14 +92,20 @@ std::optional<Vec3> ScenePane::tool_near(ImVec2 mouse, const Projection& view, d
   return hit;
 }
 
-void ScenePane::print_stats() const {
+void ScenePane::print_stats() {
   const auto ms = [](std::int64_t ns) { return 1e-6 * static_cast<double>(ns); };
-  fmt::print("scene   {} drawn, {} triangles: median {:.1f} ms, 99 % {:.1f} ms, longest {:.1f} ms\n", scenes_,
-             maker_.body().triangle.size(), ms(percentile_ns(times_, 0.5)), ms(percentile_ns(times_, 0.99)),
-             ms(times_.max_ns));
-  if (surfaces_ > 0)
-    fmt::print("surface {} evaluated, {:.1f} ms each on average\n", surfaces_,
-               surface_ms_ / static_cast<double>(surfaces_));
+  fmt::print("scene   {} drawn, {} triangles, while it moves {}: median {:.1f} ms, 99 % {:.1f} ms, longest {:.1f} ms\n",
+             scenes_, maker_.body().triangle.size(), renderer_.fewer_triangles(), ms(percentile_ns(times_, 0.5)),
+             ms(percentile_ns(times_, 0.99)), ms(times_.max_ns));
+  if (surfaces_ == 0) return;
+  fmt::print("surface {} evaluated, {:.1f} ms each on average", surfaces_,
+             surface_ms_ / static_cast<double>(surfaces_));
+  const auto off = renderer_.from_reference();
+  if (!off) return fmt::print("\n");
+  fmt::print(" and {:.1f} ms in the vertex shader\n", shader_ms_ / static_cast<double>(surfaces_));
+  for (const auto& [what, apart] : {std::pair{"in full", (*off)[0]}, {"moving", (*off)[1]}})
+    fmt::print("shader  {}: from the reference at most {:.3f} um, normals {:.3f} degrees, pressure {:.3f} %\n", what,
+               1e6 * apart.position_m, apart.normal_rad * 180 / kPi, 100 * apart.pressure);
 }
 
 }  // namespace palpate

@@ -37,7 +37,8 @@ class ScenePane {
   // Takes the newest frame there is; whether it is another one than before.
   bool take_frame();
   // Its scene into a picture of `size`, again only when something changed. Where drawing is slow, in software, one that
-  // moves is drawn at half the size without anti-aliasing, and once more in full when it stands still; `full`: at once.
+  // moves is drawn at half the size without anti-aliasing and with fewer triangles, and once more in full when it
+  // stands still; `full`: at once.
   void draw(const PaneView& view, ImVec2 size, bool full);
   GLuint texture() const { return picture_.texture(); }
   // Scene and numbers of the tick shown, but for title and mouse.
@@ -46,7 +47,7 @@ class ScenePane {
   // too.
   std::optional<Vec3> tool_near(ImVec2 mouse, const Projection& view, double reach) const;
 
-  void print_stats() const;
+  void print_stats();
 
  private:
   std::optional<Vec3> tool_under(double x, double y, const Projection& view) const;
@@ -70,7 +71,7 @@ class ScenePane {
   bool drawn_fully_ = false, slow_ = false;
   Histogram times_;
   std::uint64_t scenes_ = 0, surfaces_ = 0;
-  double surface_ms_ = 0;
+  double surface_ms_ = 0, shader_ms_ = 0;
 };
 
 }  // namespace palpate

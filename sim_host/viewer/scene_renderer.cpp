@@ -15,6 +15,8 @@ namespace palpate {
 namespace {
 
 constexpr int kShadowPixels = 256;
+// A body of more triangles than this is drawn with fewer while it moves.
+constexpr std::size_t kMovingTriangles = 20'000;
 constexpr double kShadowReach = 1.3;  // half the shadow's side, in extents of the body
 
 constexpr Matrix4 kUnmoved{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
@@ -91,10 +93,31 @@ GlMesh unit_head() {
   return gl_mesh(revolved_mesh({}, profile, 0));
 }
 
+// Smooth all over, and so round at its rim, too; as it came while it moves.
+GlMesh rounded_mesh(RenderMesh mesh) {
+  std::vector<std::array<Vec3, 3>> corner;
+  for (const auto& [a, b, c] : mesh.triangle)
+    corner.push_back({mesh.normal[static_cast<std::size_t>(a)], mesh.normal[static_cast<std::size_t>(b)],
+                      mesh.normal[static_cast<std::size_t>(c)]});
+  std::vector<std::pair<std::int32_t, std::int32_t>> parents;
+  std::vector<std::array<std::uint32_t, 3>> fewer;
+  for (const auto& [a, b, c] : mesh.triangle)
+    fewer.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b), static_cast<std::uint32_t>(c)});
+  refine(mesh.position_m, mesh.triangle, corner, parents);
+  for (const auto& [a, b] : parents) {
+    const Vec3 n = mesh.normal[static_cast<std::size_t>(a)];
+    mesh.normal.push_back(unit_or(n + mesh.normal[static_cast<std::size_t>(b)], n));
+  }
+  GlMesh result = gl_mesh(mesh);
+  result.set_fewer_triangles(fewer);
+  return result;
+}
+
 }  // namespace
 
-SceneRenderer::SceneRenderer(const Model& model, const DrawnBody& body, std::span<const DrawnVertex> rest)
+SceneRenderer::SceneRenderer(const Model& model, const FrameMaker& maker)
     : model_(model),
+      maker_(maker),
       is_hand_(model.params.articulation == Articulation::kHand),
       size_m_(model.params.surface_size_m),
       body_program_(shaders::kMesh, shaders::kBody),
@@ -109,13 +132,25 @@ SceneRenderer::SceneRenderer(const Model& model, const DrawnBody& body, std::spa
       head_(unit_head()),
       beam_(unit_beam()),
       colours_(colour_texture()) {
-  body_.set_triangles(body.triangle);
-  rest_.set_triangles(body.triangle);
-  body_.set_vertices(rest);
-  rest_.set_vertices(rest);
+  std::vector<std::array<std::uint32_t, 3>> triangle = maker.body().triangle;
+  for (GlMesh* mesh : {&body_, &rest_}) {
+    mesh->set_triangles(triangle);
+    mesh->set_vertices(maker.at_rest());
+  }
+  int halvings = 0;
+  for (; halvings < maker.refined().halvings() && triangle.size() > kMovingTriangles; ++halvings)
+    triangle = coarser(triangle);
+  fewer_triangles_ = triangle.size();
+  if (halvings > 0) {
+    for (const auto& t : triangle)
+      fewer_vertices_ = std::max<std::size_t>(fewer_vertices_, *std::ranges::max_element(t) + 1);
+    body_.set_fewer_triangles(triangle);
+    rest_.set_fewer_triangles(triangle);
+  }
+  if (maker.in_shader()) shader_.emplace(model, maker.refined(), maker.body(), halvings);
   for (const ToolPiece& piece : model.piece)
-    pieces_.push_back(
-        gl_mesh(is_hand_ ? hand_render_mesh(piece, {}, is_left_hand(model)) : piece_mesh(model, piece, {})));
+    pieces_.push_back(is_hand_ ? rounded_mesh(hand_render_mesh(piece, {}, is_left_hand(model)))
+                               : gl_mesh(piece_mesh(model, piece, {})));
   floor_y_m_ = 1e30;
   Vec3 low{1e30, 1e30, 1e30}, high = -low;
   for (const Vec3 v : model.vertex_m) {
@@ -127,9 +162,40 @@ SceneRenderer::SceneRenderer(const Model& model, const DrawnBody& body, std::spa
   grid_m_ = round_below(0.25 * size_m_);
 }
 
-void SceneRenderer::show(const ViewFrame& frame) {
-  body_.set_vertices(frame.vertex);
-  shadow_of_ = nullptr;
+std::array<double, kSurfaceColours> SceneRenderer::show(const ViewFrame& frame) {
+  frame_ = &frame;
+  brought_ = brought_fewer_ = shadowed_ = false;
+  std::array<double, kSurfaceColours> largest = frame.largest;
+  if (!shader_) return largest;
+  bring_surface(true);
+  const auto [displacement_m, pressure_Pa] = shader_->largest();
+  largest[static_cast<std::size_t>(SurfaceColour::kDisplacement)] = displacement_m;
+  largest[static_cast<std::size_t>(SurfaceColour::kPressure)] = pressure_Pa;
+  return largest;
+}
+
+// Only what is drawn: of a million triangles that move, the coarser mesh.
+void SceneRenderer::bring_surface(bool fewer) {
+  fewer = fewer && fewer_vertices_ > 0;
+  if (brought_ || (fewer && brought_fewer_)) return;
+  if (shader_)
+    shader_->evaluate(*frame_->elastic, body_, fewer);
+  else
+    body_.set_vertices(std::span(frame_->vertex).first(fewer ? fewer_vertices_ : frame_->vertex.size()));
+  (fewer ? brought_fewer_ : brought_) = true;
+}
+
+std::optional<std::array<SurfaceDifference, 2>> SceneRenderer::from_reference() {
+  if (!shader_ || frame_ == nullptr) return {};
+  const std::vector<DrawnVertex> reference = drawn_vertices(maker_.body(), maker_.refined().shape(*frame_->state));
+  std::array<SurfaceDifference, 2> apart;
+  for (const bool fewer : {true, false}) {
+    const std::size_t count = fewer && fewer_vertices_ > 0 ? fewer_vertices_ : reference.size();
+    shader_->evaluate(*frame_->elastic, body_, fewer);
+    apart[fewer ? 1 : 0] = difference(shader_->read_back(body_, count), std::span(reference).first(count));
+  }
+  brought_ = true;
+  return apart;
 }
 
 void SceneRenderer::set_view(const GlProgram& program) const {
@@ -148,13 +214,13 @@ void SceneRenderer::draw_solid(const GlMesh& mesh, const Matrix4& place, const L
   solid_program_.set("gloss", look.gloss);
   solid_program_.set("rim", look.rim);
   solid_program_.set("plain", look.plain);
-  mesh.draw();
+  mesh.draw(fewer_);
 }
 
 // A view of body and tool from straight above, softened.
 void SceneRenderer::draw_shadow(const ViewFrame& frame) {
-  if (shadow_of_ == frame.vertex.data()) return;
-  shadow_of_ = frame.vertex.data();
+  if (shadowed_) return;
+  shadowed_ = true;
   shadow_.resize(kShadowPixels, kShadowPixels, 1, GL_R8);
   shadow_.bind();
   glClearColor(0, 0, 0, 0);
@@ -167,10 +233,10 @@ void SceneRenderer::draw_shadow(const ViewFrame& frame) {
   const Matrix4 above{1 / half, 0, 0, 0, 0, 0, 0, 0, 0, 1 / half, 0, 0, -x / half, -z / half, 0, 1};
   cover_program_.set("projection", above);
   cover_program_.set("place", kUnmoved);
-  body_.draw();
+  body_.draw(true);
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
     cover_program_.set("place", matrix_of(carrier_w(model_, *frame.state, static_cast<std::int32_t>(i))));
-    pieces_[i].draw();
+    pieces_[i].draw(true);
   }
   glBindTexture(GL_TEXTURE_2D, shadow_.texture());
   glGenerateMipmap(GL_TEXTURE_2D);
@@ -214,7 +280,7 @@ void SceneRenderer::draw_body(const ColourScale& colours) {
   body_program_.set("ticks", static_cast<int>(ticks.size()));
   body_program_.set("colours", 0);
   glBindTexture(GL_TEXTURE_2D, colours_);
-  body_.draw();
+  body_.draw(fewer_);
 }
 
 void SceneRenderer::draw_piece(const ViewFrame& frame, std::size_t piece, const Pose& tool_w, const Look& look) {
@@ -352,7 +418,7 @@ void SceneRenderer::make_outline(int samples) {
   cover_program_.use();
   cover_program_.set("projection", projection_);
   cover_program_.set("place", kUnmoved);
-  rest_.draw();
+  rest_.draw(fewer_);
   mask_samples_.resolve_into(mask_);
   outline_.bind();
   outline_program_.use();
@@ -376,7 +442,10 @@ void SceneRenderer::draw_outline(const GlFramebuffer& target, int samples) {
 }
 
 void SceneRenderer::draw(const ViewFrame& frame, const OrbitCamera& camera, const ViewLayers& layers,
-                         const ColourScale& colours, const ForceScale& forces, GlFramebuffer& target, int samples) {
+                         const ColourScale& colours, const ForceScale& forces, GlFramebuffer& target, int samples,
+                         bool fewer) {
+  fewer_ = fewer;
+  bring_surface(fewer);
   width_ = target.width();
   height_ = target.height();
   camera_ = camera.camera();

@@ -1,11 +1,13 @@
 // Draws body, tool, forces and floor of one tick with OpenGL. Numbers and labels are drawn over it by overlay.h.
 #pragma once
 
-#include <memory>
+#include <array>
+#include <optional>
 #include <vector>
 
 #include "sim_host/view/view_scales.h"
 #include "sim_host/viewer/gl_objects.h"
+#include "sim_host/viewer/shader_surface.h"
 
 namespace palpate {
 
@@ -19,13 +21,17 @@ struct ViewLayers {
 
 class SceneRenderer {
  public:
-  // A context must be current. `body` at rest as `rest` has it.
-  SceneRenderer(const Model& model, const DrawnBody& body, std::span<const DrawnVertex> rest);
-  // Uploads the deformed surface.
-  void show(const ViewFrame& frame);
-  // Into `target`, which is resized; `samples` per pixel.
+  // A context must be current; `maker` must outlive this.
+  SceneRenderer(const Model& model, const FrameMaker& maker);
+  // Takes the deformed surface; the frame must live until the next one. Returns the largest value of each colour.
+  std::array<double, kSurfaceColours> show(const ViewFrame& frame);
+  // Into `target`, which is resized; `samples` per pixel. `fewer`: a body of very many triangles is drawn coarser.
   void draw(const ViewFrame& frame, const OrbitCamera& camera, const ViewLayers& layers, const ColourScale& colours,
-            const ForceScale& forces, GlFramebuffer& target, int samples);
+            const ForceScale& forces, GlFramebuffer& target, int samples, bool fewer);
+  std::size_t fewer_triangles() const { return fewer_triangles_; }
+  // How far the vertex shader's surface of the frame shown is from the reference, in full and as it is while it moves;
+  // none where it is not evaluated there.
+  std::optional<std::array<SurfaceDifference, 2>> from_reference();
   double floor_y_m() const { return floor_y_m_; }
   double size_m() const { return size_m_; }
   double grid_m() const { return grid_m_; }
@@ -36,6 +42,7 @@ class SceneRenderer {
     float opacity, gloss, rim;
     float plain = 0;
   };
+  void bring_surface(bool fewer);
   void set_view(const GlProgram& program) const;
   void draw_background(const ViewFrame& frame, bool floor);
   void draw_shadow(const ViewFrame& frame);
@@ -54,16 +61,21 @@ class SceneRenderer {
   void draw_outline(const GlFramebuffer& target, int samples);
 
   const Model& model_;
+  const FrameMaker& maker_;
   bool is_hand_;
   double size_m_, floor_y_m_ = 0, grid_m_ = 0.01;
   Vec3 centre_m_;
   GlProgram body_program_, solid_program_, cover_program_, background_program_, blur_program_, outline_program_,
       lay_program_;
+  std::optional<ShaderSurface> shader_;  // of an elastic body
+  const ViewFrame* frame_ = nullptr;     // shown
+  bool brought_ = false, brought_fewer_ = false, fewer_ = false;
+  std::size_t fewer_triangles_ = 0, fewer_vertices_ = 0;
   GlMesh body_, rest_, ball_, shaft_, head_, beam_;
   std::vector<GlMesh> pieces_;  // tool frame, joints at zero
   GLuint colours_ = 0;
   GlFramebuffer scene_, mask_samples_, mask_, outline_, shadow_, soft_shadow_;
-  const DrawnVertex* shadow_of_ = nullptr;
+  bool shadowed_ = false;  // shadow_ is of frame_
   bool outlined_ = false;  // outline_ is of outlined_camera_
   Camera outlined_camera_;
   int outlined_samples_ = 0;

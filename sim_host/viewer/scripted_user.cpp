@@ -8,9 +8,7 @@
 #include "rt_core/tool/articulate.h"
 #include "sim_host/run/joint_script.h"
 #include "sim_host/viewer/hand_control.h"
-
-#define GLFW_INCLUDE_NONE
-#include <GLFW/glfw3.h>
+#include "sim_host/viewer/keyboard.h"
 
 namespace palpate {
 
@@ -150,9 +148,9 @@ void ScriptedUser::act(ImGuiIO& io, const UserView& view, double elapsed_s) {
   if (step().kind == Kind::kDrag) drag(io, view);
   io.MousePos = mouse_;
   io.MouseDown[0] = down_;
-  for (const int key : held_) io.KeysDown[key] = true;
+  for (const int key : held_) hold_key(io, key, true);
   if (is_over(view) && !picture_) {
-    for (const int key : held_) io.KeysDown[key] = false;
+    for (const int key : held_) hold_key(io, key, false);
     held_.clear();
     ++next_;
     begun_ = false;

@@ -10,7 +10,8 @@ layout(location = 1) in vec3 normal;
 layout(location = 2) in vec2 value;  // displacement, pressure
 uniform mat4 projection, place;
 uniform float pressed;  // 1: the pressure is shown
-out vec3 at_w, normal_w;
+// Where a triangle covers a pixel in part, within that part: beyond its edge a normal at a rim is none.
+centroid out vec3 at_w, normal_w;
 out float shown;
 void main() {
   vec4 world = place * vec4(position, 1.0);
@@ -32,7 +33,7 @@ void main() {
   "}\n"
 
 inline constexpr char kBody[] = "#version 330 core\n" PALPATE_LIGHT R"(
-in vec3 at_w, normal_w;
+centroid in vec3 at_w, normal_w;
 in float shown;
 uniform sampler2D colours;
 uniform float top, tick[12];
@@ -51,7 +52,7 @@ void main() {
 })";
 
 inline constexpr char kSolid[] = "#version 330 core\n" PALPATE_LIGHT R"(
-in vec3 at_w, normal_w;
+centroid in vec3 at_w, normal_w;
 in float shown;
 uniform vec4 paint;      // colour and opacity
 uniform float gloss, rim, plain;  // rim: opacity added where seen edge-on, like glass; plain: share without shading
@@ -137,7 +138,13 @@ void main() {
       low = min(low, m);
       high = max(high, m);
     }
-  float dash = mod(gl_FragCoord.x + gl_FragCoord.y, 14.0 * thick) < 8.0 * thick ? 1.0 : 0.0;
+  // Dashes along the edge: counted across where it runs across, and upward where it runs upward.
+  vec2 slope = vec2(0.0);
+  for (int i = -3; i <= 3; ++i)
+    for (int j = -3; j <= 3; ++j)
+      slope += vec2(i, j) * texelFetch(mask, clamp(at + ivec2(i, j), ivec2(0), textureSize(mask, 0) - 1), 0).r;
+  float along = abs(slope.x) > abs(slope.y) ? gl_FragCoord.y : gl_FragCoord.x;
+  float dash = mod(along, 10.0 * thick) < 6.0 * thick ? 1.0 : 0.0;
   colour = vec4(dash * (high - low));
 })";
 

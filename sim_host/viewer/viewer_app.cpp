@@ -13,15 +13,13 @@
 #include "sim_host/view/picture.h"
 #include "sim_host/view/png_file.h"
 #include "sim_host/viewer/comparison_panel.h"
+#include "sim_host/viewer/keyboard.h"
 #include "sim_host/viewer/panels.h"
 #include "sim_host/viewer/plots.h"
 #include "sim_host/viewer/scene_list.h"
 #include "sim_host/viewer/scripted_user.h"
 #include "sim_host/viewer/timeline.h"
 #include "sim_host/viewer/view_window.h"
-
-#define GLFW_INCLUDE_NONE
-#include <GLFW/glfw3.h>
 
 namespace palpate {
 
@@ -158,7 +156,7 @@ class Viewer {
     window_.present();
     if (wants_picture_ && first().shown()) save_picture(picture_file_.empty() ? free_name() : picture_file_);
     if (!picture_file_.empty()) user_.picture_taken();
-    wants_picture_ = ImGui::IsKeyPressed(GLFW_KEY_P, false);  // the next one, drawn in full
+    wants_picture_ = key_pressed(GLFW_KEY_P, false);  // the next one, drawn in full
     picture_file_.clear();
     if (user_.picture() && stands_still()) {
       wants_picture_ = true;
@@ -310,12 +308,12 @@ class Viewer {
 
   void keys(CameraWish& wish) {
     const ImGuiIO& io = ImGui::GetIO();
-    if (ImGui::IsKeyPressed(GLFW_KEY_TAB, false)) panel_ = !panel_;
-    if (ImGui::IsKeyPressed(GLFW_KEY_SPACE, false) && !player_.live) player_.toggle(first_s(), last_s());
-    if (ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false) || ImGui::IsKeyPressed(GLFW_KEY_Q, false)) window_.close();
+    if (key_pressed(GLFW_KEY_TAB, false)) panel_ = !panel_;
+    if (key_pressed(GLFW_KEY_SPACE, false) && !player_.live) player_.toggle(first_s(), last_s());
+    if (key_pressed(GLFW_KEY_ESCAPE, false) || key_pressed(GLFW_KEY_Q, false)) window_.close();
     const double ticks = io.KeyCtrl ? 100 : 1;
     for (const auto& [key, way] : {std::pair{GLFW_KEY_LEFT, -1.0}, {GLFW_KEY_RIGHT, 1.0}}) {
-      if (!ImGui::IsKeyPressed(key)) continue;
+      if (!key_pressed(key)) continue;
       player_.live = player_.playing = false;
       player_.seek(player_.time_s() + way * ticks * track().period_s(), first_s(), last_s());
     }
@@ -323,9 +321,9 @@ class Viewer {
         {GLFW_KEY_1, StandardView::kOblique}, {GLFW_KEY_2, StandardView::kFront}, {GLFW_KEY_3, StandardView::kRight},
         {GLFW_KEY_4, StandardView::kTop},     {GLFW_KEY_5, StandardView::kLeft},  {GLFW_KEY_6, StandardView::kBack}};
     for (const auto& [key, view] : kViews)
-      if (ImGui::IsKeyPressed(key, false)) wish = {true, view};
-    if (list_ && ImGui::IsKeyPressed(GLFW_KEY_L, false)) list_->toggle();
-    if (ImGui::IsKeyPressed(GLFW_KEY_K, false))  // the next one
+      if (key_pressed(key, false)) wish = {true, view};
+    if (list_ && key_pressed(GLFW_KEY_L, false)) list_->toggle();
+    if (key_pressed(GLFW_KEY_K, false))  // the next one
       layers_.colour = static_cast<SurfaceColour>((static_cast<int>(layers_.colour) + 1) % kSurfaceColours);
     if (run_steers() && first().shown())
       hand_control_.keys(first().model(), *first().shown()->state, *first().run().steering,
@@ -352,14 +350,14 @@ class Viewer {
     // The colours of the whole run are not known; those of the tick stand on their own.
     for (const auto& pane : panes_)
       if (!pane->take_frame()) throw std::runtime_error("there is no tick to show");
-    for (int i = 0; i < 4; ++i) {  // panels take their places in the first ones
+    for (int i = 0; i < 7; ++i) {  // panels take their places in the first ones
       window_.poll();
       draw(0);
     }
     save_picture(options_.screenshot);
   }
 
-  void print_stats() const {
+  void print_stats() {
     const auto ms = [](std::int64_t ns) { return 1e-6 * static_cast<double>(ns); };
     fmt::print("drawn   {} frames of {} x {}: median {:.1f} ms, 99 % {:.1f} ms, longest {:.1f} ms\n", frames_,
                window_.width(), window_.height(), ms(percentile_ns(frame_times_, 0.5)),

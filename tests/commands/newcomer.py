@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """A newcomer: an installed Palpate, a surface of their own in an STL file, and the commands of docs/tutorial.md as they
-stand there, each once, in their order; at most ten, to a live run of that body on a device that is no part of Palpate. What
-is checked is that they work and that force was felt, never time: on a machine that stands still a real-time run may end
-with a fault. Usage: newcomer.py CMAKE BUILD_DIR ROOT"""
+stand there, in their order; at most ten, to a live run of that body on a device that is no part of Palpate. What is checked
+is that they work, that the runs ended without a fault and that force was felt, never time. A machine that stands still
+brings faults into real time: what asks for that may be typed five times. Usage: newcomer.py CMAKE BUILD_DIR ROOT"""
 import importlib.util
 import json
 import os
@@ -17,6 +17,7 @@ sys.dont_write_bytecode = True
 cmake, build, root = sys.argv[1], os.path.abspath(sys.argv[2]), os.path.abspath(sys.argv[3])
 MOST_COMMANDS = 10
 MACHINE_DID = (1, 5)  # a verdict or a fault, which a busy machine can bring about where real time is asked for
+TRIES = 5
 REAL_TIME = ("palpate device-test", "palpate run organ.pal --device")
 
 
@@ -57,6 +58,31 @@ def run(command, folder, environment):
         return shell.returncode, output
 
 
+def felt(recording, prefix, work, environment):
+    shown = subprocess.run([f"{prefix}/bin/palpate", "latency", "--recording", recording, "--json"], cwd=work,
+                           env=environment, capture_output=True, text=True, check=False)
+    return json.loads(shown.stdout)["run"]
+
+
+def type_in(command, name, prefix, work, environment):
+    """Types it; in real time again, as long as the machine has made a fault of it. What the device-test says of a busy
+    machine's device is a verdict on the machine: it has to be said, not to be good."""
+    real_time = any(text in command for text in REAL_TIME)
+    for attempt in range(TRIES):
+        own = re.sub(r"\bmine\b(?!\.)", f"{name}.{attempt}", command)
+        status, output = run(own, work, environment)
+        print(f"{status}  {command.splitlines()[0]}", flush=True)
+        if status != 0 and not (real_time and status in MACHINE_DID):
+            sys.exit(f"{output}\nexit code {status}")
+        if status == 0 or "--record mine.plr" not in command:
+            return
+        told = felt("mine.plr", prefix, work, environment)
+        if not told["faults"] and told["ticks"] >= 500:
+            return
+        print(f"   faults {told['faults']} after {told['ticks']} ticks")
+    sys.exit(f"{output}\n{TRIES} times the live run ended with a fault")
+
+
 def main():
     typed = commands()
     if not 5 <= len(typed) <= MOST_COMMANDS:
@@ -75,22 +101,15 @@ def main():
         if len(begin) != 3 or not all(os.path.exists(os.path.join(work, scene)) for scene in begin):
             sys.exit(f"what `palpate` alone says to begin with is not there: {said}")
         for command in typed:
-            own = re.sub(r"\bmine\b(?!\.)", name, command)
-            status, output = run(own, work, environment)
-            real_time = any(text in command for text in REAL_TIME)
-            print(f"{status}  {command.splitlines()[0]}", flush=True)
-            if status != 0 and not (real_time and status in MACHINE_DID):
-                sys.exit(f"{output}\nexit code {status}")
+            type_in(command, name, prefix, work, environment)
         for file in ("mended.png", "press.png", "press.svg", "forces.csv", "first_touch.plr", "mine.plr"):
             if not os.path.getsize(os.path.join(work, file)):
                 sys.exit(f"{file} is empty")
-        for recording, simulated in (("first_touch.plr", True), ("mine.plr", False)):
-            shown = subprocess.run([f"{prefix}/bin/palpate", "latency", "--recording", recording, "--json"], cwd=work,
-                                   env=environment, capture_output=True, text=True, check=False)
-            told = json.loads(shown.stdout)["run"]
-            print(f"{recording}: {told['ticks']} ticks, {told['contact_force_max_N']:.2f} N")
+        for recording in ("first_touch.plr", "mine.plr"):
+            told = felt(recording, prefix, work, environment)
+            print(f"{recording}: {told['ticks']} ticks, {told['contact_force_max_N']:.2f} N, faults {told['faults']}")
             # A ball of 8 mm some millimetres into a body of 20 kPa: Hertz says 0.5 N at 3 mm, 1.8 N at 7 mm.
-            if told["ticks"] < 500 or (simulated or not told["faults"]) and not 0.05 < told["contact_force_max_N"] < 10:
+            if told["faults"] or told["ticks"] < 500 or not 0.05 < told["contact_force_max_N"] < 10:
                 sys.exit(f"{recording}: the organ was not felt as such a body feels")
     print(f"newcomer: {len(typed)} commands, no problem")
 

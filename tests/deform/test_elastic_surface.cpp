@@ -40,7 +40,7 @@ TEST(ElasticSurface, MeetsTheTipAndNoPointLiesInside) {
 
 TEST(ElasticSurface, TheContactIsAsWideAsTheLawSays) {
   Pressed pressed;
-  const std::vector<TipDent> dents = tip_dents(pressed.scene.model(), *pressed.bench->state);
+  const std::vector<TipDent> dents = elastic_shape(pressed.scene.model(), *pressed.bench->state).dent;
   ASSERT_EQ(dents.size(), 1u);
   EXPECT_NEAR(dents[0].across_m, std::sqrt(dents[0].depth_m * kBall_m), 1e-4 * kBall_m);
   const DeformedSurface surface = refined_surface(pressed.scene.model(), *pressed.bench->state);

@@ -1,6 +1,10 @@
-// docs/examples/device.c in the controller's virtual time (hal/loop/lockstep.h), started as palpate-device is.
+// docs/examples/device.c, or with LOCKSTEP_OF another's name that one, in the controller's virtual time
+// (hal/loop/lockstep.h), started as palpate-device is.
+#ifndef LOCKSTEP_OF
+#define LOCKSTEP_OF "../../docs/examples/device.c"
+#endif
 #define main example_main
-#include "../../docs/examples/device.c"
+#include LOCKSTEP_OF
 #undef main
 
 #include <stdlib.h>

@@ -159,7 +159,9 @@ TEST_P(DeviceExample, StartsAndEndsAsAReaderStartsIt) {
 
 std::string name_of(const testing::TestParamInfo<Example>& info) { return info.param.name; }
 
-INSTANTIATE_TEST_SUITE_P(C, DeviceExample, testing::Values(Example{"device_c", PALPATE_C_DEVICE, PALPATE_C_LOCKSTEP}),
+INSTANTIATE_TEST_SUITE_P(C, DeviceExample,
+                         testing::Values(Example{"device_c", PALPATE_C_DEVICE, PALPATE_C_LOCKSTEP},
+                                         Example{"device_kit_c", PALPATE_C_KIT, PALPATE_C_KIT_LOCKSTEP}),
                          name_of);
 // The firmware's node has no socket of its own: in lock step alone. With its local model and without.
 TEST(FirmwareNode, KeepsEveryRuleOfTheWireProtocol) {

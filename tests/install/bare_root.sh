@@ -37,6 +37,7 @@ if [ ! -s "$cache/$suite.tar" ]; then
 else
   tar -C "$root" -xf "$cache/$suite.tar"
 fi
+chmod 755 "$root" # mktemp's folder, and so the archive's, is root's alone: the demo's user could not even enter it
 mount -t proc proc "$root/proc"
 mount -t tmpfs -o mode=1777 tmpfs "$root/tmp"
 [ ! -e /etc/resolv.conf ] || cp -L /etc/resolv.conf "$root/etc/resolv.conf"

@@ -1,0 +1,95 @@
+// GLSL 3.30 that evaluates an elastic body's surface (shader_surface.h): the formulas of
+// sim_host/view/elastic_surface.cpp and deformed_surface.cpp.
+#pragma once
+
+namespace palpate::shaders {
+
+// A vertex of the model: displacement by its modes, sum of shape times amplitude.
+inline constexpr char kModes[] = R"(#version 330 core
+uniform samplerBuffer shapes, amplitudes;
+uniform int terms;
+out vec4 displaced;
+void main() {
+  vec3 sum = vec3(0.0);
+  for (int t = 0; t < terms; ++t)
+    sum += texelFetch(amplitudes, t).r * texelFetch(shapes, gl_VertexID * terms + t).xyz;
+  displaced = vec4(sum, 0.0);
+})";
+
+// A point of the refined surface: modes straight between the model's vertices, and every tip's dent (TipDent::at).
+inline constexpr char kPoints[] = R"(#version 330 core
+layout(location = 0) in vec3 rest;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in uvec3 base;
+layout(location = 3) in vec3 share;
+uniform samplerBuffer carried, dent;  // of a dent: foot, depth; inward, across; along, along_m; mean, cut
+uniform int dents;
+uniform float reach;
+out vec4 placed;  // position, length of the displacement
+out float pressure;
+const float pi = 3.14159265358979;
+float profile(float rho) {
+  if (!(rho > 1.0)) return 1.0 - 0.5 * rho * rho;
+  float root = sqrt((rho - 1.0) * (rho + 1.0)), s = 1.0 / (rho * rho);
+  // Beyond, two large numbers are nearly the same: the series in 1 / rho instead, good to 5e-6 of itself.
+  if (rho > 2.0) return (4.0 / 3.0 + s * (2.0 / 15.0 + s * (3.0 / 70.0 + s * (5.0 / 252.0 + s * 0.011048)))) / (pi * rho);
+  return ((2.0 - rho * rho) * atan(1.0, root) + root) / pi;
+}
+float left(float by_cut) { return 1.0 - by_cut / sqrt(by_cut * by_cut + 1.0); }
+void main() {
+  vec3 u = share.x * texelFetch(carried, int(base.x)).xyz + share.y * texelFetch(carried, int(base.y)).xyz +
+           share.z * texelFetch(carried, int(base.z)).xyz;
+  vec3 at = rest + u;
+  pressure = 0.0;
+  for (int i = 0; i < dents; ++i) {
+    vec4 foot = texelFetch(dent, 4 * i), inward = texelFetch(dent, 4 * i + 1), along = texelFetch(dent, 4 * i + 2);
+    float facing = -dot(normal, inward.xyz);
+    if (!(facing > 0.0)) continue;
+    vec3 from = at - foot.xyz;
+    float x = dot(from, along.xyz);
+    float rho = length(vec2(x / along.w, length(from - x * along.xyz) / inward.w));
+    if (!(rho < reach)) continue;
+    vec2 mean_cut = texelFetch(dent, 4 * i + 3).xy;
+    float edge = inward.w * mean_cut.y, ends = left(max(rho, 1.0) * edge) / left(edge);
+    float s = clamp(2.0 * rho / reach - 1.0, 0.0, 1.0), fade = (1.0 - s) * (1.0 - s) * (1.0 + 2.0 * s);
+    u += (foot.w * profile(rho) * ends * fade * min(1.0, 2.0 * facing)) * inward.xyz;
+    if (rho < 1.0) pressure += mean_cut.x * 1.5 * sqrt((1.0 - rho) * (1.0 + rho));
+  }
+  placed = vec4(rest + u, length(u));
+})";
+
+// A drawn vertex: its normal at rest turned as the surface around it turns (RefinedBody::turn_normals). `of`: its
+// point, where its ring of triangles begins, and of how many it is; below zero: the vertex lies on a crease, and turns
+// with the one triangle of its side.
+inline constexpr char kCorners[] = R"(#version 330 core
+layout(location = 0) in vec3 corner;
+layout(location = 1) in vec3 rest;  // normal at rest: of the point, or of the triangle
+layout(location = 2) in ivec3 of;
+uniform samplerBuffer placed, pressures;
+uniform isamplerBuffer ring;
+out vec3 position, normal;
+out float displacement, pressure;
+void main() {
+  vec4 here = texelFetch(placed, of.x);
+  vec3 sum = vec3(0.0), unit = vec3(0.0);
+  for (int i = 0; i < abs(of.z); ++i) {
+    ivec2 two = texelFetch(ring, of.y + i).xy;
+    vec3 a = texelFetch(placed, two.x).xyz - here.xyz, b = texelFetch(placed, two.y).xyz - here.xyz, c = cross(a, b);
+    float area = length(c);
+    unit = area > 0.0 ? c / area : vec3(0.0);
+    sum += atan(area, dot(a, b)) * unit;
+  }
+  if (of.z >= 0) {
+    vec3 now = length(sum) > 0.0 ? normalize(sum) : vec3(0.0, 0.0, 1.0);
+    vec3 turned = corner + now - rest;
+    normal = length(turned) > 0.0 ? normalize(turned) : now;
+  } else {
+    vec3 axis = cross(rest, unit), once = cross(axis, corner);
+    normal = corner + once + cross(axis, once) / max(1.0 + dot(rest, unit), 1e-6);
+  }
+  position = here.xyz;
+  displacement = here.w;
+  pressure = texelFetch(pressures, of.x).r;
+})";
+
+}  // namespace palpate::shaders
