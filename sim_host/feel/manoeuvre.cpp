@@ -108,6 +108,24 @@ void set_lost(PathMaker& hand, FeelSetup& setup) {
   hand.to(kClear_m, 0.3);
 }
 
+// Longer than is bridged: with the shipped device 4 end in the passive mode, 10 and 30 in the ramp. Each is lost half
+// way in, at depth, half way out and along the surface.
+void set_gap(PathMaker& hand, FeelSetup& setup) {
+  for (const std::uint32_t lose : {4u, 10u, 30u}) {
+    const auto gap_after = [&](double seconds) { setup.event.push_back({hand.time_s() + seconds, lose, {}}); };
+    gap_after(0.15);
+    hand.to(-0.006, 0.4);
+    gap_after(0.1);
+    hand.rest(0.4);
+    gap_after(0.1);
+    hand.to(kClear_m, 0.4).to(-0.005, 0.4);
+    gap_after(0.2);
+    hand.aside(0.02, 0.6);
+    gap_after(0.3);
+    hand.aside(0, 0.6).to(kClear_m, 0.3);
+  }
+}
+
 HandPose hand_pose(const PathPoint& point) {
   return {point.time_s, {point.position_m, rotation_by(point.rotation_rad)}, false};
 }
@@ -229,6 +247,9 @@ void set_manoeuvre(Manoeuvre manoeuvre, const TouchPlace& place, FeelSetup& setu
       break;
     case Manoeuvre::kLost:
       set_lost(hand, setup);
+      break;
+    case Manoeuvre::kGap:
+      set_gap(hand, setup);
       break;
     case Manoeuvre::kPath:
       break;

@@ -23,6 +23,7 @@ namespace palpate {
   X(kPush, "push", "through to 60 mm at 0.5 m/s with that hand, and back as fast")                      \
   X(kTeleport, "teleport", "in to 5 mm; the encoder jumps 4 mm in, 4 mm out, 4 mm aside and back")      \
   X(kLost, "lost", "in to 6 mm; 1, 2, 3 and 5 samples are lost")                                        \
+  X(kGap, "gap", "in to 6 mm and out, and along at 5 mm; 4, 10 and 30 samples are lost on the way")     \
   X(kSlow, "slow", "a press with a device that sends 400 samples a second")                             \
   X(kPath, "path", "the scene's own path")
 
