@@ -132,6 +132,20 @@ TEST(FeelLocal, ATapLearntOfLateGivesNothing) {
   }
 }
 
+// What is not mended: a node's slope, a tenth of the largest force in a millisecond, is too slow for 4.3 N/mm at 0.3
+// m/s, and a tap gives the hand 4.4 mJ; two tenths are enough (2026-11-25).
+TEST(FeelLocal, ASlopeThatCannotFollowATapGivesTheHandEnergy) {
+  SceneOverlays overlays;
+  overlays.file = {PALPATE_SOURCE_DIR "/config/devices/sim-6dof-local.toml"};
+  const SceneModel scene(PALPATE_SOURCE_DIR "/config/scenes/tools_on_cylinder.toml", overlays);
+  const TouchPlace place = touch_place_of(scene.model(), *scene.scene());
+  FeelOptions slow, fast;
+  slow.device = {"slope_share_per_ms=0.1"};
+  fast.device = {"slope_share_per_ms=0.2"};
+  EXPECT_GT(run_feel(scene.model(), *scene.scene(), place, Manoeuvre::kTap, slow, nullptr).figures.hand_J, 1e-3);
+  EXPECT_EQ(run_feel(scene.model(), *scene.scene(), place, Manoeuvre::kTap, fast, nullptr).figures.hand_J, 0);
+}
+
 // Devices and hands nobody chose: the same on every machine, inside what is stated, and judged as the grid is.
 TEST(FeelDrawn, IsWhatItsSeedSays) {
   EXPECT_EQ(draw_device(7, 3).text(), draw_device(7, 3).text());
