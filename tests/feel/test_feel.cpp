@@ -43,6 +43,19 @@ TEST_F(FeelScene, TapsAreCountedAndLeaveNothingInTheHand) {
   EXPECT_EQ(tap.hand_J, 0);    // the shipped device swallows what sampling and delay make
 }
 
+// A hand that trembles by 0.1 mm hears the encoder's 30 um through the coupling, 14.6 mN between 50 and 500 Hz;
+// smoothed it is 2.1 (2026-11-25).
+TEST_F(FeelScene, ASmoothedEncoderIsNotHeardInATremor) {
+  Model smooth = compiled_.model();
+  smooth.params.encoder_step_m = scene_.device.encoder_step_m;
+  smooth.params.encoder_step_rad = scene_.device.encoder_step_rad;
+  const TouchPlace place = touch_place_of(smooth, scene_);
+  const FeelFigures tremor = run_feel(smooth, scene_, place, Manoeuvre::kTremor, {}, nullptr).figures;
+  EXPECT_LT(tremor.noise_N, 2.5e-3);
+  EXPECT_EQ(tremor.hand_J, 0);
+  EXPECT_GT(feel(Manoeuvre::kTremor).figures.noise_N, 4 * tremor.noise_N);
+}
+
 // A hand that beats the motors presses the object with what they have: before, with 104 N behind motors of 8.5 N.
 TEST_F(FeelScene, AHandThatWinsWindsNothingUp) {
   for (const Manoeuvre manoeuvre : {Manoeuvre::kOverload, Manoeuvre::kPush}) {
@@ -152,6 +165,20 @@ TEST(FeelLocal, ATapLearntOfLateGivesNothing) {
     EXPECT_LT(tap.step_share, 0.1) << name;
     EXPECT_EQ(tap.alternations, 0) << name;
   }
+}
+
+// What is not mended: a node's slope, a tenth of the largest force in a millisecond, is too slow for 4.3 N/mm at 0.3
+// m/s, and a tap gives the hand 4.4 mJ; two tenths are enough (2026-11-25).
+TEST(FeelLocal, ASlopeThatCannotFollowATapGivesTheHandEnergy) {
+  SceneOverlays overlays;
+  overlays.file = {PALPATE_SOURCE_DIR "/config/devices/sim-6dof-local.toml"};
+  const SceneModel scene(PALPATE_SOURCE_DIR "/config/scenes/tools_on_cylinder.toml", overlays);
+  const TouchPlace place = touch_place_of(scene.model(), *scene.scene());
+  FeelOptions slow, fast;
+  slow.device = {"slope_share_per_ms=0.1"};
+  fast.device = {"slope_share_per_ms=0.2"};
+  EXPECT_GT(run_feel(scene.model(), *scene.scene(), place, Manoeuvre::kTap, slow, nullptr).figures.hand_J, 1e-3);
+  EXPECT_EQ(run_feel(scene.model(), *scene.scene(), place, Manoeuvre::kTap, fast, nullptr).figures.hand_J, 0);
 }
 
 // Devices and hands nobody chose: the same on every machine, inside what is stated, and judged as the grid is.
