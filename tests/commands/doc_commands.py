@@ -90,6 +90,7 @@ def prepare(folder):
     """What the pages' commands name. Elastic bodies with few modes: it is the commands that are tried."""
     shutil.copytree(root / "config", folder / "config")
     shutil.copytree(root / "docs", folder / "docs")
+    shutil.copytree(root / "hal/firmware", folder / "hal/firmware")
     for scene in (folder / "config/scenes").glob("*.toml"):
         text = scene.read_text(encoding="utf-8")
         text = re.sub(r"^soft_modes = \d+", "soft_modes = 2", text, flags=re.MULTILINE)
