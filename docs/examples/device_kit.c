@@ -1,7 +1,7 @@
 // A haptic device in C: hal/firmware/haptic_node.c keeps the protocol's rules, this file has bus, handle and simulated
 // hand.
-//   cc -O2 -Ihal/firmware docs/examples/device_kit.c hal/firmware/haptic_node.c -o kit -lm
-//   ./kit mine & palpate device-test loopback:mine
+//   cc -O2 -Ihal/firmware docs/examples/device_kit.c hal/firmware/haptic_node.c -o device -lm
+//   ./device mine & palpate device-test loopback:mine
 #define _GNU_SOURCE
 #include <errno.h>
 #include <linux/can.h>
