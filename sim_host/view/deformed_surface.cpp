@@ -126,8 +126,7 @@ constexpr double kCrease = 0.766;
 
 std::vector<Vec3> face_normals(const std::vector<Vec3>& position, const std::vector<Corners>& triangles) {
   std::vector<Vec3> normal;
-  for (const auto& [a, b, c] : triangles)
-    normal.push_back(unit_or(cross(position[at(b)] - position[at(a)], position[at(c)] - position[at(a)]), {}));
+  for (const Corners& t : triangles) normal.push_back(face_normal(position, t));
   return normal;
 }
 
@@ -163,11 +162,15 @@ struct HalvedEdge {
 
 }  // namespace
 
+Vec3 face_normal(const std::vector<Vec3>& position, const Corners& t) {
+  return unit_or(cross(position[at(t[1])] - position[at(t[0])], position[at(t[2])] - position[at(t[0])]), {});
+}
+
 std::vector<Vec3> mesh_normals(const std::vector<Vec3>& position, const std::vector<Corners>& triangles) {
   std::vector<Vec3> normal(position.size());
   for (const Corners& t : triangles) {
     const Vec3 p[3] = {position[at(t[0])], position[at(t[1])], position[at(t[2])]};
-    const Vec3 n = unit_or(cross(p[1] - p[0], p[2] - p[0]), {});
+    const Vec3 n = face_normal(position, t);
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3 a = unit_or(p[(k + 1) % 3] - p[k], {}), b = unit_or(p[(k + 2) % 3] - p[k], {});
       normal[at(t[k])] += std::acos(std::clamp(dot(a, b), -1.0, 1.0)) * n;

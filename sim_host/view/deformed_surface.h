@@ -23,6 +23,7 @@ struct DeformedSurface {
   std::vector<std::array<Vec3, 3>> corner_normal;
 };
 
+Vec3 face_normal(const std::vector<Vec3>& position_m, const std::array<std::int32_t, 3>& triangle);
 // Angle-weighted vertex normals, as the rest surface's are (Baerentzen & Aanaes 2005).
 std::vector<Vec3> mesh_normals(const std::vector<Vec3>& position_m,
                                const std::vector<std::array<std::int32_t, 3>>& triangle);

@@ -98,19 +98,18 @@ GlMesh::~GlMesh() {
   if (fewer_ != 0) glDeleteBuffers(1, &fewer_);
 }
 void GlMesh::set_triangles(std::span<const std::array<std::uint32_t, 3>> triangles) {
-  glBindVertexArray(array_);
-  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_);
-  glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(triangles.size_bytes()), triangles.data(),
-               GL_STATIC_DRAW);
-  count_ = static_cast<GLsizei>(3 * triangles.size());
+  count_ = fill(indices_, triangles);
 }
 void GlMesh::set_fewer_triangles(std::span<const std::array<std::uint32_t, 3>> triangles) {
-  glBindVertexArray(array_);
   if (fewer_ == 0) glGenBuffers(1, &fewer_);
-  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, fewer_);
+  fewer_count_ = fill(fewer_, triangles);
+}
+GLsizei GlMesh::fill(GLuint indices, std::span<const std::array<std::uint32_t, 3>> triangles) const {
+  glBindVertexArray(array_);
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices);
   glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(triangles.size_bytes()), triangles.data(),
                GL_STATIC_DRAW);
-  fewer_count_ = static_cast<GLsizei>(3 * triangles.size());
+  return static_cast<GLsizei>(3 * triangles.size());
 }
 void GlMesh::set_vertices(std::span<const DrawnVertex> vertices) {
   glBindBuffer(GL_ARRAY_BUFFER, vertices_);
@@ -160,17 +159,21 @@ void keep_vertices(GLuint array, std::size_t count, std::initializer_list<GLuint
   while (place > 0) glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, --place, 0);
 }
 
+std::vector<std::array<std::uint32_t, 3>> indices_of(const RenderMesh& mesh) {
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  for (const auto& [a, b, c] : mesh.triangle)
+    triangles.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b), static_cast<std::uint32_t>(c)});
+  return triangles;
+}
+
 GlMesh gl_mesh(const RenderMesh& mesh) {
   std::vector<DrawnVertex> vertices;
   for (std::size_t i = 0; i < mesh.position_m.size(); ++i) {
     const auto p = floats(mesh.position_m[i]), n = floats(mesh.normal[i]);
     vertices.push_back({{p[0], p[1], p[2]}, {n[0], n[1], n[2]}, 0, 0});
   }
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-  for (const auto& [a, b, c] : mesh.triangle)
-    triangles.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b), static_cast<std::uint32_t>(c)});
   GlMesh result;
-  result.set_triangles(triangles);
+  result.set_triangles(indices_of(mesh));
   result.set_vertices(vertices);
   return result;
 }

@@ -57,10 +57,13 @@ class GlMesh {
   GLuint vertices() const { return vertices_; }
 
  private:
+  // Returns how many indices there are.
+  GLsizei fill(GLuint indices, std::span<const std::array<std::uint32_t, 3>> triangles) const;
   GLuint array_ = 0, vertices_ = 0, indices_ = 0, fewer_ = 0;
   GLsizei count_ = 0, fewer_count_ = 0;
   std::size_t bytes_ = 0;
 };
+std::vector<std::array<std::uint32_t, 3>> indices_of(const RenderMesh& mesh);
 GlMesh gl_mesh(const RenderMesh& mesh);
 
 // Numbers that a shader looks up by index, or that one keeps for another.

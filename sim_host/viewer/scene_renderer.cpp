@@ -100,9 +100,7 @@ GlMesh rounded_mesh(RenderMesh mesh) {
     corner.push_back({mesh.normal[static_cast<std::size_t>(a)], mesh.normal[static_cast<std::size_t>(b)],
                       mesh.normal[static_cast<std::size_t>(c)]});
   std::vector<std::pair<std::int32_t, std::int32_t>> parents;
-  std::vector<std::array<std::uint32_t, 3>> fewer;
-  for (const auto& [a, b, c] : mesh.triangle)
-    fewer.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b), static_cast<std::uint32_t>(c)});
+  const std::vector<std::array<std::uint32_t, 3>> fewer = indices_of(mesh);
   refine(mesh.position_m, mesh.triangle, corner, parents);
   for (const auto& [a, b] : parents) {
     const Vec3 n = mesh.normal[static_cast<std::size_t>(a)];

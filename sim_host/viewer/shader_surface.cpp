@@ -111,10 +111,6 @@ struct Rings {
   }
 };
 
-Vec3 face_normal(const std::vector<Vec3>& position, const Corners& t) {
-  return unit_or(cross(position[at(t[1])] - position[at(t[0])], position[at(t[2])] - position[at(t[0])]), {});
-}
-
 constexpr const char* kDisplaced[] = {"displaced"};
 constexpr const char* kPlaced[] = {"placed", "pressure"};
 constexpr const char* kVertex[] = {"position", "normal", "displacement", "pressure"};  // DrawnVertex

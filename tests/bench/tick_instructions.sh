@@ -54,6 +54,13 @@ within_bounds() {
     END { if (seen < 7) print "only " seen + 0 " stages have a bound"; exit bad || seen < 7 }' "$work/log" "$work/table"
 }
 
+# judge BUDGET: what was counted last against it, into status.
+judge() {
+  local verdict=ok
+  if [ "$worst" -gt "$1" ]; then verdict="OVER BUDGET" status=1; fi
+  echo "worst tick $worst of $1 instructions: $verdict"
+}
+
 status=0 least_contact=2
 if [ "$mode" = paths ]; then
   images=${3:?$usage} scenes=${4:?$usage} least_contact=3
@@ -61,8 +68,7 @@ if [ "$mode" = paths ]; then
     echo "== $scene, its own path"
     budget=$(budget_of "$scenes/$scene.toml")
     count "$images/$scene.pal" "$scenes/$scene.toml"
-    if [ "$worst" -le "$budget" ]; then verdict=ok; else verdict="OVER BUDGET" status=1; fi
-    echo "worst tick $worst of $budget instructions: $verdict"
+    judge "$budget"
   done
 elif [ "$mode" = scene ]; then
   images=${3:?$usage} file=${4:?$usage}
@@ -70,8 +76,7 @@ elif [ "$mode" = scene ]; then
   echo "== $scene"
   count "$images/$scene.pal"
   within_bounds || status=1
-  if [ "$worst" -le "$budget" ]; then verdict=ok; else verdict="OVER BUDGET" status=1; fi
-  echo "worst tick $worst of $budget instructions: $verdict"
+  judge "$budget"
 elif [ "$mode" = meshes ]; then
   palpate=${3:?$usage} scene=${4:?$usage}
   grep -qE '^triangles *=' "$scene" || { echo "$scene has no key 'triangles' to vary"; exit 1; }
@@ -93,8 +98,7 @@ elif [ "$mode" = nodal ]; then
   for part in slide rock; do
     echo "== $part"
     count "$part"
-    if [ "$worst" -le 300000 ]; then verdict=ok; else verdict="OVER BUDGET" status=1; fi
-    echo "worst tick $worst of 300000 instructions: $verdict"
+    judge 300000
   done
 elif [ "$mode" = overlays ]; then
   palpate=${3:?$usage} scenes=${4:?$usage}
