@@ -102,7 +102,11 @@ def check_going_run(keys):
             if done.returncode == 0 or run.poll() is not None:
                 break
         check("set", done, {"stiffness": 0.5}, keys)
-        check("switch", call("switch", str(run.pid), "mallet.pal", "--json"), {"image": os.path.abspath("mallet.pal")}, keys)
+        for _ in range(200):  # until its first tick: before, it says to ask again (seen twice on a busy machine)
+            done = call("switch", str(run.pid), "mallet.pal", "--json")
+            if "ask again" not in done.stderr:
+                break
+        check("switch", done, {"image": os.path.abspath("mallet.pal")}, keys)
         run.terminate()
         run.wait(30)
 
