@@ -72,7 +72,7 @@ inline constexpr std::int32_t kMaxSoftModes = 10;
 // Its linear modes: each costs 3 multiply-adds a vertex and pair of regions. Refused at bake.
 inline constexpr std::int32_t kMaxLinearModes = 64;
 // A lost region keeps its identity this long and this close, so a bounce does not lose its friction history.
-inline constexpr std::int32_t kRegionMemoryTicks = 50;
+inline constexpr double kRegionMemory_s = 50e-3;
 inline constexpr double kRegionMemoryDistance_m = 2e-3;
 // Largest change of the rendered force (and torque) in one tick, as a share of its limit: whatever happens to samples,
 // commands or numbers, the hand gets no impulse above it. At the coupling's 1.5 N/mm and 0.2 kg of hand and handle

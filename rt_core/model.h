@@ -121,10 +121,10 @@ namespace palpate {
   X(double, acceleration_max_m_per_s2, "m/s2", 0, 1e6,                                                                \
     "a sample that implies a larger acceleration is rejected; 0: not asked")                                          \
   X(double, turn_max_rad_per_s, "rad/s", 0.1, 1000, "a device sample that implies a faster turn is rejected")         \
-  X(std::int32_t, silence_hold_ticks, "ticks", 1, 5, "ticks the last sample is held")                                 \
-  X(std::int32_t, silence_passive_ticks, "ticks", 1, 20, "ticks after which force ramps to zero")                     \
-  X(std::int32_t, silence_fault_ticks, "ticks", 2, 1000, "ticks of silence that latch a fault")                       \
-  X(std::int32_t, late_ticks_max, "ticks", 2, 1000, "ticks in a row that each missed deadlines: a fault")             \
+  X(std::int32_t, silence_hold_ticks, "ticks", 1, 500, "ticks the last sample is held")                               \
+  X(std::int32_t, silence_passive_ticks, "ticks", 1, 2000, "ticks after which force ramps to zero")                   \
+  X(std::int32_t, silence_fault_ticks, "ticks", 2, 100'000, "ticks of silence that latch a fault")                    \
+  X(std::int32_t, late_ticks_max, "ticks", 2, 100'000, "ticks in a row that each missed deadlines: a fault")          \
   X(double, stall_max_s, "s", 1e-3, 1, "deadlines missed at one go for so long: a fault")
 
 // G(title, parameters, methods that read them): the groups, for dumps and documents.

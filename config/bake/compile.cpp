@@ -337,6 +337,11 @@ class Compiler {
     return std::min(value, 1e6);
   }
 
+  // A limit of time in ticks of the scene's period, to the nearest.
+  std::int32_t ticks_of(double limit_s, std::int32_t least) const {
+    return std::max(least, static_cast<std::int32_t>(std::lround(limit_s / scene_.device.period_s)));
+  }
+
   void add_device() {
     ModelParams& p = image_.params;
     const DeviceDesc& d = scene_.device;
@@ -365,10 +370,10 @@ class Compiler {
         is_auto(d.force_rate_max_N_per_s) ? d.force_max_N / kFullForce_s : d.force_rate_max_N_per_s;
     p.ramp_in_s = d.ramp_in_s;
     p.ramp_out_s = d.ramp_out_s;
-    p.silence_hold_ticks = d.silence_hold_ticks;
-    p.silence_passive_ticks = d.silence_passive_ticks;
-    p.silence_fault_ticks = d.silence_fault_ticks;
-    p.late_ticks_max = d.late_ticks_max;
+    p.silence_hold_ticks = ticks_of(d.silence_hold_s, 1);
+    p.silence_passive_ticks = ticks_of(d.silence_passive_s, p.silence_hold_ticks);
+    p.silence_fault_ticks = ticks_of(d.silence_fault_s, p.silence_passive_ticks + 1);
+    p.late_ticks_max = ticks_of(d.late_max_s, 2);
     p.stall_max_s = d.stall_max_s;
     p.speed_max_m_per_s = d.speed_max_m_per_s;
     p.acceleration_max_m_per_s2 = d.acceleration_max_m_per_s2;

@@ -61,9 +61,8 @@ void check_path(const SceneDesc& scene, const char* list, const std::vector<Path
 
 void check_hands(const SceneDesc& scene) {
   const DeviceDesc& d = scene.device;
-  if (!(d.silence_hold_ticks <= d.silence_passive_ticks && d.silence_passive_ticks < d.silence_fault_ticks))
-    fail(scene, "device.silence_fault_ticks",
-         "must be above silence_passive_ticks, and that not below silence_hold_ticks");
+  if (!(d.silence_hold_s <= d.silence_passive_s && d.silence_passive_s < d.silence_fault_s))
+    fail(scene, "device.silence_fault_ms", "must be above silence_passive_ms, and that not below silence_hold_ms");
   const bool two_tools = d.holds == HeldPart::kTwoTools;
   if (d.holds != HeldPart::kTool && scene.articulation != Articulation::kRigid)
     fail(scene, "device.holds",

@@ -248,10 +248,10 @@ struct DeviceDesc {
   double coupling_Ns_per_m = kAuto;
   double ramp_in_s = 0.1;
   double ramp_out_s = 0.05;
-  std::int32_t silence_hold_ticks = 3;
-  std::int32_t silence_passive_ticks = 5;
-  std::int32_t silence_fault_ticks = 50;
-  std::int32_t late_ticks_max = 10;
+  double silence_hold_s = 3e-3;
+  double silence_passive_s = 5e-3;
+  double silence_fault_s = 50e-3;
+  double late_max_s = 10e-3;
   double stall_max_s = 20e-3;
   double speed_max_m_per_s = 5;
   double acceleration_max_m_per_s2 = 200;

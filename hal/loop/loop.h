@@ -27,7 +27,7 @@
 
 namespace palpate {
 
-// The scene's limits (device.late_ticks_max, device.stall_max_ms), in slots of its period.
+// The scene's limits (device.late_max_ms, device.stall_max_ms), in slots of its period.
 inline DeadlineLimits deadline_limits(const ModelParams& params) noexcept {
   DeadlineLimits limits;
   limits.period_ns = static_cast<std::int64_t>(params.period_s * 1e9 + 0.5);

@@ -212,7 +212,7 @@ void lose(const Model& model, State& state, Scratch& scratch, StillTouching stil
     region.lost_ticks = 1;
   } else if (region.lost_ticks > 1 || still_touching == nullptr || !still_touching(model, state, scratch, region)) {
     region.lost_ticks += 1;
-    if (region.lost_ticks > kRegionMemoryTicks) region = Region{};
+    if (region.lost_ticks > region_memory_ticks(model.params)) region = Region{};
   }
 }
 

@@ -11,6 +11,11 @@ namespace palpate {
 
 inline bool is_in_contact(const Region& region) PALPATE_RT { return region.id != 0 && region.lost_ticks == 0; }
 
+// kRegionMemory_s in ticks of the scene's period, one at least.
+inline std::int32_t region_memory_ticks(const ModelParams& params) PALPATE_RT {
+  return static_cast<std::int32_t>(max_of(1, kRegionMemory_s / params.period_s + 0.5));
+}
+
 // a was in contact earlier than b (ties by id): merges keep it.
 inline bool is_born_before(const Region& a, const Region& b) PALPATE_RT {
   return a.born_tick != b.born_tick ? a.born_tick < b.born_tick : a.id < b.id;

@@ -15,8 +15,9 @@ constexpr double kVelocityLag_ticks = 6, kVelocityLag_s = 6e-3;
 double velocity_lag_ticks(const ModelParams& params) PALPATE_RT {
   return max_of(kVelocityLag_ticks, kVelocityLag_s / params.period_s);
 }
-// The share of stale ticks is over about so many.
-constexpr double kStaleWindow_ticks = 256;
+// The share of stale ticks is over about so long.
+constexpr double kStaleWindow_s = 0.256;
+double stale_window_ticks(const ModelParams& params) PALPATE_RT { return max_of(1, kStaleWindow_s / params.period_s); }
 
 // Not one rotation: bytes of another meaning, or a driver's zeros. Checked before anything normalises it.
 bool is_rotation(const Quat& q) PALPATE_RT {
@@ -155,8 +156,8 @@ void sense(const Model& model, State& state, Scratch& scratch, const Input& inpu
   if (input.stale_ticks > 0) scratch.status |= Status::kInputHeld;
   // What lasts longer is silence, which has a limit of its own.
   if (input.stale_ticks <= static_cast<std::uint32_t>(model.params.silence_hold_ticks))
-    state.stale_share =
-        settled(state.stale_share + ((input.stale_ticks > 0 ? 1 : 0) - state.stale_share) / kStaleWindow_ticks);
+    state.stale_share = settled(state.stale_share + ((input.stale_ticks > 0 ? 1 : 0) - state.stale_share) /
+                                                        stale_window_ticks(model.params));
   sense_tool(model, state, scratch, input);
   if (!has_two_tools(model)) return;
   scratch.work.other_samples += 1;

@@ -1,5 +1,7 @@
 #include "sim_host/record/state_check.h"
 
+#include "rt_core/contact/regions.h"
+
 namespace palpate {
 
 namespace {
@@ -50,8 +52,8 @@ StateFault check_points(const Model& model, const State& state) noexcept {
   return {};
 }
 
-StateFault check_region(const Region& r, int64_t i) noexcept {
-  if (r.lost_ticks < 0 || r.lost_ticks > kRegionMemoryTicks) return {"region.lost_ticks", i};
+StateFault check_region(const Model& model, const Region& r, int64_t i) noexcept {
+  if (r.lost_ticks < 0 || r.lost_ticks > region_memory_ticks(model.params)) return {"region.lost_ticks", i};
   if (r.point_count < 0) return {"region.point_count", i};
   if (!is_friction(r.friction)) return {"region.friction", i};
   const bool finite =
@@ -62,14 +64,14 @@ StateFault check_region(const Region& r, int64_t i) noexcept {
 }
 
 // Slots with id 0 are empty and never read.
-StateFault check_regions(const State& state) noexcept {
+StateFault check_regions(const Model& model, const State& state) noexcept {
   for (int32_t i = 0; i < kMaxRegions; ++i) {
     const Region& region = state.region[i];
     if (region.id == 0) continue;
     if (region.id >= state.next_region_id) return {"region.id", i};
     for (int32_t other = 0; other < i; ++other)
       if (state.region[other].id == region.id) return {"region.id", i};
-    if (const StateFault fault = check_region(region, i); fault.field != nullptr) return fault;
+    if (const StateFault fault = check_region(model, region, i); fault.field != nullptr) return fault;
   }
   return {};
 }
@@ -132,7 +134,7 @@ StateFault check_state(const Model& model, const State& state) noexcept {
   if (state.first_point < 0 || (state.first_point > 0 && state.first_point >= model.sizes.n_tool_point))
     return {"first_point"};
   const StateFault faults[] = {
-      check_poses(state),        check_points(model, state), check_regions(state),
+      check_poses(state),        check_points(model, state), check_regions(model, state),
       check_nodes(model, state), check_safety(state.safety), check_articulation(state.articulation),
       check_elastic(state),      check_live(state.live),
   };

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <set>
@@ -19,7 +20,8 @@ struct Touch {
   double depth_m = 1e-3;
 };
 
-constexpr double kNear = 5e-3;  // cluster distance of every rig here
+constexpr double kNear = 5e-3;     // cluster distance of every rig here
+constexpr int kMemory_ticks = 50;  // what a lost region is kept for, at its period of 1 ms
 
 // Feeds contacts straight into the stage and, as the force stage would, moves each region's centre to its contacts.
 struct Rig {
@@ -29,6 +31,7 @@ struct Rig {
     body.tool_point.assign(kMaxToolPoints, {{}, 1e-3, 2e-6, 1, 0, 0});
     body.bind();
     body.model.params.cluster_distance_m = kNear;
+    body.model.params.period_s = 1e-3;
     state->tool_w.position_m = {1, 1, 1};  // far off: the overlap test says miss unless a test moves the tool
   }
   void step(const std::vector<Touch>& touches) {
@@ -196,12 +199,25 @@ TEST(Regions, NewSlotsStartFromZero) {
   Region& region = rig.state->region[rig.state->point[0].region];
   region.stretch_w = {1, 2, 3};
   region.friction = FrictionMode::kSlip;
-  for (int t = 0; t < kRegionMemoryTicks + 2; ++t) rig.step({});
+  for (int t = 0; t < kMemory_ticks + 2; ++t) rig.step({});
   EXPECT_EQ(rig.used(), 0);
   rig.step({{0, {0, 0, 0}}});
   EXPECT_EQ(rig.id_at(0), 2u);
   EXPECT_EQ(rig.region_at(0).stretch_w, Vec3{});
   EXPECT_EQ(rig.region_at(0).friction, FrictionMode::kFree);
+}
+
+TEST(Regions, AreKeptForATimeNotForTicks) {
+  for (const double period_s : {1e-4, 2e-3, 0.1}) {
+    Rig rig;
+    rig.body.model.params.period_s = period_s;
+    const int kept = std::max(1, static_cast<int>(std::lround(kRegionMemory_s / period_s)));
+    rig.step({{0, {0, 0, 0}}});
+    for (int t = 0; t < kept; ++t) rig.step({});
+    EXPECT_EQ(rig.used(), 1) << period_s;
+    rig.step({});
+    EXPECT_EQ(rig.used(), 0) << period_s;
+  }
 }
 
 TEST(Regions, MergeAndSplitHaveHysteresis) {
@@ -227,7 +243,7 @@ TEST(Regions, MergeAndSplitHaveHysteresis) {
 }
 
 TEST(Regions, ABounceKeepsItsHistoryForAWhile) {
-  for (const int gap_ticks : {1, 10, kRegionMemoryTicks, kRegionMemoryTicks + 1}) {
+  for (const int gap_ticks : {1, 10, kMemory_ticks, kMemory_ticks + 1}) {
     Rig rig;
     rig.step({{0, {0, 0, 0}}});
     rig.state->region[rig.state->point[0].region].stretch_w = {1e-4, 0, 0};
@@ -237,7 +253,7 @@ TEST(Regions, ABounceKeepsItsHistoryForAWhile) {
       EXPECT_EQ(rig.state->point[0].region, -1);
     }
     rig.step({{7, {1.9e-3, 0, 0}}});
-    const bool remembered = gap_ticks <= kRegionMemoryTicks;
+    const bool remembered = gap_ticks <= kMemory_ticks;
     EXPECT_EQ(rig.id_at(7), remembered ? 1u : 2u) << gap_ticks;
     EXPECT_EQ(rig.region_at(7).stretch_w, (remembered ? Vec3{1e-4, 0, 0} : Vec3{}));
     EXPECT_EQ(rig.region_at(7).lost_ticks, 0);
@@ -267,7 +283,7 @@ TEST(Regions, APieceThatStillOverlapsHoldsTheMemoryAndSaysSo) {
   const Vec3 on_top = rig.body.model.vertex_m[static_cast<std::size_t>(rig.body.model.triangle[0].vertex[0])];
   rig.step({{0, on_top}});
   rig.state->tool_w = {on_top, {}};
-  for (int t = 0; t < 3 * kRegionMemoryTicks; ++t) {
+  for (int t = 0; t < 3 * kMemory_ticks; ++t) {
     rig.step({});
     ASSERT_EQ(rig.used(), 1);
     ASSERT_EQ(rig.state->region[0].lost_ticks, 1);
@@ -277,7 +293,7 @@ TEST(Regions, APieceThatStillOverlapsHoldsTheMemoryAndSaysSo) {
   EXPECT_GT(rig.state->high_water.gjk_support_calls, 0);
   EXPECT_LE(rig.state->high_water.gjk_support_calls, kGjkSupportBudget);
   rig.state->tool_w.position_m = {1, 1, 1};
-  for (int t = 0; t < kRegionMemoryTicks; ++t) {
+  for (int t = 0; t < kMemory_ticks; ++t) {
     rig.step({});
     ASSERT_EQ(rig.scratch->status, 0u);
   }
@@ -289,7 +305,7 @@ TEST(Regions, AnInconclusiveOverlapHoldsTheMemoryAndSaysSo) {
   rig.step({{0, {0, 0, 0}}});
   rig.step({});
   rig.state->tool_w.position_m = {std::numeric_limits<double>::quiet_NaN(), 0, 0};
-  for (int t = 0; t < 2 * kRegionMemoryTicks; ++t) {
+  for (int t = 0; t < 2 * kMemory_ticks; ++t) {
     rig.step({});
     ASSERT_TRUE(rig.scratch->status & Status::kOverlapInconclusive);
     ASSERT_EQ(rig.used(), 1);
@@ -354,7 +370,7 @@ TEST(Regions, InvariantsHoldOverALongRandomRun) {
       if (r.id == 0) continue;
       ASSERT_TRUE(ids.insert(r.id).second);
       ASSERT_EQ(r.lost_ticks == 0, r.point_count > 0);
-      ASSERT_LE(r.lost_ticks, kRegionMemoryTicks);
+      ASSERT_LE(r.lost_ticks, kMemory_ticks);
       points += r.point_count;
     }
     ASSERT_EQ(points, rig.scratch->contact_count);

@@ -76,6 +76,21 @@ TEST(Compile, SameSceneSameBytesWhereverItLies) {
   EXPECT_EQ(first, compile_scene(parse_scene(text, "/elsewhere/other.toml")).bytes);
 }
 
+TEST(Compile, LimitsOfSilenceAreTimesWhateverThePeriod) {
+  const auto at = [](const std::string& device) {
+    return OpenedImage(compile_scene(small("[device]\n" + device)).bytes);
+  };
+  const auto limits = [](const OpenedImage& image) {
+    const ModelParams& p = image.model().params;
+    return std::vector<int>{p.silence_hold_ticks, p.silence_passive_ticks, p.silence_fault_ticks, p.late_ticks_max};
+  };
+  EXPECT_EQ(limits(at("")), (std::vector<int>{3, 5, 50, 10}));
+  EXPECT_EQ(limits(at("period_ms = 0.1\n")), (std::vector<int>{30, 50, 500, 100}));
+  EXPECT_EQ(limits(at("period_ms = 10\n")), (std::vector<int>{1, 1, 5, 2}));
+  // A tick each where the period is longer than all of them, in order still.
+  EXPECT_EQ(limits(at("period_ms = 100\n")), (std::vector<int>{1, 1, 2, 2}));
+}
+
 TEST(Compile, EveryParameterArrives) {
   SceneDesc scene = small(R"([body.material]
 youngs_modulus_Pa = 2e6
@@ -111,10 +126,10 @@ coupling_N_per_m = 500
 coupling_Nm_per_rad = 0.2
 ramp_in_s = 0.2
 ramp_out_s = 0.1
-silence_hold_ticks = 2
-silence_passive_ticks = 6
-silence_fault_ticks = 60
-late_ticks_max = 7
+silence_hold_ms = 2
+silence_passive_ms = 6
+silence_fault_ms = 60
+late_max_ms = 7
 stall_max_ms = 36
 speed_max_m_per_s = 2
 turn_max_rad_per_s = 12

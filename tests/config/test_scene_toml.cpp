@@ -148,7 +148,7 @@ const Mistake kMistakes[] = {
      "held body"},
     {"held_gripper", with("slide_mm = [5, 0, 0]\n[gripper]\n[device]\nholds = \"body\"\n"), 11, "device.holds",
      "a rigid tool only"},
-    {"silence", with("[device]\nsilence_fault_ticks = 5\n"), 9, "device.silence_fault_ticks", "must be above"},
+    {"silence", with("[device]\nsilence_fault_ms = 5\n"), 9, "device.silence_fault_ms", "must be above"},
 };
 
 class Mistakes : public testing::TestWithParam<Mistake> {};

@@ -156,10 +156,10 @@ void fit_motions(const Model& model, State& state, const Scratch& scratch) PALPA
   }
 }
 
-void age(Region& region) PALPATE_RT {
+void age(const Model& model, Region& region) PALPATE_RT {
   keep_identity(region);
   region.lost_ticks += 1;
-  if (region.lost_ticks > kRegionMemoryTicks) region = Region{};
+  if (region.lost_ticks > region_memory_ticks(model.params)) region = Region{};
 }
 
 }  // namespace
@@ -188,7 +188,7 @@ void find_nodal_regions(const Model& model, State& state, Scratch& scratch) PALP
     const Sums& s = sums[slot];
     if (region.id == 0) continue;
     if (s.count == 0) {
-      age(region);
+      age(model, region);
       continue;
     }
     write(s, region);
