@@ -175,7 +175,7 @@ CompileResult compile_stated(const SceneDesc& scene, const BakeRun& run, const s
 }
 
 CompileResult compile_scene(const SceneDesc& scene, const BakeRun& run) {
-  return scene.error_target.empty() ? compile_stated(scene, run, {}) : choose_model(scene, run);
+  return is_auto(error_target_share(scene)) ? compile_stated(scene, run, {}) : choose_model(scene, run);
 }
 
 CompileResult choose_model(const SceneDesc& scene, const BakeRun& run) {

@@ -358,10 +358,10 @@ void check_backend(const SceneDesc& scene) {
 
 // What error_target is a choice of: the models that follow from the material.
 void check_error_target(const SceneDesc& scene) {
-  if (scene.error_target.empty()) return;
+  if (scene.error_target.empty() || scene.error_target == "none") return;
   const double share = error_target_share(scene);
   if (is_auto(share) || !(share >= 1e-3 && share <= 1))
-    fail(scene, "error_target", "'" + scene.error_target + "' is no error; allowed \"0.1 %\" to \"100 %\"");
+    fail(scene, "error_target", "'" + scene.error_target + "' is no error; allowed \"0.1 %\" to \"100 %\", \"none\"");
   if (scene.source.has("contact.law") || scene.contact.backend != Backend::kElastic)
     fail(scene, "error_target",
          "has no effect where contact.law or contact.backend states the model; leave both out, or state "

@@ -13,8 +13,10 @@ const KeySpec kTop[] = {
     integer<&SceneDesc::budget_instructions>("budget_instructions", 0, 10'000'000,
                                              "most instructions a tick may take in tests/bench, "
                                              "counted by callgrind; 0: none stated"),
-    text<&SceneDesc::error_target>("error_target", 16,
-                                   "\"3 %\": take the cheapest model that errs by no more; see docs/models_elastic.md"),
+    text<&SceneDesc::error_target>(
+        "error_target", 16,
+        "\"3 %\": take the cheapest model that errs by no more; so by default where the material is stated "
+        "and no model is; \"none\": no press; see docs/models_elastic.md"),
 };
 
 const KeySpec kSkeleton[] = {

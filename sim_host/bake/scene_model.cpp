@@ -1,10 +1,12 @@
 #include "sim_host/bake/scene_model.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <stdexcept>
 
 #include "config/bake/compile.h"
+#include "config/scene/progress.h"
 #include "rt_core/image.h"
 #include "sim_host/bake/default_path.h"
 
@@ -27,7 +29,9 @@ SceneModel::SceneModel(const SceneDesc& scene) : scene_(scene) { compile(); }
 std::span<const std::byte> SceneModel::bytes() const { return file_ ? file_->bytes() : opened_->bytes(); }
 
 void SceneModel::compile() {
-  opened_ = std::make_unique<OpenedImage>(compile_scene(*scene_).bytes);
+  // Presses by elements take a minute: palpate bake does them once.
+  const BakeRun run{isatty(STDERR_FILENO) != 0 ? progress_bar(stderr) : Progress{}};
+  opened_ = std::make_unique<OpenedImage>(compile_scene(*scene_, run).bytes);
   const ImageResult& result = opened_->result();
   if (result.error != ImageError::kNone) {
     throw std::runtime_error(fmt::format("{}: the compiled scene fails its own check: {}: {}", scene_->name,

@@ -103,6 +103,7 @@ PressForward::PressForward(const SceneDesc& scene, const Measurement& measuremen
     throw ConfigError(scene.source.where("contact.law") +
                       ": the forces of this law do not know Young's modulus; fit with contact.backend = \"elastic\", "
                       "contact.law = \"tool\", or a table that the baker presses");
+  scene_.error_target.clear();  // one model for all guesses
 }
 
 void PressForward::settle(double youngs_modulus_Pa) {

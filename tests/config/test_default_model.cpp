@@ -27,6 +27,21 @@ TEST(DefaultModel, AStatedModulusIsThatOfAnElasticBody) {
   EXPECT_THAT(weak_keys(scene), testing::IsEmpty());
 }
 
+// The error that a hand would not notice, unless the scene says how its error is judged or that it is not.
+TEST(DefaultModel, WhereNothingIsSaidOfItsErrorThreePerCentAreWanted) {
+  const auto target = [](const std::string& more, const std::string& elastic) {
+    return error_target_share(scene_of(more + kBody + kModulus + elastic + kBall));
+  };
+  EXPECT_DOUBLE_EQ(target("", ""), 0.03);
+  EXPECT_DOUBLE_EQ(target("error_target = \"1 %\"\n", ""), 0.01);
+  EXPECT_TRUE(is_auto(target("error_target = \"none\"\n", "")));
+  for (const char* key : {"soft_modes = 4", "check_presses = 0"})
+    EXPECT_TRUE(is_auto(target("", std::string("[body.elastic]\n") + key + "\n"))) << key;
+  EXPECT_TRUE(is_auto(target("", "[body.elastic]\ncheck_error = 0.1\n")));
+  EXPECT_TRUE(is_auto(target("", "[contact]\nbackend = \"elastic\"\n")));
+  EXPECT_TRUE(is_auto(error_target_share(scene_of(kBody + kModulus + kBox))));
+}
+
 TEST(DefaultModel, WhatAnElasticBodyDoesNotTakeIsPressedByHertz) {
   const std::string hand = "[gripper]\nclosing_s = 0.2\n" + kBall + "slide_mm = [0, 1, 0]\n";
   for (const std::string& rest :
