@@ -359,6 +359,7 @@ class Compiler {
         coupling(d.coupling_Nm_per_rad, report_.rotational_bound, 1e-6, "device.coupling_Nm_per_rad", "N m/rad"), 1e4);
     report_.coupling_N_per_m = p.coupling_N_per_m;
     report_.coupling_Nm_per_rad = p.coupling_Nm_per_rad;
+    report_.smoothing = smoothing_of(d, p.coupling_N_per_m, p.coupling_Nm_per_rad);
     p.period_s = d.period_s;
     p.delay_s = d.delay_s;
     set_times(scene_, p);

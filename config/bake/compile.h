@@ -8,6 +8,7 @@
 #include "config/bake/contact_fit.h"
 #include "config/bake/elastic_check.h"
 #include "config/bake/image_writer.h"
+#include "config/bake/time_params.h"
 #include "config/bake/worst_tick.h"
 #include "config/beams/beam_table_build.h"
 #include "config/response/tip_bake.h"
@@ -57,6 +58,7 @@ struct CompileReport {
   ResponseReport response;
   StiffnessBound bound, rotational_bound;  // N/m, N m/rad
   double coupling_N_per_m = 0, coupling_Nm_per_rad = 0;
+  Smoothing smoothing;  // of the handle, and the friction it asks for
   std::int32_t tool_points = 0;
   std::vector<double> gap_m;  // per piece: largest distance from its touching surface to the nearest tool sphere
   bool baked_beams = false;   // beams holds something

@@ -101,6 +101,9 @@ std::string report_text(const CompileReport& r) {
   line(text, "friction   K = %.6g N^(1-beta), sliding coefficient %.4g", r.friction.k_N, r.friction.mu_dynamic);
   line(text, "coupling   %.5g N/m of %.5g admitted (%s); %.4g N m/rad of %.4g (%s)", r.coupling_N_per_m, r.bound.value,
        reason_of(r.bound), r.coupling_Nm_per_rad, r.rotational_bound.value, reason_of(r.rotational_bound));
+  line(text, "encoder    %s, which asks for %.3g N of friction and has %.3g; angle %s, for %.3g N m and has %.3g",
+       r.smoothing.position ? "smoothed" : "not smoothed", r.smoothing.friction_N, r.smoothing.has_N,
+       r.smoothing.angle ? "smoothed" : "not smoothed", r.smoothing.friction_Nm, r.smoothing.has_Nm);
   line(text, "tool       %d points in %d pieces", r.tool_points, static_cast<int>(r.gap_m.size()));
   for (std::size_t i = 0; i < r.gap_m.size(); ++i)
     line(text, "           piece %d: surface at most %.2f mm from its points' spheres", static_cast<int>(i),

@@ -68,7 +68,7 @@ void check_hands(const SceneDesc& scene) {
     fail(scene, "device.holds",
          two_tools ? "two tools are rigid ones; take tools without joints"
                    : "a held body goes with a rigid tool only; leave it out or take a tool without joints");
-  if (d.holds != HeldPart::kTool && !two_tools && d.smooth_encoder)
+  if (d.holds != HeldPart::kTool && !two_tools && d.smooth_encoder.value_or(false))
     fail(scene, "device.smooth_encoder",
          "works on the handle's own steps, which are not those of the tool as seen from a held body; remove it");
   two_tools ? check_two_tools(scene) : check_one_tool(scene);

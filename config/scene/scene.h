@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -241,7 +242,7 @@ struct DeviceDesc {
 #define PALPATE_KEY(member, key, value, lowest, highest, scale, meaning) double member = value;
   PALPATE_PROFILE_KEYS(PALPATE_KEY)
 #undef PALPATE_KEY
-  bool smooth_encoder = false;
+  std::optional<bool> smooth_encoder;  // none: where the device's friction holds the handle
   double force_rate_max_N_per_s = kAuto;
   double coupling_N_per_m = kAuto;
   double coupling_Nm_per_rad = kAuto;

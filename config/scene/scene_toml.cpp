@@ -213,6 +213,13 @@ class Reader {
         if (!value.is_boolean()) fail_type(value, path, key);
         *static_cast<bool*>(key.field(fields)) = **value.as_boolean();
         return;
+      case KeyKind::kBoolOrAuto: {
+        const bool is_open = value.value<std::string>() == "auto";
+        if (!is_open && !value.is_boolean()) fail_type(value, path, key);
+        *static_cast<std::optional<bool>*>(key.field(fields)) =
+            is_open ? std::nullopt : std::optional<bool>(**value.as_boolean());
+        return;
+      }
       case KeyKind::kText:
         *static_cast<std::string*>(key.field(fields)) = read_text(value, path, key);
         return;

@@ -298,8 +298,10 @@ const KeySpec kDevice[] = {
         number_or_auto<&DeviceDesc::force_rate_max_N_per_s>(
             "force_rate_max_N_per_s", 1, 1e7, 1,
             "fault limiter of the force change; auto: force_max_N in 5 ms. In no tick more than 10 % of force_max_N"),
-    boolean<&DeviceDesc::smooth_encoder>("smooth_encoder",
-                                         "smooth the handle within the encoder's step, at most two steps late"),
+    boolean_or_auto<&DeviceDesc::smooth_encoder>(
+        "smooth_encoder",
+        "smooth the handle within the encoder's step, at most two steps late; auto: where the device's friction "
+        "holds it at rest all the same"),
     number_or_auto<&DeviceDesc::coupling_N_per_m>(
         "coupling_N_per_m", 1, 1e6, 1,
         "virtual coupling; auto: 0.8 of what the device admits, min(2b / (T + 2 tau), 2 f_c / Delta)"),

@@ -14,6 +14,7 @@ enum class KeyKind {
   kNumberOrAuto,
   kInteger,
   kBool,
+  kBoolOrAuto,
   kText,
   kChoice,
   kVec3,

@@ -40,6 +40,10 @@ template <auto member>
 constexpr KeySpec boolean(const char* key, const char* meaning) {
   return {key, KeyKind::kBool, 0, 1, 1, false, {}, meaning, field<member>, nullptr, nullptr};
 }
+template <auto member>
+constexpr KeySpec boolean_or_auto(const char* key, const char* meaning) {
+  return {key, KeyKind::kBoolOrAuto, 0, 1, 1, false, {}, meaning, field<member>, nullptr, nullptr};
+}
 // For text, `highest` is the greatest length.
 template <auto member>
 constexpr KeySpec text(const char* key, double longest, const char* meaning, bool required = false) {

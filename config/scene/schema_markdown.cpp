@@ -92,6 +92,10 @@ std::string default_text(const KeySpec& key, void* table) {
       return std::to_string(*static_cast<std::int32_t*>(key.field(table)));
     case KeyKind::kBool:
       return *static_cast<bool*>(key.field(table)) ? "true" : "false";
+    case KeyKind::kBoolOrAuto: {
+      const auto value = *static_cast<std::optional<bool>*>(key.field(table));
+      return !value ? "\"auto\"" : *value ? "true" : "false";
+    }
     case KeyKind::kText: {
       const std::string& value = *static_cast<std::string*>(key.field(table));
       return value.empty() ? "-" : "\"" + value + "\"";
@@ -121,6 +125,8 @@ std::string allowed_text(const KeySpec& key) {
       return "whole number, " + range_text(key);
     case KeyKind::kBool:
       return "true or false";
+    case KeyKind::kBoolOrAuto:
+      return "\"auto\", true or false";
     case KeyKind::kText:
       return "text of 1 to " + number_text(key.highest) + " characters";
     case KeyKind::kChoice:

@@ -7,6 +7,7 @@
 
 #include "hal/device/profile_key.h"
 #include "hal/system/private_file.h"
+#include "rt_core/safety/smoothing_friction.h"
 
 namespace palpate {
 namespace {
@@ -72,6 +73,14 @@ void compare(std::string& text, const char* key, double asked, double has, const
   if (asked <= has * (1 + 1e-9)) return;  // the same digits, rounded
   text += std::string(text.empty() ? "" : "\n") + "device." + key + ": the scene states " + short_text(asked) + " " +
           unit + ", the device " + why + " " + short_text(has) + " " + unit;
+}
+
+// A smoothed handle goes to and fro at rest where its friction does not hold it.
+void compare_friction(std::string& text, const char* key, double asked, double has, const char* unit) {
+  if (asked <= has * (1 + 1e-9)) return;
+  text += std::string(text.empty() ? "" : "\n") + "device." + key + ": the scene smooths the encoder, which asks for " +
+          short_text(asked) + " " + unit + " of friction, the device has " + short_text(has) + " " + unit +
+          "; leave device.smooth_encoder at \"auto\", or set it to false";
 }
 
 // The rule of a bound, and what made it another: "2b / (T + 2 tau) over frame.scale = 2".
@@ -144,10 +153,20 @@ std::string profile_contradictions(const DeviceProfile& profile, const ModelPara
   if (scene.local_period_s > 0)
     compare(text, "local_kHz", 1e-3 / scene.local_period_s, 1e-3 * profile.local_Hz, "kHz",
             "evaluates the local contact model with");
+  if (!(scene.local_period_s > 0))  // else the device smooths by itself
+    compare_friction(
+        text, "friction_N",
+        friction_to_smooth(kSmoothedPosition, scene.coupling_N_per_m, scene.encoder_step_m, profile.mass_kg / scale),
+        profile.friction_N, "N");
   // Without torque the rotational spring moves nothing.
   if (scene.torque_max_Nm > 0)
     compare(text, "coupling_Nm_per_rad", scene.coupling_Nm_per_rad, bounds.rotation.value, "N m/rad",
             "admits, by " + rule_of(bounds.rotation, profile, " times ") + ",");
+  if (scene.torque_max_Nm > 0)
+    compare_friction(text, "friction_Nm",
+                     friction_to_smooth(kSmoothedAngle, scene.coupling_Nm_per_rad, scene.encoder_step_rad,
+                                        scale * profile.inertia_kg_m2),
+                     scale * profile.friction_Nm, "N m");
   return text;
 }
 

@@ -6,6 +6,7 @@
 #include "hal/bus/device_address.h"
 #include "hal/device/device_profile.h"
 #include "hal/drives/drive_link.h"
+#include "rt_core/safety/smoothing_friction.h"
 #include "sim_host/doctor/doctor.h"
 #include "sim_host/doctor/doctor_files.h"
 
@@ -124,10 +125,13 @@ std::vector<DoctorItem> examine_profile(const std::string& device, const std::st
   if (!found) return {judged("device profile", false, error, "docs/devices.md says what a profile holds")};
   constexpr double kUsualPeriod_s = 1e-3;
   const double admitted = admitted_coupling(*found, kUsualPeriod_s, HeldPart::kTool).translation.value;
-  std::vector<DoctorItem> items{judged("device profile", true,
-                                       fmt::format("{}: {:.4g} N, {:.4g} N m, admits {:.4g} N/m at 1 kHz", found->name,
-                                                   found->force_max_N, found->torque_max_Nm, admitted),
-                                       "")};
+  const double smoothed = friction_to_smooth(kSmoothedPosition, admitted, found->encoder_step_m, found->mass_kg);
+  std::vector<DoctorItem> items{
+      judged("device profile", true,
+             fmt::format("{}: {:.4g} N, {:.4g} N m, admits {:.4g} N/m at 1 kHz; smoothing its encoder there asks for "
+                         "{:.4g} N of friction, it has {:.4g} N",
+                         found->name, found->force_max_N, found->torque_max_Nm, admitted, smoothed, found->friction_N),
+             "")};
   if (!found->arm) return items;
   const BusVerdict verdict = check_drives_budget(*found->arm, kUsualPeriod_s);
   items.push_back(judged("bus budget of the drives", verdict.fits,

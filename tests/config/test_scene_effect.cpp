@@ -169,6 +169,7 @@ std::vector<std::string> values_of(const KeySpec& key) {
   if (key.kind == KeyKind::kInteger)
     for (const int step : {4, 9, 700}) values.push_back(std::to_string(static_cast<int>(key.lowest) + step));
   if (key.kind == KeyKind::kBool) values = {"true"};
+  if (key.kind == KeyKind::kBoolOrAuto) values = {"true", "false"};
   return values;
 }
 

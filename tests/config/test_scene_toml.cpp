@@ -144,6 +144,8 @@ const Mistake kMistakes[] = {
     {"late_path", with("[[path.point]]\ntime_s = 1\n"), 9, "path.point[0].time_s", "must be at time 0"},
     {"path_order", with("[path]\npoint = [{time_s = 0}, {time_s = 2},\n {time_s = 2}]\n"), 10, "path.point[2].time_s",
      "times must increase"},
+    {"encoder_word", with("[device]\nsmooth_encoder = \"on\"\n"), 9, "device.smooth_encoder",
+     "wrong type; allowed \"auto\", true or false"},
     {"held_encoder", with("[device]\nholds = \"body\"\nsmooth_encoder = true\n"), 10, "device.smooth_encoder",
      "held body"},
     {"held_gripper", with("slide_mm = [5, 0, 0]\n[gripper]\n[device]\nholds = \"body\"\n"), 11, "device.holds",
@@ -224,6 +226,22 @@ TEST(SceneToml, AMagnifiedProfileIsTheDeviceAsTheSceneHasIt) {
   for (const char* scale : {"0", "-1", "101", "nan", "\"2\""})
     EXPECT_THAT(test::refusal_by([&] { loaded("[frame]\nscale = " + std::string(scale) + "\n"); }),
                 HasSubstr("profile.toml:10: frame.scale: must be a number in the range 0.01 to 100"));
+}
+
+// Left open, the handle is smoothed where the stated friction holds it; what a scene says stands.
+TEST(SceneToml, TheEncoderIsSmoothedWhereFrictionHoldsTheHandle) {
+  const auto smooths = [](const std::string& device) {
+    const Smoothing s = compile_scene(parse_scene(kSmall + ("[device]\n" + device), "s.toml")).report.smoothing;
+    return std::string(s.position ? "position " : "") + (s.angle ? "angle" : "");
+  };
+  EXPECT_EQ(smooths(""), "position angle");  // the shipped device: 0.06 N of 0.057, 0.5 mN m of 0.48
+  EXPECT_EQ(smooths("smooth_encoder = \"auto\"\n"), "position angle");
+  EXPECT_EQ(smooths("smooth_encoder = false\n"), "");
+  EXPECT_EQ(smooths("friction_N = 0.055\ncoupling_N_per_m = 2000\n"), "angle");
+  EXPECT_EQ(smooths("friction_Nm = 4.5e-4\ncoupling_Nm_per_rad = 0.8\n"), "position ");
+  EXPECT_EQ(smooths("friction_N = 0.055\ncoupling_N_per_m = 2000\nsmooth_encoder = true\n"), "position angle");
+  EXPECT_EQ(smooths("encoder_step_mm = 0\n"), "angle");
+  EXPECT_EQ(smooths("holds = \"body\"\n"), "");
 }
 
 TEST(Schema, DefaultsLieInTheirRanges) {

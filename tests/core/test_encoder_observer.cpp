@@ -3,10 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <deque>
 #include <limits>
+#include <tuple>
 #include <vector>
 
 #include "rt_core/safety/encoder_observer.h"
+#include "rt_core/safety/smoothing_friction.h"
 
 namespace palpate {
 namespace {
@@ -70,6 +73,79 @@ TEST(EncoderObserver, ForgetsWhatIsNoNumber) {
   double velocity = std::numeric_limits<double>::quiet_NaN();
   observe(observer_gains(kStep_m, kPeriod_s), 1e-5, velocity);
   EXPECT_EQ(velocity, 0);
+}
+
+// A handle at rest against a spring that reads it smoothed, and the hand that holds it there.
+struct Hold {
+  double mass_kg, damping_Ns_per_m, delay_s, period_s;
+  double hand_N_per_m, hand_Ns_per_m, hand_kg;
+  double stiffness_N_per_m() const { return std::min(1e4, 0.8 * 2 * damping_Ns_per_m / (period_s + 2 * delay_s)); }
+};
+
+// RMS of the spring's force in the last of three seconds, after the handle was let go `aside_m` from where it rests.
+// `edge`: where rest lies between two steps of the encoder, in steps.
+double unrest_N(const Hold& h, double friction_N, double aside_m, double edge) {
+  constexpr double kSubstep_s = 2e-5;
+  const double stiffness = h.stiffness_N_per_m(), mass = h.mass_kg + h.hand_kg;
+  const int substeps = static_cast<int>(std::lround(h.period_s / kSubstep_s));
+  std::deque<double> on_the_way(static_cast<std::size_t>(std::lround(h.delay_s / kSubstep_s)) + 1, 0.0);
+  double x = aside_m, v = 0, estimate = aside_m, velocity = 0, sum = 0, squares = 0;
+  const int ticks = static_cast<int>(std::lround(3 / h.period_s)), counted = ticks / 3;
+  for (int i = 0; i < ticks; ++i) {
+    const double told = kStep_m * (std::floor(x / kStep_m + edge + 0.5) - edge);
+    estimate += h.period_s * velocity;
+    estimate += observe(observer_gains(kStep_m, h.period_s), told - estimate, velocity);
+    const double force = -stiffness * estimate;
+    if (i >= ticks - counted) sum += force, squares += force * force;
+    for (int k = 0; k < substeps; ++k) {
+      on_the_way.push_back(force);
+      const double moved = on_the_way.front() - h.hand_N_per_m * x - (h.hand_Ns_per_m + h.damping_Ns_per_m) * v;
+      on_the_way.pop_front();
+      if (v == 0 && std::abs(moved) <= friction_N) continue;
+      const double next = v + kSubstep_s / mass * (moved - std::copysign(friction_N, v != 0 ? v : moved));
+      v = friction_N > 0 && next * v < 0 ? 0 : next;
+      x += kSubstep_s * v;
+    }
+  }
+  return std::sqrt(std::max(0.0, squares / counted - sum * sum / counted / counted));
+}
+
+constexpr struct {
+  double stiffness, damping, mass;
+} kHands[] = {{100, 1, 0.05}, {300, 5, 0.1}, {800, 8, 0.1}, {2000, 16, 0.2}};
+
+// Whatever device admits its coupling: with the friction asked for, every kick comes to rest.
+TEST(EncoderObserver, LeavesAHandleAtRestThatItsFrictionHolds) {
+  for (const double mass : {0.05, 0.1, 0.2, 0.5})
+    for (const auto& [damping, delay_s, period_s] : {std::tuple{0.5, 0.0, 1e-3},
+                                                     {0.5, 5e-4, 1e-3},
+                                                     {2.5, 0.0, 1e-3},
+                                                     {2.5, 5e-4, 1e-3},
+                                                     {2.5, 3e-3, 1e-3},
+                                                     {6.0, 1e-4, 1e-3},
+                                                     {12.0, 3e-4, 1e-3},
+                                                     {2.5, 5e-4, 2.4e-4},
+                                                     {2.5, 5e-4, 2e-3}})
+      for (const auto& hand : kHands) {
+        const Hold h{mass, damping, delay_s, period_s, hand.stiffness, hand.damping, hand.mass};
+        const double step_N = h.stiffness_N_per_m() * kStep_m;
+        const double friction_N = friction_to_smooth(kSmoothedPosition, h.stiffness_N_per_m(), kStep_m, mass);
+        EXPECT_LE(friction_N, 2 * step_N * (1 + 1e-12));  // what takes all that the lag can give
+        for (const double aside_m : {6e-5, 3e-4, 1.5e-3})
+          for (const double edge : {0.0, 0.5})
+            EXPECT_LT(unrest_N(h, friction_N, aside_m, edge), 0.02 * step_N)
+                << mass << " kg, " << damping << " N s/m, " << delay_s << " s, " << period_s << " s, hand "
+                << hand.stiffness << ", " << aside_m << " m, " << edge;
+      }
+}
+
+// What it is asked for: without, the shipped device in a light hand goes to and fro by several steps' force for good.
+TEST(EncoderObserver, SetsAHandleWithoutFrictionGoing) {
+  const Hold h{0.1, 2.5, 5e-4, 1e-3, kHands[0].stiffness, kHands[0].damping, kHands[0].mass};
+  const double step_N = h.stiffness_N_per_m() * kStep_m;
+  EXPECT_GT(unrest_N(h, 0, 3e-4, 0), 3 * step_N);
+  EXPECT_GT(unrest_N(h, 0.25 * step_N, 3e-4, 0), 2 * step_N);
+  EXPECT_LT(unrest_N(h, step_N, 3e-4, 0), 1e-3 * step_N);
 }
 
 }  // namespace

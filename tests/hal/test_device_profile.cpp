@@ -152,6 +152,27 @@ TEST(DeviceProfile, AnArmIsReadInSiUnits) {
   EXPECT_TRUE(valid(profile->frame));
 }
 
+// What was smoothed for another device's friction does not run on one that would go to and fro.
+TEST(DeviceProfile, ASmoothedSceneAsksForTheFrictionThatHoldsTheHandle) {
+  DeviceProfile profile = good();
+  ModelParams asks = scene();
+  profile.friction_N = 0.08;     // sqrt(2500 / 0.1) / 158 = 1.0007 times 2500 N/m times 30 um is 0.07505
+  profile.friction_Nm = 6.4e-4;  // 0.633 times 1 N m/rad times 1 mrad
+  EXPECT_EQ(profile_contradictions(profile, asks), "");  // as told: nothing is asked
+  asks.encoder_step_m = 3e-5;
+  asks.encoder_step_rad = 1e-3;
+  EXPECT_EQ(profile_contradictions(profile, asks), "");
+  profile.friction_N = 0.075;
+  EXPECT_EQ(profile_contradictions(profile, asks),
+            "device.friction_N: the scene smooths the encoder, which asks for 0.07505 N of friction, the device has "
+            "0.075 N; leave device.smooth_encoder at \"auto\", or set it to false");
+  profile.friction_Nm = 6e-4;
+  asks.local_period_s = 1e-4;  // a device that smooths by itself, but not the angle
+  profile.local_Hz = 1e4;
+  EXPECT_THAT(profile_contradictions(profile, asks),
+              AllOf(Not(HasSubstr("friction_N:")), HasSubstr("device.friction_Nm: the scene smooths")));
+}
+
 TEST(DeviceProfile, AnArmThatCannotBeIsRefused) {
   EXPECT_THAT(arm_with("kind = \"serial_3r\"", "kind = \"scara\""),
               HasSubstr("kind: \"scara\": allowed are \"cartesian\""));

@@ -1,0 +1,39 @@
+// Which handles may be smoothed within their encoder's step (encoder_observer.h): those that their friction holds.
+//
+// A smoothed handle is late, and what it is late by works for the motion; without friction it goes to and fro at rest.
+// It is never farther off than two steps, so friction of 2 K Delta takes all of it from whatever hand and mass: the
+// most that is asked. A slow motion is followed closer: of an amplitude A it gains pi K A^2 sin(w tau) a cycle, of
+// which friction takes 4 f A. And where a handle rests on the edge between two steps, each of them pushes it across: as
+// told, by K Delta, so that f must be half of that (Abbott & Okamura 2005); smoothed, by that and what the estimate
+// overshoots. Least f that brought kicks of 0.06 to 1.5 mm to rest, in the middle of a step and at its edges, as a
+// share of K Delta; hands of 100 to 2000 N/m and 0.05 to 0.2 kg, damping of 0.5 to 12 N s/m, delay of 0 to 3 ms, ticks
+// of 0.25 to 2 ms, 2026-11-25 (tests/core/test_encoder_observer.cpp plays it):
+//   K N/m             to 1300  2000  4000  8000  10000
+//   0.05 kg           0.9      1     1.25  1.5   1.25
+//   0.1 kg            0.9      0.9   1.25  1.5   1.25
+//   0.2 kg            0.9      0.8   1     1.25  1.25
+//   0.5 kg            0.9      0.9   1.1   1.25  1
+// The rule: 0.95, or sqrt(K / m) / (158 rad/s) where that is more, with m of 0.1 kg at most: a heavier handle is
+// slower, but what damps it weighs less.
+#pragma once
+
+#include "rt_core/base.h"
+
+namespace palpate {
+
+struct SmoothedHandle {
+  Real usual_inertia, least_share;
+};
+inline constexpr SmoothedHandle kSmoothedPosition{0.1, 0.95};
+// The same mass 32 mm from the axis. A coupling's own bound leaves 0.625 of K Delta where friction makes it (2 f_c /
+// Delta, of which 0.8 is taken), and what turns the handle is coupling and object in series: 0.6 is enough where the
+// object is turned by no more than three times the coupling's stiffness, as by tips of 1.7 N/mm 70 mm apart.
+inline constexpr SmoothedHandle kSmoothedAngle{1e-4, 0.6};
+
+inline Real friction_to_smooth(const SmoothedHandle& handle, Real stiffness, Real step, Real inertia) {
+  constexpr Real kHeldBelow_rad_per_s = 158, kMostShare = 2;  // kObserverReach and half a step
+  const Real own_rad_per_s = square_root(stiffness / min_of(inertia, handle.usual_inertia));
+  return clamp_to(own_rad_per_s / kHeldBelow_rad_per_s, handle.least_share, kMostShare) * stiffness * step;
+}
+
+}  // namespace palpate
