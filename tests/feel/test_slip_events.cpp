@@ -14,13 +14,14 @@
 namespace palpate {
 namespace {
 
-// How often the tool, having stuck for 10 ms at least, breaks loose in the manoeuvre `slide`.
+// How often the tool, having stuck for a tenth of a second at least, breaks loose in the manoeuvre `slide`. An encoder
+// of 0.1 mm tells a hand that sets out, and one that turns round, as standing still for up to 80 ms.
 int breaks_loose(const Model& model, const SceneDesc& scene) {
   FeelSetup setup = feel_setup(scene, model, {});
   set_manoeuvre(Manoeuvre::kSlide, touch_place_of(model, scene), setup);
   const StatePtr state = make_state(model);
   const ScratchPtr scratch = make_scratch(model);
-  const int rest_ticks = static_cast<int>(std::lround(10e-3 / model.params.period_s));
+  const int rest_ticks = static_cast<int>(std::lround(0.1 / model.params.period_s));
   int events = 0, stuck = 0;
   run_feel_loop(
       setup, [&](const Input& input, Output& output) { tick(model, *state, *scratch, input, output); },
