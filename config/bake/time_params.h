@@ -11,11 +11,12 @@
 namespace palpate {
 
 // Stiffest coupling that "auto" gives a device with a loop of its own: it learns of a contact tau late and has
-// gone v tau into it for nothing, whose K (v tau)^2 / 2 comes back. With 0.45 of the largest force met at 0.3 m/s what
-// comes back is braked away on the way out; with twice the coupling, 8000 N/m at 3 ms, 3.1 mJ reached a firm hand
-// (tools_on_cylinder, b = 0.5 N s/m, 2026-11-25).
+// gone v tau into it for nothing, whose K (v tau)^2 / 2 comes back, and as much again while its slope makes up for it
+// (1 + K v / slope times as much). With 0.3 of the largest force met at 0.3 m/s what comes back is braked away on the
+// way out; with 0.45, 4250 N/m at 3 ms, 2.6 mJ reached a medium hand and 3.2 a firm one (tools_on_cylinder, b = 0.5 N
+// s/m, 2026-11-25).
 inline double impact_coupling_N_per_m(double local_Hz, double delay_s, double force_max_N) {
-  constexpr double kTap_m_per_s = 0.3, kForceShare = 0.45;
+  constexpr double kTap_m_per_s = 0.3, kForceShare = 0.3;
   return local_Hz > 0 && delay_s > 0 ? kForceShare * force_max_N / (kTap_m_per_s * delay_s) : kHuge;
 }
 

@@ -5,19 +5,10 @@
 
 namespace palpate {
 
-namespace {
-
-PlantOptions bounded_slope(PlantOptions plant, const NodeOptions& options) {
-  plant.local_slew_N_per_s = 1e3 * options.slew_share_per_ms * plant.force_max_N;
-  return plant;
-}
-
-}  // namespace
-
 DeviceNode::DeviceNode(Transport& transport, const NodeOptions& options, const PlantOptions& plant, HandPath path)
     : transport_(transport),
       options_(options),
-      plant_(bounded_slope(plant, options), std::move(path)),
+      plant_(plant, std::move(path)),
       sequence_(options.profile == WireProfile::kFd ? 16 : 8) {}
 
 void DeviceNode::obey(std::uint32_t sequence, const DeviceCommand& command, std::int64_t now_ns) noexcept {
@@ -137,26 +128,24 @@ Vec3 moved_towards(Vec3 from, Vec3 to, double most) noexcept {
 
 }  // namespace
 
-// What the motors are told: the newest command, or nothing, approached by at most the slew limit.
+// What the motors are told: the newest command, or nothing. Its force is approached by at most the slew limit: here, or
+// by a device that evaluates the local model in its own loop (next_force_N).
 void DeviceNode::render() noexcept {
   const PlantOptions& plant = plant_.options();
   if (stop_pressed_ || error_ != 0) {
     rendered_ = {};
     return plant_.step(rendered_);
   }
-  if (rendered_.local.valid_s > 0) rendered_.force_N = plant_.motor().force_N;  // what it came to
   const DeviceCommand wanted = latched_ || !enabled_ ? DeviceCommand{} : command_;
   const double share = options_.slew_share_per_ms * plant.period_s * 1e3;
   const bool finite = is_finite(wanted.force_N) && is_finite(wanted.torque_Nm);
   const Wrench target = finite ? Wrench{wanted.force_N, wanted.torque_Nm} : Wrench{};
-  rendered_.force_N = moved_towards(rendered_.force_N, target.force_N, share * plant.force_max_N);
+  rendered_.force_N =
+      plant.local_Hz > 0 ? target.force_N : moved_towards(rendered_.force_N, target.force_N, share * plant.force_max_N);
   rendered_.torque_Nm = moved_towards(rendered_.torque_Nm, target.torque_Nm, share * plant.torque_max_Nm);
-  // A command with a model is not approached here: the slope of what is evaluated is bounded where that happens.
   rendered_.local = finite ? wanted.local : LocalModel{};
   rendered_.number = wanted.number;
-  if (rendered_.local.valid_s > 0) rendered_.force_N = target.force_N;
-  const bool moving = !(rendered_.force_N == Vec3{} && rendered_.torque_Nm == Vec3{});
-  rendered_.flags = moving ? CommandFlag::kEnable : wanted.flags;
+  rendered_.flags = CommandFlag::kEnable;  // what ends is a slope to nothing
   plant_.step(rendered_);
 }
 

@@ -16,7 +16,8 @@ struct NodeOptions {
   int node = 1;
   std::int64_t watchdog_ns = 20'000'000;  // without a valid new command: zero force until enabled anew (0 -> 1)
   // Change of force and torque in a millisecond, as a share of the motors' limit: what a lost command, a late one or
-  // the watchdog does to the hand. An emergency stop and an error cut at once.
+  // the watchdog does to the hand. An emergency stop and an error cut at once. The force of a device that evaluates the
+  // local model has its slope there (PlantOptions::local_slope_share_per_ms).
   double slew_share_per_ms = 0.1;
 };
 

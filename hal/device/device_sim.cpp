@@ -73,7 +73,7 @@ PlantOptions checked(PlantOptions o) {
 DevicePlant::DevicePlant(const PlantOptions& options, HandPath path)
     : options_(checked(options)), path_(std::move(path)), random_(options.noise_seed) {
   pose_ = path_.at(0).pose;
-  last_measured_m_ = observed_m_ = pose_.position_m;
+  last_measured_m_ = observed_m_ = last_exact_m_ = pose_.position_m;
 }
 
 void DevicePlant::drive(const DeviceCommand& command) noexcept {
@@ -83,20 +83,21 @@ void DevicePlant::drive(const DeviceCommand& command) noexcept {
   saturated_ = false;
   if (due.number != due_.number) age_s_ = 0;
   due_ = due;
-  due_.local = bounded_model(due.local, options_.local_N_per_m);
+  due_.local = is_finite(due.force_N) ? bounded_model(due.local, options_.local_N_per_m) : LocalModel{};
+  if (!is_finite(due.force_N)) due_.force_N = {};
   const Vec3 before_N = motor_.force_N;
   motor_ = {};
   if ((due.flags & CommandFlag::kEnable) == 0) {
+    due_.force_N = {};
     due_.local = {};
     return;
   }
   motor_.force_N = limited(due.force_N, options_.force_max_N, saturated_);
   motor_.torque_Nm = limited(due.torque_Nm, options_.torque_max_Nm, saturated_);
-  // Held until it is evaluated: within this period.
-  if (due_.local.valid_s > 0 && options_.local_Hz > 0) motor_.force_N = before_N;
+  if (options_.local_Hz > 0) motor_.force_N = before_N;  // evaluated within this period
 }
 
-// The device's own fast loop: smooths its encoder, and where a command carries a model, evaluates it there.
+// The device's own fast loop: smooths its encoder, and renders what a command says there, with its model or without.
 void DevicePlant::evaluate_local(double elapsed_s) noexcept {
   if (!(options_.local_Hz > 0)) return;
   const double period_s = 1 / options_.local_Hz;
@@ -104,14 +105,21 @@ void DevicePlant::evaluate_local(double elapsed_s) noexcept {
   age_s_ += elapsed_s;
   if (local_due_s_ > 1e-9) return;
   local_due_s_ += period_s;
+  const Vec3 before_m = observed_m_, moved_m = pose_.position_m - last_exact_m_;
+  last_exact_m_ = pose_.position_m;
   const Vec3 expected = observed_m_ + period_s * observed_m_per_s_;
   observed_m_ = expected +
                 observe(device_observer_gains(options_.encoder_m, period_s), encoder_m() - expected, observed_m_per_s_);
-  if (!(due_.local.valid_s > 0) || age_s_ > due_.local.valid_s) return;
-  const Vec3 wanted = limited(local_force_N(due_.force_N, due_.local, observed_m_), options_.force_max_N, saturated_);
-  const Vec3 step = wanted - motor_.force_N;
-  const double most = options_.local_slew_N_per_s * period_s, size = norm(step);
-  motor_.force_N = most > 0 && size > most ? motor_.force_N + (most / size) * step : wanted;
+  if ((due_.flags & CommandFlag::kEnable) == 0) return;
+  const bool stale = age_s_ > due_.local.valid_s;  // or none
+  if (!stale) evaluated_m_ = observed_m_;
+  const LocalLoop loop{period_s, options_.force_max_N, 1e3 * options_.local_slope_share_per_ms * options_.force_max_N};
+  const LocalWay way = stale ? LocalWay{evaluated_m_, evaluated_m_} : LocalWay{before_m, observed_m_};
+  const Vec3 wanted_N = local_force_N(due_.force_N, due_.local, way.to_m), last_N = motor_.force_N;
+  saturated_ = saturated_ || squared_norm(wanted_N) > options_.force_max_N * options_.force_max_N;
+  motor_.force_N = next_force_N(loop, last_N, due_.force_N, due_.local, way);
+  const LocalWay exact = stale ? way : LocalWay{before_m, before_m + moved_m};
+  unmoved_N_ += motor_.force_N - last_N - moved_force_N(loop, due_.force_N, due_.local, exact);
 }
 
 HandTarget DevicePlant::aim_at(double time_s) const noexcept {

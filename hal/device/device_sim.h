@@ -31,14 +31,15 @@ struct PlantOptions {
   double hand_damping_N_s_per_m = 5;
   double hand_stiffness_Nm_per_rad = 1;
   double hand_damping_Nm_s_per_rad = 2e-2;
-  double tremor_m = 0;            // amplitude of the hand's tremor: it aims aside by so much, a circle in two axes
-  double tremor_rad = 0;          // and turns by so much
-  double tremor_Hz = 9;           // physiological: 8 to 12 Hz
-  double local_Hz = 0;            // evaluations of the local contact model; 0: forces are held
-  double local_N_per_m = 0;       // stiffest it evaluates; 0: what its damping, friction and encoder admit
-  double local_slew_N_per_s = 0;  // largest change of its force; 0: any
-  double period_s = 1e-3;         // device tick: commands are taken over and samples made
-  int substeps = 20;              // of the integration per period, 1..1000
+  double tremor_m = 0;       // amplitude of the hand's tremor: it aims aside by so much, a circle in two axes
+  double tremor_rad = 0;     // and turns by so much
+  double tremor_Hz = 9;      // physiological: 8 to 12 Hz
+  double local_Hz = 0;       // evaluations of the local contact model; 0: forces are held
+  double local_N_per_m = 0;  // stiffest it evaluates; 0: what its damping, friction and encoder admit
+  // What commands change of its force in a millisecond at most, as a share of its limit; 0: any.
+  double local_slope_share_per_ms = kLocalSlopeShare_per_ms;
+  double period_s = 1e-3;  // device tick: commands are taken over and samples made
+  int substeps = 20;       // of the integration per period, 1..1000
 };
 
 inline constexpr int kMaxDelayTicks = 63;  // 6.3 ms in a bench that steps the plant ten times a tick
@@ -74,7 +75,10 @@ class DevicePlant {
   void freeze_encoder(bool frozen) noexcept { frozen_ = frozen; }               // repeats the last measurement
   void shift_encoder(Vec3 offset_m) noexcept { encoder_shift_m_ += offset_m; }  // lost counts
   Wrench motor() const noexcept { return motor_; }                              // rendered in the last period
-  bool trigger() const noexcept { return aim_at(time_s()).trigger; }            // the hand holds the closing button
+  // Of a device that evaluates the local model: all that its force changed beyond what the handle's own, exact motion
+  // made of the model.
+  Vec3 unmoved_N() const noexcept { return unmoved_N_; }
+  bool trigger() const noexcept { return aim_at(time_s()).trigger; }  // the hand holds the closing button
   bool saturated() const noexcept { return saturated_; }
   std::uint32_t obeyed() const noexcept { return due_.number; }  // number of the command that acted last
   double time_s() const noexcept { return static_cast<double>(ticks_) * options_.period_s; }
@@ -114,7 +118,8 @@ class DevicePlant {
   // Of the local model: the command in force, how old it is, where the handle is within an encoder step.
   DeviceCommand due_;
   double age_s_ = 0, local_due_s_ = 0;
-  Vec3 observed_m_, observed_m_per_s_;
+  Vec3 observed_m_, observed_m_per_s_, evaluated_m_, last_exact_m_;
+  Vec3 unmoved_N_;
 };
 
 // The plant as a Device in virtual time: each receive() first lets it run up to the clock, holding the last command, so

@@ -44,4 +44,31 @@ Vec3 local_force_N(Vec3 force_N, const LocalModel& model, Vec3 position_m) noexc
   return force - back * sense;
 }
 
+namespace {
+
+Vec3 shortened(Vec3 v, double most) noexcept {
+  const double length = norm(v);
+  return length > most ? (most / length) * v : v;
+}
+
+}  // namespace
+
+Vec3 moved_force_N(const LocalLoop& loop, Vec3 force_N, const LocalModel& model, const LocalWay& way) noexcept {
+  return shortened(local_force_N(force_N, model, way.to_m), loop.force_max_N) -
+         shortened(local_force_N(force_N, model, way.from_m), loop.force_max_N);
+}
+
+Vec3 next_force_N(const LocalLoop& loop, Vec3 rendered_N, Vec3 force_N, const LocalModel& model,
+                  const LocalWay& way) noexcept {
+  const Vec3 wanted_N = shortened(local_force_N(force_N, model, way.to_m), loop.force_max_N);
+  if (!(loop.slope_N_per_s > 0)) return wanted_N;
+  const double farthest_m = kLocalFastest_m_per_s * loop.period_s;
+  const bool jumped = squared_norm(way.to_m - way.from_m) > farthest_m * farthest_m;
+  const Vec3 moved_N = jumped ? rendered_N : rendered_N + moved_force_N(loop, force_N, model, way);
+  const Vec3 next_N = moved_N + shortened(wanted_N - moved_N, loop.slope_N_per_s * loop.period_s);
+  const Vec3 sense = unit_or(force_N, {});
+  const double least_N = min_of(0, dot(rendered_N, sense)), along_N = dot(next_N, sense);
+  return shortened(next_N + max_of(0, least_N - along_N) * sense, loop.force_max_N);
+}
+
 }  // namespace palpate

@@ -19,9 +19,11 @@ enum {
 };
 
 static const float kForceStep_N = 1e-3f, kTorqueStep_Nm = 1e-4f, kStiffnessStep_N_per_m = 1e-2f, kPointStep_m = 1e-7f;
-static const int32_t kValidMost = 50;          /* of 0.1 ms */
-static const float kSlopePerSecond = 100.0f;   /* of the limit: a tenth in a millisecond */
-static const double kRounding_N_per_m = 0.015; /* three entries of a row are off by half a step each */
+static const int32_t kValidMost = 50;            /* of 0.1 ms */
+static const float kSlopePerSecond = 100.0f;     /* of the limit: a tenth in a millisecond */
+static const float kLocalSlopePerSecond = 90.0f; /* of a node with the local model: with its encoder's steps no more */
+static const float kFarthestPerSecond = 2e7f;    /* 2 m/s in steps of the position: no hand that explores */
+static const double kRounding_N_per_m = 0.015;   /* three entries of a row are off by half a step each */
 
 /* CRC-16/CCITT-FALSE, four bits at a time: a table of 32 bytes. */
 static uint16_t crc_nibbles(uint16_t crc, const uint8_t* bytes, uint32_t count) {
@@ -151,16 +153,67 @@ static void evaluate_model(const struct hn_command* command, const int32_t posit
   for (int i = 0; i < 3; ++i) force_N[i] -= along / square * command->force_N[i];
 }
 
-/* From what is rendered towards what is wanted, within the limit and its slope. Whether the limit cut it. */
-static bool approach(float rendered[3], const float wanted[3], float most, int control_Hz) {
-  const float size = size_of(wanted);
-  const float share = size > most ? most / size : 1;
+/* Whether it was longer than that. */
+static bool shorten(float v[3], float most) {
+  const float size = size_of(v);
+  if (!(size > most)) return false;
+  for (int i = 0; i < 3; ++i) v[i] *= most / size;
+  return true;
+}
+
+/* Towards what is wanted, by no more than that. */
+static void approach(float rendered[3], const float wanted[3], float slope) {
   float change[3];
-  for (int i = 0; i < 3; ++i) change[i] = share * wanted[i] - rendered[i];
-  const float step = size_of(change), slope = kSlopePerSecond * most / (float)control_Hz;
-  const float kept = step > slope ? slope / step : 1;
-  for (int i = 0; i < 3; ++i) rendered[i] += kept * change[i];
-  return size > most;
+  for (int i = 0; i < 3; ++i) change[i] = wanted[i] - rendered[i];
+  shorten(change, slope);
+  for (int i = 0; i < 3; ++i) rendered[i] += change[i];
+}
+
+/* Of a step of control. */
+static float force_slope(const struct hn_config* config) {
+  const float share = config->stiffness_max_N_per_m > 0 ? kLocalSlopePerSecond : kSlopePerSecond;
+  return share * config->force_max_N / (float)config->control_Hz;
+}
+static float torque_slope(const struct hn_config* config) {
+  return kSlopePerSecond * config->torque_max_Nm / (float)config->control_Hz;
+}
+
+/* What the model says of the handle's own way in a step, none of it when that is an encoder's jump. */
+static void add_way(const struct hn_node* node, const int32_t position[3], const float wanted[3], float rendered[3]) {
+  float before[3], square = 0;
+  for (int i = 0; i < 3; ++i) {
+    const float way = (float)(position[i] - node->position[i]);
+    square += way * way;
+  }
+  const float farthest = kFarthestPerSecond / (float)node->config.control_Hz;
+  if (square > farthest * farthest) return;
+  evaluate_model(&node->command, node->position, before);
+  shorten(before, node->config.force_max_N);
+  for (int i = 0; i < 3; ++i) rendered[i] += wanted[i] - before[i];
+}
+
+/* The handle's way acts at once, what commands changed with the slope; never above the limit, nor turned farther round
+ * against F than it was. */
+static void render_force(struct hn_node* node, const int32_t position[3], bool goes_on) {
+  const float most = node->config.force_max_N, *sense = node->command.force_N;
+  float *rendered = node->motors.force_N, wanted[3];
+  for (int i = 0; i < 3; ++i) wanted[i] = node->wanted_N[i];
+  node->is_cut = shorten(wanted, most) || node->is_cut;
+  const float against = dot(rendered, sense), square = dot(sense, sense);
+  if (goes_on) add_way(node, position, wanted, rendered);
+  approach(rendered, wanted, force_slope(&node->config));
+  const float over = (against < 0 ? against : 0) - dot(rendered, sense);
+  if (square > 0 && over > 0)
+    for (int i = 0; i < 3; ++i) rendered[i] += over / square * sense[i];
+  shorten(rendered, most);
+}
+
+/* Torque is held: the slope alone. */
+static void render_torque(struct hn_node* node) {
+  float wanted[3];
+  for (int i = 0; i < 3; ++i) wanted[i] = node->command.torque_Nm[i];
+  node->is_cut = shorten(wanted, node->config.torque_max_Nm) || node->is_cut;
+  approach(node->motors.torque_Nm, wanted, torque_slope(&node->config));
 }
 
 void hn_control(struct hn_node* node, const int32_t position[3], struct hn_motors* motors) {
@@ -168,22 +221,22 @@ void hn_control(struct hn_node* node, const int32_t position[3], struct hn_motor
   static const float kNone[3] = {0, 0, 0};
   if (node->silent_steps <= config->control_Hz) node->silent_steps += 1;
   if (node->silent_steps * kWatchdog_per_s > config->control_Hz) node->enabled = node->let_go = true;
-  if (node->age_steps < node->command.valid_steps) {
+  const bool goes_on = node->age_steps < node->command.valid_steps;
+  if (goes_on) {
     node->age_steps += 1;
     evaluate_model(&node->command, position, node->wanted_N);
   }
   if (node->stop_pressed || node->error != 0 || config->number == 0) {
     clear(node->motors.force_N);
     clear(node->motors.torque_Nm);
+  } else if (node->enabled && !node->let_go) {
+    render_force(node, position, goes_on);
+    if (config->torque_max_Nm > 0) render_torque(node);
   } else {
-    const bool on = node->enabled && !node->let_go;
-    const bool force_cut =
-        approach(node->motors.force_N, on ? node->wanted_N : kNone, config->force_max_N, config->control_Hz);
-    const bool torque_cut =
-        config->torque_max_Nm > 0 && approach(node->motors.torque_Nm, on ? node->command.torque_Nm : kNone,
-                                              config->torque_max_Nm, config->control_Hz);
-    node->is_cut = node->is_cut || force_cut || torque_cut;
+    approach(node->motors.force_N, kNone, force_slope(config));
+    approach(node->motors.torque_Nm, kNone, torque_slope(config));
   }
+  for (int i = 0; i < 3; ++i) node->position[i] = position[i];
   *motors = node->motors;
 }
 

@@ -63,7 +63,8 @@ struct hn_node {
   struct hn_config config;
   struct hn_command command;
   struct hn_motors motors;
-  float wanted_N[3]; /* newest, before the slope: what is held when a local model ends */
+  float wanted_N[3];   /* newest, before limit and slope: what is held when a local model ends */
+  int32_t position[3]; /* of the step before */
   int32_t silent_steps, age_steps;
   uint16_t echo, old, sent;
   uint8_t old_run, error;

@@ -1,6 +1,7 @@
 #include "rt_core/safety/hand_energy.h"
 
 #include "rt_core/decay.h"
+#include "rt_core/safety/local_device.h"
 
 namespace palpate {
 
@@ -37,19 +38,45 @@ void add_brake(Vec3 brake_N, Vec3& force_N) PALPATE_RT {
   force_N += brake_N;
 }
 
-// What acted on the handle between the last two samples: an output takes the delay to arrive; but a device that
-// evaluates the local model pushes with what the last tick said at the beginning and with `now_N` at the end, once it
-// has been told of the contact: what it meets before costs the hand nothing, and came back as 2.6 mJ of a tap of 0.3
-// m/s on 4.3 N/mm with 3 ms of delay, K (v tau)^2 / 2 (2026-11-25).
-Wrench acted(const Model& model, const SafetyState& safety, Vec3 now_N) PALPATE_RT {
+// What was sent the delay ago.
+Wrench under_way(const Model& model, const SafetyState& safety) PALPATE_RT {
   const double late = clamp_to(model.params.delay_s / model.params.period_s, 0, kForceHistory - 1.001);
   const auto whole = static_cast<std::int32_t>(late);
   const double part = late - whole;
   const double *a = safety.sent + 6 * whole, *b = a + 6;
-  const Vec3 held_N = (1 - part) * Vec3{a[0], a[1], a[2]} + part * Vec3{b[0], b[1], b[2]};
-  const bool local = model.params.local_period_s > 0 && squared_norm(held_N) > 0;
-  return {local ? 0.5 * (Vec3{safety.sent[0], safety.sent[1], safety.sent[2]} + now_N) : held_N,
+  return {(1 - part) * Vec3{a[0], a[1], a[2]} + part * Vec3{b[0], b[1], b[2]},
           (1 - part) * Vec3{a[3], a[4], a[5]} + part * Vec3{b[3], b[4], b[5]}};
+}
+
+bool is_local(const Model& model) PALPATE_RT { return model.params.local_period_s > 0; }
+
+// Its outputs are remembered as what is left of them to come.
+Vec3 last_lag_N(const SafetyState& safety) PALPATE_RT { return {safety.sent[0], safety.sent[1], safety.sent[2]}; }
+
+// What a device that evaluates the local model has not come to yet of `now_N`, after `last_N`: all of it until it has
+// been told of the contact, tau after it; from then on its slope takes from that, for the handle's own way acts at
+// once. A hand that comes in pays so much less than it is met with when it goes out: K (v tau)^2 / 2 and, with 3 ms on
+// 3 N/mm, as much again while the slope makes up for it (a tap of 0.3 m/s gave the hand 2.8 mJ where that was not
+// counted, 2026-11-25).
+Vec3 lag_N(const Model& model, const SafetyState& safety, Vec3 last_N, Vec3 now_N) PALPATE_RT {
+  if (squared_norm(last_N) == 0) return now_N;
+  const Vec3 lag = last_lag_N(safety);
+  if (squared_norm(lag) == 0) return {};
+  if (squared_norm(under_way(model, safety).force_N) == 0) return now_N;
+  const ModelParams& p = model.params;
+  const double made_up_N = 1e3 * kLocalSlopeShare_per_ms * p.period_s * p.force_max_N;
+  return max_of(0, 1 - made_up_N / norm(lag)) * lag;
+}
+
+// What acted on the handle between the last two samples: an output takes the delay to arrive; but a device that
+// evaluates the local model pushes with what the last tick said at the beginning and with `now_N` at the end, each less
+// what it has not come to.
+Wrench acted(const Model& model, const SafetyState& safety, Vec3 now_N) PALPATE_RT {
+  const Wrench held = under_way(model, safety);
+  if (!is_local(model)) return held;
+  const Vec3 last_N = safety.last_device_w.force_N;
+  const Vec3 before_N = last_N - last_lag_N(safety), after_N = now_N - lag_N(model, safety, last_N, now_N);
+  return {0.5 * (before_N + after_N), held.torque_Nm};
 }
 
 // Energy of a spring whose force stays at `most` from there on.
@@ -70,6 +97,7 @@ double joint_work_J(const State& state, const Scratch& scratch) PALPATE_RT {
 }
 
 bool nothing_sent(const SafetyState& safety) PALPATE_RT {
+  if (squared_norm(safety.last_device_w.force_N) != 0) return false;
   for (const double value : safety.sent) {  // bound: 6 kForceHistory
     if (value != 0) return false;
   }
@@ -110,9 +138,11 @@ void drain_energy(const Model& model, State& state, Scratch& scratch, const Inpu
   safety.surplus_J = counts && is_finite(made_J) ? max_of(-kCreditShare * most_J, safety.surplus_J + made_J) : 0.0;
   if (squared_norm(force_N) == 0 && nothing_sent(safety)) safety.surplus_J = 0;
   // A device with a loop of its own smooths its encoder, and is braked on its way out alone: a brake of a hand that
-  // comes in would arrive when it goes out again, and push it.
-  const bool local = p.local_period_s > 0;
-  const Vec3 velocity = local ? (1 / p.period_s) * way.translation_m : state.hand_velocity_m_per_s;
+  // comes in would arrive when it goes out again, and push it. A step of the encoder is 30 mm/s of one tick, and the
+  // smoothed velocity 6 ms late: the mean of both (swings in 10 ticks with the first alone, 3 ms; 2026-11-25).
+  const bool local = is_local(model);
+  const Vec3 tick_m_per_s = (1 / p.period_s) * way.translation_m;
+  const Vec3 velocity = local ? 0.5 * (tick_m_per_s + state.hand_velocity_m_per_s) : state.hand_velocity_m_per_s;
   const double speed2 = squared_norm(velocity);
   if (!(safety.surplus_J > 0 && speed2 > kDampingDead_m_per_s * kDampingDead_m_per_s)) return;
   if (local && !(dot(force_N, velocity) > 0)) return;
@@ -137,10 +167,11 @@ bool is_unstable(const Model& model, SafetyState& safety, Vec3 force_N) PALPATE_
   return safety.swings > kSwingsMost || safety.surplus_J > most_J;
 }
 
-void remember_output(SafetyState& safety) PALPATE_RT {
-  for (std::int32_t i = 6 * kForceHistory - 1; i >= 6; --i) safety.sent[i] = safety.sent[i - 6];  // bound: the history
+void remember_output(const Model& model, SafetyState& safety, Vec3 last_N) PALPATE_RT {
   const Wrench& w = safety.last_device_w;
-  const double now[6] = {w.force_N.x, w.force_N.y, w.force_N.z, w.torque_Nm.x, w.torque_Nm.y, w.torque_Nm.z};
+  const Vec3 force_N = is_local(model) ? lag_N(model, safety, last_N, w.force_N) : w.force_N;
+  for (std::int32_t i = 6 * kForceHistory - 1; i >= 6; --i) safety.sent[i] = safety.sent[i - 6];  // bound: the history
+  const double now[6] = {force_N.x, force_N.y, force_N.z, w.torque_Nm.x, w.torque_Nm.y, w.torque_Nm.z};
   for (std::int32_t i = 0; i < 6; ++i) safety.sent[i] = now[i];
 }
 

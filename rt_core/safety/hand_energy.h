@@ -30,7 +30,8 @@ void drain_energy(const Model& model, State& state, Scratch& scratch, const Inpu
 // than the coupling holds at the largest force: Fault::kUnstable.
 bool is_unstable(const Model& model, SafetyState& safety, Vec3 force_N) PALPATE_RT;
 
-// The output of this tick into the history of those that may still be under way.
-void remember_output(SafetyState& safety) PALPATE_RT;
+// The output of this tick, after `last_N`, into the history of those that may still be under way; of a device that
+// evaluates the local model what it has not come to of them.
+void remember_output(const Model& model, SafetyState& safety, Vec3 last_N) PALPATE_RT;
 
 }  // namespace palpate

@@ -1,6 +1,7 @@
 // The last stage of every tick, in every mode, for every model:
 //   wrench of the virtual coupling -> its damping, energy -> finite? -> magnitude -> mode gain -> rate.
 #include "rt_core/safety/hand_energy.h"
+#include "rt_core/safety/local_device.h"
 #include "rt_core/safety/mode_machine.h"
 #include "rt_core/tick.h"
 #include "rt_core/tool/held_body.h"
@@ -63,10 +64,11 @@ Wrench rate_limited(const Model& model, const Wrench& last, const Wrench& wanted
 
 // What a device that evaluates the local model has made of the last output by now: the rate is limited from there. It
 // followed a tap of 0.3 m/s on 4 N/mm by 1.2 N in a tick, which from the last output itself would be cut to 0.85.
-// Before the first force of a contact it was told nothing to follow.
-Wrench followed(const State& state, const FeltStiffness& felt, Wrench last) PALPATE_RT {
-  if (squared_norm(last.force_N) == 0) return last;
-  last.force_N += -(felt * (state.device_w.position_m - state.device_previous_w.position_m));
+// Before the first force of a contact it was told nothing to follow, and it does not follow an encoder that jumps.
+Wrench followed(const State& state, const FeltStiffness& felt, double period_s, Wrench last) PALPATE_RT {
+  const Vec3 way_m = state.device_w.position_m - state.device_previous_w.position_m;
+  if (squared_norm(last.force_N) == 0 || norm(way_m) > kLocalFastest_m_per_s * period_s) return last;
+  last.force_N += -(felt * way_m);
   return last;
 }
 
@@ -152,14 +154,18 @@ LocalFelt put_out(const Model& model, State& state, Scratch& scratch, const Inpu
     return {{}, state.device_w.position_m};
   }
   const bool local = model.params.local_period_s > 0;
+  const Vec3 last_N = safety.last_device_w.force_N;
   if (local) {
     const FeltStiffness before = safety.ramp * share_below_limit(model, state, felt, -1, 0) * felt;
-    safety.last_device_w = followed(state, before, safety.last_device_w);
+    safety.last_device_w = followed(state, before, model.params.period_s, safety.last_device_w);
   }
   safety.last_device_w = rate_limited(model, within_limits(model, safety.last_device_w), scaled, scratch);
-  remember_output(safety);
+  remember_output(model, safety, last_N);
   if (!local) return {{}, state.device_w.position_m};
   const LocalFelt told = local_felt(model, state, felt);
+  // Without a force there is no sense that it may not turn round against: a spring would pull.
+  constexpr double kWireStep_N = 1e-3;
+  if (squared_norm(safety.last_device_w.force_N) < kWireStep_N * kWireStep_N) return {{}, told.point_w_m};
   return {safety.ramp * told.felt, told.point_w_m};
 }
 

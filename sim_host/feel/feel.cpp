@@ -26,12 +26,11 @@ void set_device(const std::string& text, FeelSetup& setup) {
   const double number = std::strtod(value.c_str(), &end);
   if (value.empty() || *end != '\0' || !(number >= 0 && number <= 1e6))
     throw std::runtime_error(fmt::format("--device {}: expected NAME=VALUE with a number from 0 to 1e6", text));
-  std::string known = " delay_s encoder_rad echoes slope_share_per_ms";
+  std::string known = " delay_s encoder_rad echoes lost_of_16 slope_share_per_ms";
   if (name == "delay_s") return static_cast<void>(setup.delay_s = number);
   if (name == "echoes") return static_cast<void>(setup.echoes = number > 0);
-  // A node's is 0.1 (NodeOptions); of the largest force as it stands when this is read.
-  if (name == "slope_share_per_ms")
-    return static_cast<void>(setup.plant.local_slew_N_per_s = 1e3 * number * setup.plant.force_max_N);
+  if (name == "lost_of_16") return static_cast<void>(setup.lost_of_16 = static_cast<int>(number));
+  if (name == "slope_share_per_ms") return static_cast<void>(setup.plant.local_slope_share_per_ms = number);
   if (name == "encoder_rad") return static_cast<void>(setup.encoder_rad = number);
 #define PALPATE_SET(member)                                                   \
   if (name == #member) return static_cast<void>(setup.plant.member = number); \

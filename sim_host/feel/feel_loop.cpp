@@ -70,12 +70,15 @@ void run_feel_loop(const FeelSetup& setup, const FeelController& controller, con
   const int substeps = std::max(1, static_cast<int>(std::lround(setup.period_s / kFeelSubstep_s)));
   const auto ticks = static_cast<std::int64_t>(std::ceil(setup.path.end_s() / setup.period_s));
   FeelTick now;
+  DeviceCommand command;
   bool armed = false;
   for (std::int64_t n = 0; n < ticks; ++n) {
     now.time_s = static_cast<double>(n) * setup.period_s;
     now.handle_w = plant.pose();
     now.energy = plant.energy();
     now.kinetic_J = plant.kinetic_J();
+    if (setup.plant.local_Hz > 0) now.rendered_N = plant.motor().force_N;
+    now.unmoved_N = plant.unmoved_N();
     samples.next(now.time_s, plant, now.input);
     if (setup.echoes && now.input.stale_ticks == 0)
       now.input.command_lag = static_cast<std::uint32_t>(n) - plant.obeyed();
@@ -85,9 +88,12 @@ void run_feel_loop(const FeelSetup& setup, const FeelController& controller, con
     if (setup.joints) now.input.joints = setup.joints(now.time_s);
     controller(now.input, now.output);
     listen(now);
-    DeviceCommand command =
+    const DeviceCommand newest =
         to_command({}, now.output, CommandFlag::kEnable, setup.plant.local_Hz > 0 ? kLocalValid_s : 0);
-    command.number = static_cast<std::uint32_t>(n + 1);
+    if (n % 16 >= setup.lost_of_16) {
+      command = newest;
+      command.number = static_cast<std::uint32_t>(n + 1);
+    }
     for (int i = 0; i < substeps; ++i) plant.step(command);
   }
 }

@@ -29,6 +29,7 @@ struct FeelSetup {
   double encoder_rad = 0;      // angular quantum about each axis, from the first orientation
   double sample_period_s = 0;  // of the device; 0: the controller's
   bool echoes = true;          // samples tell which command acted when they were made
+  int lost_of_16 = 0;          // commands: of every 16 the first so many do not arrive
   HandPath path;
   std::vector<SampleEvent> event;                     // by time
   std::function<JointCommand(double time_s)> joints;  // empty: none
@@ -42,6 +43,9 @@ struct FeelTick {
   Output output;
   PlantEnergy energy;  // until now
   double kinetic_J = 0;
+  // Of a device that evaluates the local model: its motors now, and all that they changed until now beyond what the
+  // handle's exact motion made of the models.
+  Vec3 rendered_N, unmoved_N;
   // The controller's to tell: work of driven fingers on the object; how far its coupling is stretched.
   double fingers_J = 0, stretch_m = 0, stretch_rad = 0;
 };

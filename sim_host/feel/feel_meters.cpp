@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hal/device/kinematics.h"
-
 namespace palpate {
 
 namespace {
@@ -92,16 +90,17 @@ void FeelMeters::add(const FeelTick& tick) {
 
 void FeelMeters::add_steps(const FeelTick& tick) {
   const ModelParams& p = params_;
-  figures_.alternations = add_swings(tick.output.device_w.force_N, swing_);
+  // A device that evaluates the local model is judged by what its motors do.
+  const bool local = p.local_period_s > 0;
+  figures_.alternations = add_swings(local ? tick.rendered_N : tick.output.device_w.force_N, swing_);
   for (const SwingMeter& swing : swing_) figures_.alternation_run = std::max(figures_.alternation_run, swing.longest());
-  const LocalModel local = local_model_in_device({}, last_, kLocalValid_s);
-  Vec3 expected = local_force_N(last_.device_w.force_N, local, tick.input.pose_w.position_m);
-  expected = std::min(1.0, p.force_max_N / std::max(norm(expected), 1e-9)) * expected;  // the device's own limit
-  const double step = force_.empty() ? 0 : norm(tick.output.device_w.force_N - expected) / p.force_max_N;
+  const Vec3 change =
+      local ? tick.unmoved_N - last_.unmoved_N : tick.output.device_w.force_N - last_.output.device_w.force_N;
+  const double step = force_.empty() ? 0 : norm(change) / p.force_max_N;
   if (step > figures_.step_share) figures_.step_share = step, figures_.step_at_s = tick.time_s;
   figures_.leash_share = std::max(figures_.leash_share, tick.stretch_m * p.coupling_N_per_m / p.force_max_N);
   if (p.torque_max_Nm > 0) add_torque(tick);  // a device without torque: its tool turns with the handle
-  last_ = tick.output;
+  last_ = tick;
 }
 
 void FeelMeters::add_torque(const FeelTick& tick) {
@@ -109,12 +108,12 @@ void FeelMeters::add_torque(const FeelTick& tick) {
   const Vec3 torque_Nm = tick.output.device_w.torque_Nm;
   figures_.torque_alternations = add_swings(torque_Nm, torque_swing_);
   figures_.torque_step_share =
-      std::max(figures_.torque_step_share, norm(torque_Nm - last_.device_w.torque_Nm) / p.torque_max_Nm);
+      std::max(figures_.torque_step_share, norm(torque_Nm - last_.output.device_w.torque_Nm) / p.torque_max_Nm);
   figures_.leash_share = std::max(figures_.leash_share, tick.stretch_rad * p.coupling_Nm_per_rad / p.torque_max_Nm);
 }
 
 void FeelMeters::add_energy(const FeelTick& tick) {
-  const bool touching = norm(tick.output.device_w.force_N) > 0;
+  const bool touching = norm(tick.output.device_w.force_N) > 0 || norm(tick.rendered_N) > 0;
   if (touching && !touching_) {
     figures_.contacts += 1;
     port_begin_J_ = tick.energy.motor_J - tick.fingers_J;

@@ -71,7 +71,7 @@ class FeelMeters {
   FeelFigures figures_;
   SwingMeter swing_[3], torque_swing_[3];
   std::vector<Vec3> force_, handle_;
-  Output last_;
+  FeelTick last_;
   bool touching_ = false;
   double port_begin_J_ = 0, hand_begin_J_ = 0;
 };

@@ -165,58 +165,87 @@ TEST_F(FeelScene, AfterAGapTheForceComesBackInSmallSteps) {
   EXPECT_LT(figures.hand_J, 0.5 * figures.force_max_N * figures.force_max_N / felt_N_per_m);
 }
 
-// A device that closes the spring in its own loop feels a stiff object at least twice as stiff, gives the hand nothing
-// back, and is not told to go on, or to hold, where the force meets its limit or leaves it: a push at 0.5 m/s stepped
-// by 20 % of the largest force there (2026-11-25).
-TEST(FeelLocal, TwiceAsStiffWithoutEnergyOrAStepAtTheLimit) {
-  for (const char* name : {"half_shell_paper", "tools_on_cylinder"}) {
-    const std::string path = std::string(PALPATE_SOURCE_DIR "/config/scenes/") + name + ".toml";
+// Two stiff scenes on a device with a loop of its own.
+class FeelLocal : public testing::Test {
+ protected:
+  static constexpr const char* kScenes[] = {"half_shell_paper", "tools_on_cylinder"};
+  static SceneModel scene(const std::string& name, const std::vector<std::string>& settings = {}, bool local = true) {
     SceneOverlays overlays;
-    overlays.file = {PALPATE_SOURCE_DIR "/config/devices/sim-6dof-local.toml"};
-    const SceneModel held(path), local(path, overlays);
-    const auto feel = [&](const SceneModel& scene, Manoeuvre manoeuvre) {
-      const TouchPlace place = touch_place_of(scene.model(), *scene.scene());
-      return run_feel(scene.model(), *scene.scene(), place, manoeuvre, {}, nullptr).figures;
-    };
+    if (local) overlays.file = {PALPATE_SOURCE_DIR "/config/devices/sim-6dof-local.toml"};
+    overlays.setting = settings;
+    return SceneModel(PALPATE_SOURCE_DIR "/config/scenes/" + name + ".toml", overlays);
+  }
+  static FeelFigures feel(const SceneModel& scene, Manoeuvre manoeuvre, const FeelOptions& options = {}) {
+    const TouchPlace place = touch_place_of(scene.model(), *scene.scene());
+    return run_feel(scene.model(), *scene.scene(), place, manoeuvre, options, nullptr).figures;
+  }
+  static void expect_no_step(const SceneModel& scene, Manoeuvre manoeuvre, const FeelOptions& options = {}) {
+    const FeelFigures figures = feel(scene, manoeuvre, options);
+    EXPECT_LT(figures.step_share, 0.1) << scene.scene()->name << " " << static_cast<int>(manoeuvre);
+    EXPECT_EQ(figures.alternations, 0) << scene.scene()->name << " " << static_cast<int>(manoeuvre);
+    EXPECT_EQ(figures.fault, 0u) << scene.scene()->name << " " << static_cast<int>(manoeuvre);
+  }
+};
+
+// It feels a stiff object at least twice as stiff and gives the hand nothing back, though it comes to what commands
+// change by the slope of a node alone.
+TEST_F(FeelLocal, TwiceAsStiffWithoutEnergy) {
+  for (const char* name : kScenes) {
+    const SceneModel local = scene(name), held = scene(name, {}, false);
     EXPECT_GT(feel(local, Manoeuvre::kPress).felt_N_per_m, 2 * feel(held, Manoeuvre::kPress).felt_N_per_m) << name;
     EXPECT_EQ(feel(local, Manoeuvre::kTap).hand_J, 0) << name;
     EXPECT_EQ(feel(local, Manoeuvre::kLoop).hand_J, 0) << name;
-    EXPECT_LT(feel(local, Manoeuvre::kPush).step_share, 0.1) << name;
   }
 }
 
-// Such a device learns of a contact 3 ms late and has gone into it for nothing: what that makes is braked away. Before,
-// a tap of a firm hand gave it 5.9 and 1.7 mJ (2026-11-25).
-TEST(FeelLocal, ATapLearntOfLateGivesNothing) {
-  for (const char* name : {"half_shell_paper", "tools_on_cylinder"}) {
-    SceneOverlays overlays;
-    overlays.file = {PALPATE_SOURCE_DIR "/config/devices/sim-6dof-local.toml"};
-    overlays.setting = {"device.delay_ms=3", "device.damping_Ns_per_m=0.5", "device.encoder_step_mm=0"};
-    const SceneModel scene(std::string(PALPATE_SOURCE_DIR "/config/scenes/") + name + ".toml", overlays);
-    EXPECT_NEAR(scene.model().params.coupling_N_per_m, 0.45 * 8.5 / (0.3 * 3e-3), 1e-9) << name;
-    FeelOptions options;
-    options.hand = "firm";
-    const FeelFigures tap = run_feel(scene.model(), *scene.scene(), touch_place_of(scene.model(), *scene.scene()),
-                                     Manoeuvre::kTap, options, nullptr)
-                                .figures;
+// What its motors change beyond the handle's own motion, in a tick: below a tenth where the hand beats them, samples or
+// commands are lost and the encoder jumps by 4 mm, with 3 ms of delay too. Without the slope the meter says so: 71 % of
+// a jump (2026-11-25).
+TEST_F(FeelLocal, NothingStepsByATenthOfTheLargestForce) {
+  for (const char* name : kScenes) {
+    const SceneModel shipped = scene(name);
+    for (const Manoeuvre manoeuvre :
+         {Manoeuvre::kTap, Manoeuvre::kPush, Manoeuvre::kOverload, Manoeuvre::kTeleport, Manoeuvre::kLost})
+      expect_no_step(shipped, manoeuvre);
+    const SceneModel late = scene(name, {"device.delay_ms=3", "device.damping_Ns_per_m=0.5"});
+    for (const Manoeuvre manoeuvre : {Manoeuvre::kPush, Manoeuvre::kTeleport}) expect_no_step(late, manoeuvre);
+  }
+  FeelOptions any;
+  any.device = {"slope_share_per_ms=0"};
+  EXPECT_GT(feel(scene(kScenes[1]), Manoeuvre::kTeleport, any).step_share, 0.3);
+}
+
+// Such a device learns of a contact 3 ms late, has gone into it for nothing, and comes to the force by its slope: what
+// that makes is braked away. Before it was counted, a tap of a firm hand gave it 5.9 and 1.7 mJ, and with a slope on
+// all of the force 9.3 and 0.6 of a medium one (2026-11-25).
+TEST_F(FeelLocal, ATapLearntOfLateGivesNothing) {
+  for (const char* name : kScenes)
+    for (const bool firm : {false, true}) {
+      std::vector<std::string> device{"device.delay_ms=3", "device.damping_Ns_per_m=0.5"};
+      if (firm) device.push_back("device.encoder_step_mm=0");
+      const SceneModel local = scene(name, device);
+      EXPECT_NEAR(local.model().params.coupling_N_per_m, 0.3 * 8.5 / (0.3 * 3e-3), 1e-9) << name;
+      FeelOptions options;
+      options.hand = firm ? "firm" : "";
+      const FeelFigures tap = feel(local, Manoeuvre::kTap, options);
+      EXPECT_LT(tap.hand_J, kGridHandMost_J) << name;
+      EXPECT_LT(tap.step_share, 0.1) << name;
+      EXPECT_EQ(tap.alternations, 0) << name;
+    }
+}
+
+// Commands that are lost, three of every sixteen in a row, are a model that is told late: no step, and nothing given.
+TEST_F(FeelLocal, LostCommandsAreNoStep) {
+  FeelOptions lossy;
+  lossy.device = {"lost_of_16=3"};
+  for (const char* name : kScenes) {
+    const SceneModel local = scene(name);
+    expect_no_step(local, Manoeuvre::kPush, lossy);
+    expect_no_step(local, Manoeuvre::kTeleport, lossy);
+    const FeelFigures tap = feel(local, Manoeuvre::kTap, lossy);
     EXPECT_LT(tap.hand_J, kGridHandMost_J) << name;
     EXPECT_LT(tap.step_share, 0.1) << name;
-    EXPECT_EQ(tap.alternations, 0) << name;
   }
-}
-
-// What is not mended: a node's slope, a tenth of the largest force in a millisecond, is too slow for 4.3 N/mm at 0.3
-// m/s, and a tap gives the hand 4.4 mJ; two tenths are enough (2026-11-25).
-TEST(FeelLocal, ASlopeThatCannotFollowATapGivesTheHandEnergy) {
-  SceneOverlays overlays;
-  overlays.file = {PALPATE_SOURCE_DIR "/config/devices/sim-6dof-local.toml"};
-  const SceneModel scene(PALPATE_SOURCE_DIR "/config/scenes/tools_on_cylinder.toml", overlays);
-  const TouchPlace place = touch_place_of(scene.model(), *scene.scene());
-  FeelOptions slow, fast;
-  slow.device = {"slope_share_per_ms=0.1"};
-  fast.device = {"slope_share_per_ms=0.2"};
-  EXPECT_GT(run_feel(scene.model(), *scene.scene(), place, Manoeuvre::kTap, slow, nullptr).figures.hand_J, 1e-3);
-  EXPECT_EQ(run_feel(scene.model(), *scene.scene(), place, Manoeuvre::kTap, fast, nullptr).figures.hand_J, 0);
 }
 
 // Devices and hands nobody chose: the same on every machine, inside what is stated, and judged as the grid is.

@@ -159,22 +159,60 @@ TEST(FeelMeters, SeeTorqueAndTheLeash) {
   EXPECT_EQ(figures(0.1, 0, 1).leash_share, 0);
 }
 
-// A spring whose force the device has made by itself, up to its own limit, is no step when the command says so too.
+// Of a device that makes a spring's force by itself, motors that follow the handle are no step, whatever the command
+// says; what they change beyond that is, and so is their swinging.
 TEST(FeelMeters, AStepIsWhatTheDeviceHadNotMadeByItself) {
-  const ModelParams params = test::tiny_params();
-  const auto largest = [&](double felt_N_per_m) {
+  ModelParams params = test::tiny_params();
+  const auto figures = [&](double unmoved_N, double swing_N) {
     FeelMeters meters(params, 0, 0);
     FeelTick tick;
     for (int i = 0; i < 20; ++i) {
-      tick.input.pose_w.position_m.x = tick.output.handle_w_m.x = -2e-4 * i;
-      tick.output.device_w.force_N.x = std::min(params.force_max_N, 0.1 + 4000 * 2e-4 * i);  // 0.8 N a tick
-      tick.output.felt_along_N_per_m.x = felt_N_per_m;
+      tick.output.device_w.force_N.x = std::min(params.force_max_N, 0.8 * i);
+      tick.rendered_N.x = 0.4 * i + (i % 2 == 0 ? swing_N : 0);
+      tick.unmoved_N.x = i < 10 ? 0 : unmoved_N;
       meters.add(tick);
     }
-    return meters.figures().step_share;
+    return meters.figures();
   };
-  EXPECT_NEAR(largest(0), 0.8 / params.force_max_N, 1e-12);
-  EXPECT_LT(largest(4000), 1e-12);
+  EXPECT_NEAR(figures(0.3, 0).step_share, 0.8 / params.force_max_N, 1e-12);
+  EXPECT_EQ(figures(0, 2).alternations, 0);
+  params.local_period_s = 1e-4;
+  EXPECT_EQ(figures(0, 0).step_share, 0);
+  EXPECT_NEAR(figures(0.3, 0).step_share, 0.3 / params.force_max_N, 1e-12);
+  EXPECT_EQ(figures(0, 0).alternations, 0);
+  EXPECT_GT(figures(0, 2).alternations, 15);
+}
+
+// The device's ledger of it: a tap of 0.3 m/s on a spring of 4 N/mm raises its force by 1.2 N a tick and is no step but
+// for the encoder's; an encoder that jumps is one of its slope.
+TEST(FeelLoop, TellsWhatTheHandleDidNotMake) {
+  for (const bool jumps : {false, true}) {
+    FeelSetup setup;
+    setup.plant.local_Hz = 1e4;
+    setup.plant.local_N_per_m = 5000;
+    setup.plant.hand_stiffness_N_per_m = 5000;
+    setup.path = HandPath({{0, {}}, {0.02, {{-2e-3, 0, 0}, {}}}, {0.04, {{-2e-3, 0, 0}, {}}}});
+    if (jumps) setup.event = {{0.03, 0, {1.5e-3, 0, 0}}};
+    double step_N = 0, change_N = 0;
+    FeelTick last;
+    run_feel_loop(
+        setup,
+        [&](const Input& input, Output& output) {
+          output.device_w.force_N = {4 - 4000 * input.pose_w.position_m.x, 0, 0};
+          output.handle_w_m = input.pose_w.position_m;
+          output.felt_along_N_per_m = {4000, 0, 0};
+        },
+        [&](const FeelTick& now) {
+          if (now.time_s > 0.01) {  // it has come to the 4 N
+            step_N = std::max(step_N, norm(now.unmoved_N - last.unmoved_N));
+            change_N = std::max(change_N, norm(now.rendered_N - last.rendered_N));
+          }
+          last = now;
+        });
+    EXPECT_GT(change_N, 0.4);
+    EXPECT_LT(step_N, (jumps ? kLocalSlopeShare_per_ms * 8.5 : 0) + 4000 * 1.5 * 3e-5);  // and the smoothing's reach
+    EXPECT_EQ(step_N > 0.5, jumps);
+  }
 }
 
 // A sine within the band counts with its RMS; one below it does not; the window's leakage is below a percent.

@@ -2,6 +2,7 @@
 // What it does on a bus is graded in tests/examples/test_device_examples.cpp.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 #include <span>
 #include <vector>
@@ -113,6 +114,49 @@ TEST_F(HapticNode, EvaluatesTheLocalModelAsTheSimulatedDeviceDoes) {
   }
   EXPECT_GT(taken, 5000);
   EXPECT_GT(dropped, 2000);
+}
+
+// And renders it alike, from the same force before: the handle's way at once, jumps and commands by the slope, within
+// the limit. 1e-5 N is what single precision makes of 30 N in a dozen sums.
+TEST_F(HapticNode, ComesToAForceAsTheSimulatedDeviceDoes) {
+  constexpr double kMax_N = 8.5;
+  const LocalLoop loop{1e-4, kMax_N, 1e3 * kLocalSlopeShare_per_ms * kMax_N};
+  std::mt19937_64 draw(5);
+  std::normal_distribution<double> part;
+  arm();
+  std::int32_t at[3] = {}, to[3] = {};
+  control(at);
+  LocalModel model;
+  int jumps = 0, limited = 0;
+  for (int i = 0; i < 40000; ++i) {
+    if (i % 10 == 0 && draw() % 4 != 0) {  // some are lost
+      const Vec3 n = unit_or({part(draw), part(draw), part(draw)}, {1, 0, 0});
+      const double k = 1500 * std::abs(part(draw));
+      const Vec3 point = 1e-7 * Vec3{at[0] + 3e3 * part(draw), at[1] + 3e3 * part(draw), at[2] + 3e3 * part(draw)};
+      const LocalModel sent{point, k * Vec3{n.x * n.x, n.y * n.y, n.z * n.z}, k * Vec3{n.y * n.z, n.x * n.z, n.x * n.y},
+                            draw() % 4 == 0 ? 0 : 5e-3};
+      model = bounded_model(command(Vec3{3 * part(draw), 3 * part(draw), 12 * std::sin(3e-4 * i)}, sent),
+                            static_cast<double>(kConfig.stiffness_max_N_per_m));
+    }
+    const bool goes_on = node_.age_steps < node_.command.valid_steps, jumps_now = draw() % 100 == 0;
+    for (int axis = 0; axis < 3; ++axis)
+      to[axis] = at[axis] + static_cast<std::int32_t>((jumps_now ? 2e4 : 3e2) * part(draw));
+    const auto metres = [](const std::int32_t(&p)[3]) { return 1e-7 * Vec3{double(p[0]), double(p[1]), double(p[2])}; };
+    const Vec3 before_N = vector_of(motors_.force_N), asked_N = vector_of(node_.command.force_N);
+    LocalModel now = goes_on ? model : LocalModel{};
+    // A stale model's force is held: where it came to without one, F.
+    const Vec3 held_N = goes_on ? asked_N : vector_of(node_.wanted_N);
+    const Vec3 right_N = next_force_N(loop, before_N, held_N, now, {metres(at), metres(to)});
+    const Vec3 got_N = control(to);
+    if (goes_on || norm(held_N - asked_N) == 0) {
+      ASSERT_LT(norm(got_N - right_N), 1e-5) << i;
+    }
+    jumps += jumps_now ? 1 : 0;
+    limited += norm(got_N) > 8.49 ? 1 : 0;
+    for (int axis = 0; axis < 3; ++axis) at[axis] = to[axis];
+  }
+  EXPECT_GT(jumps, 200);
+  EXPECT_GT(limited, 100);
 }
 
 TEST_F(HapticNode, HoldsWhatAModelCameToWhenItIsStale) {

@@ -131,6 +131,7 @@ TEST(LocalModel, IsEvaluatedByTheDeviceUntilItIsStale) {
   options.substeps = 1;
   options.local_Hz = 1e4;
   options.local_N_per_m = 5000;
+  options.local_slope_share_per_ms = 0;  // any: from the first moment on
   DevicePlant plant(options, HandPath({{0, {{0.01, 0, 0}, {}}}}));
   DeviceCommand command{{1, 0, 0}, {}, CommandFlag::kEnable, wall(1000), 1};
   for (int i = 0; i < 30; ++i) {
@@ -145,6 +146,113 @@ TEST(LocalModel, IsEvaluatedByTheDeviceUntilItIsStale) {
   command.flags = 0;
   plant.step(command);
   EXPECT_EQ(plant.motor().force_N.x, 0);
+}
+
+constexpr LocalLoop kLoop{1e-4, 8.5, 900};
+
+// A first command that comes late, 0.5 mm in: what the handle's way makes is there at once, the rest by the slope.
+TEST(LocalModel, AWayActsAtOnceAndACommandWithTheSlope) {
+  const LocalModel model = wall(1000);  // its rest 2 mm off its point
+  double x = 0.0115, force_N = 0;
+  for (int i = 1; i <= 10; ++i) {
+    const LocalWay way{{x, 0, 0}, {x -= 1e-5, 0, 0}};
+    const double before_N = force_N;
+    force_N = next_force_N(kLoop, {force_N, 0, 0}, {2, 0, 0}, model, way).x;
+    const double wanted_N = 2 - 1000 * (x - 0.01);
+    EXPECT_NEAR(force_N, std::min(wanted_N, before_N + 0.01 + 0.09), 1e-12) << i;
+  }
+  EXPECT_NEAR(force_N, 2 - 1000 * (x - 0.01), 1e-12);
+}
+
+// Whatever is between the force rendered and the spring's, while nothing takes from it a way in and out gives nothing.
+TEST(LocalModel, ASpringOffItsRestGivesBackWhatItWasGiven) {
+  LocalLoop loop = kLoop;
+  loop.slope_N_per_s = 1e-9;
+  LocalModel model = wall(1000);
+  model.along_N_per_m.y = 600;
+  model.across_N_per_m.z = -300;
+  Vec3 force_N{1.5, 0.4, 0}, at{0.0101, 0.0002, 0};
+  double work_J = 0, least_J = 0;
+  constexpr int kSteps = 1000;
+  for (int i = 1; i <= kSteps; ++i) {
+    const double turn = 2 * kPi * i / kSteps;
+    const Vec3 to{0.0101 - 0.0008 * std::sin(turn), 0.0002 + 0.0004 * (1 - std::cos(turn)), 0};
+    const Vec3 before_N = force_N;
+    force_N = next_force_N(loop, force_N, {2, 0, 0}, model, {at, to});
+    work_J += 0.5 * dot(before_N + force_N, to - at);
+    least_J = std::min(least_J, work_J);
+    at = to;
+  }
+  EXPECT_LT(least_J, -1e-3);  // of so much
+  EXPECT_NEAR(work_J, 0, 1e-9);
+  EXPECT_NEAR(force_N.x, 1.5, 1e-6);
+}
+
+TEST(LocalModel, AnEncoderThatJumpsIsASlope) {
+  const LocalModel model = wall(4000);
+  const Vec3 jumped = next_force_N(kLoop, {2, 0, 0}, {2, 0, 0}, model, {{0.01, 0, 0}, {0.006, 0, 0}});
+  EXPECT_NEAR(jumped.x, 2 + 0.09, 1e-12);
+  const Vec3 moved = next_force_N(kLoop, {2, 0, 0}, {2, 0, 0}, model, {{0.01, 0, 0}, {0.0099, 0, 0}});
+  EXPECT_NEAR(moved.x, 2 + 0.4, 1e-12);  // 1 m/s
+}
+
+// A force that is left over of another model does not pull the hand that leaves: it turns round against F no farther.
+TEST(LocalModel, WhatIsLeftOverDoesNotPull) {
+  Vec3 force_N;
+  for (double x = 0.01; x < 0.013; x += 5e-5) {  // 0.5 mm in when it is told of 2 N
+    force_N = next_force_N(kLoop, force_N, {2, 0, 0}, wall(4000), {{x, 0, 0}, {x + 5e-5, 0, 0}});
+    ASSERT_GE(force_N.x, 0);
+  }
+  force_N = next_force_N(kLoop, {-1, 0, 0}, {2, 0, 0}, wall(4000), {{0.02, 0, 0}, {0.0201, 0, 0}});
+  EXPECT_NEAR(force_N.x, -0.91, 1e-12);
+}
+
+// Largest change of the force in a millisecond under commands that mean harm, on a handle that friction holds still
+// behind an encoder that jumps.
+double worst_step_N(double slope_share_per_ms) {
+  std::mt19937_64 draw(3);
+  std::uniform_real_distribution<double> part(-1, 1);
+  const auto vector = [&] { return Vec3{part(draw), part(draw), part(draw)}; };
+  PlantOptions options;
+  options.friction_N = 1e3;
+  options.delay_ticks = 0;
+  options.period_s = 1e-4;
+  options.substeps = 1;
+  options.local_Hz = 1e4;
+  options.local_N_per_m = 5000;
+  options.local_slope_share_per_ms = slope_share_per_ms;
+  DevicePlant plant(options, HandPath(std::vector<HandPose>(1)));
+  DeviceCommand command;
+  Vec3 past[11];
+  double worst_N = 0;
+  for (std::uint32_t i = 0; i < 20000; ++i) {
+    if (draw() % 4 == 0) {
+      const Vec3 n = unit_or(vector(), {1, 0, 0});
+      const double k = 50'000 * std::abs(part(draw));
+      command = {20.0 * vector(),
+                 {},
+                 CommandFlag::kEnable,
+                 {0.01 * vector(), k * Vec3{n.x * n.x, n.y * n.y, n.z * n.z}, k * Vec3{n.y * n.z, n.x * n.z, n.x * n.y},
+                  draw() % 3 == 0 ? 0.0 : 4e-3},
+                 i + 1};
+      if (draw() % 5 == 0) command.local.along_N_per_m = 1e4 * vector();
+      if (draw() % 9 == 0) command.local.point_m.y = kNaN;
+      if (draw() % 9 == 0) command.force_N.z = kNaN;
+      if (draw() % 7 == 0) command.force_N = {};
+    }
+    if (draw() % 50 == 0) plant.shift_encoder(0.004 * unit_or(vector(), {1, 0, 0}));
+    plant.step(command);
+    EXPECT_LE(norm(plant.motor().force_N), 8.5 * (1 + 1e-12));
+    past[i % 11] = plant.motor().force_N;
+    if (i > 10) worst_N = std::max(worst_N, norm(past[i % 11] - past[(i + 1) % 11]));
+  }
+  return worst_N;
+}
+TEST(LocalModel, NoCommandChangesTheForceFasterThanTheSlope) {
+  // An encoder's step smoothed to half of it through 5 N/mm adds 0.15 N at most (30 um on the way and back).
+  EXPECT_LE(worst_step_N(kLocalSlopeShare_per_ms), 8.5 * kLocalSlopeShare_per_ms + 0.15);
+  EXPECT_GT(worst_step_N(kLocalSlopeShare_per_ms), 8.5 * kLocalSlopeShare_per_ms - 1e-9);  // it is as hard as that
+  EXPECT_GT(worst_step_N(0), 8.5);                                                         // without a slope
 }
 
 TEST(LocalModel, ADeviceWithoutItHoldsTheForce) {

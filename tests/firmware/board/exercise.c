@@ -70,7 +70,8 @@ uint32_t exercise(int steps) {
     const int is_new = step % 10 == 0 || step % 400 > 390; /* every millisecond, and bursts */
     const int is_silent = step % 1000 > 700;
     const int length = is_new && !is_silent ? make_command(data, &identifier, &number) : 0;
-    for (int i = 0; i < 3; ++i) handle.position[i] += (int32_t)(draw() % 20001) - 10000;
+    const int32_t reach = draw() % 8 == 0 ? 10000 : 1000; /* an encoder that jumps, or a hand */
+    for (int i = 0; i < 3; ++i) handle.position[i] += (int32_t)(draw() % (uint32_t)(2 * reach + 1)) - reach;
     hn_set_stop(&node, step % 1200 > 1180);
     struct hn_motors motors;
     struct hn_frame frame;
