@@ -65,7 +65,7 @@ namespace palpate {
 #define PALPATE_FAULT_BITS(X)                                                                                        \
   X(kNotFinite, 0, "the force computed was not a finite number", "replay the recording; report it")                  \
   X(kDeviceSilent, 1, "the device sent nothing for the silence limit", "check cable, power and bus")                 \
-  X(kOverrun, 2, "too many ticks in a row missed deadlines (device.late_max_ms)",                                 \
+  X(kOverrun, 2, "too many ticks in a row missed deadlines (device.late_max_ms)",                                    \
     "run palpate latency; reduce the load")                                                                          \
   X(kDeviceReported, 3, "the device reported an error or its emergency stop", "release the stop; clear the device")  \
   X(kBusOff, 4, "the bus controller went bus-off", "check wiring and termination; restart the interface")            \

@@ -25,7 +25,7 @@ std::string post(const std::string& pieces, const std::string& holds, const std:
          "[body.material]\nyoungs_modulus_Pa = 3e5\npoisson_ratio = 0.45\ndensity_kg_per_m3 = 1100\n"
          "[body.fixed]\nbase_height_mm = 5\n[body.fem]\nedge_mm = 8\n[body.elastic]\nsoft_modes = 3\n"
          "[contact]\nbackend = \"elastic\"\nmax_depth_mm = 4\n[friction]\nlaw = \"" +
-         friction + "\"\n" + pieces + "[device]\nholds = \"" + holds +
+         friction + "\"\n" + pieces + "[device]\nsmooth_encoder = false\nholds = \"" + holds +
          "\"\n[path]\npoint = [ { time_s = 0, position_mm = [30, 34, 0] } ]\n";
 }
 std::string ball(const std::string& more = "") { return "[[tool.piece]]\nshape = \"sphere\"\nradius_mm = 6\n" + more; }

@@ -20,7 +20,8 @@ std::string scene_text(const std::string& contact) {
          contact +
          "\n[[tool.piece]]\nshape = \"sphere\"\nradius_mm = 10\n"
          // A contact that breaks loose does so by its own laws: here without a drop from static to sliding friction.
-         "[friction]\nmu_ref = 0.3\nmu_dynamic = 0.3\nbeta = 1\n[device]\nforce_max_N = 8.5\nspeed_max_m_per_s = 5\n";
+         "[friction]\nmu_ref = 0.3\nmu_dynamic = 0.3\nbeta = 1\n[device]\nsmooth_encoder = false\nforce_max_N = "
+         "8.5\nspeed_max_m_per_s = 5\n";
 }
 const char* const kPoints = "law = \"cubic\"\n[contact.cubic]\nk1_N_per_m = 300\nk3_N_per_m3 = 1e6";
 

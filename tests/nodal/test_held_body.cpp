@@ -18,7 +18,8 @@ SceneDesc snap_in(HeldPart holds) {
   SceneDesc scene = load_scene(PALPATE_SOURCE_DIR "/config/scenes/snap_in.toml");
   scene.device.holds = holds;
   if (holds != HeldPart::kTool) scene.device.grip_m = kGrip_m;
-  scene.device.local_Hz = 5000;  // so that the stiffness felt is told too
+  scene.device.local_Hz = 5000;         // so that the stiffness felt is told too
+  scene.device.smooth_encoder = false;  // a held body has no encoder of its own to smooth
   return scene;
 }
 
