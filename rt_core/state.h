@@ -192,7 +192,7 @@ using ForceHistory = double[6 * kForceHistory];
   X(Pose, tool_corrected_w, {}, "tool after the coupling's corrector: where the next prediction starts") \
   X(Wrench, last_good_w, {}, "last finite, clamped wrench before the gain")                              \
   X(Wrench, last_device_w, {}, "last output")                                                            \
-  X(ForceHistory, sent, {}, "outputs of the last ticks, newest first: what acts on the handle now")      \
+  X(ForceHistory, sent, {}, "last outputs, newest first; a local device's force: what is to come of it") \
   X(Vec3, stretch_slow_m, {}, "the coupling's stretch, smoothed: its damping takes the rate from it")    \
   X(double, stored_J, 0, "held by coupling and object at the last tick")                                 \
   X(double, object_J, 0, "the object's part of it")                                                      \

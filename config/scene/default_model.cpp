@@ -54,14 +54,13 @@ bool try_elastic(SceneDesc& scene) {
   elastic.contact.backend = Backend::kElastic;
   complete(elastic);
   if (!takes_every_key(elastic)) return false;
+  elastic.default_model = std::string("an elastic body, since ") + kModulus +
+                          " is stated and no law of contact is; contact.backend or contact.law says otherwise";
   if (leaves_error_open(scene)) {
     elastic.error_target = kErrorTarget;
     aim(elastic, error_target_share(elastic));
-  }
-  elastic.default_model = std::string("an elastic body, since ") + kModulus +
-                          " is stated and no law of contact is; contact.backend or contact.law says otherwise";
-  if (leaves_error_open(scene))
     elastic.default_model += std::string("; or a cheaper model within error_target = \"") + kErrorTarget + "\" of it";
+  }
   scene = std::move(elastic);
   return true;
 }

@@ -56,11 +56,11 @@ Model baked_for(const Model& model, const SceneDesc& scene, double damping, doub
   p.coupling_N_per_m = std::clamp(
       std::min(kCouplingShare * bound.value, impact_coupling_N_per_m(scene.device.local_Hz, delay_s, p.force_max_N)),
       1.0, 1e4);
-  DeviceDesc stated = scene.device;
-  stated.encoder_step_m = encoder_m;
-  p.encoder_step_m = smoothing_of(stated, p.coupling_N_per_m, p.coupling_Nm_per_rad).position ? encoder_m : 0;
-  const double late_s = p.local_period_s > 0 ? 0.5 * p.local_period_s : 0.5 * p.period_s + delay_s;
-  p.coupling_Ns_per_m = p.coupling_N_per_m * late_s;
+  SceneDesc stated = scene;
+  stated.device.delay_s = delay_s;
+  stated.device.encoder_step_m = encoder_m;
+  stated.device.coupling_Ns_per_m = kAuto;
+  set_times(stated, p);
   return baked;
 }
 
