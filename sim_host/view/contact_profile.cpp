@@ -43,6 +43,16 @@ Real contact_pressure(TipShape shape, Real rho) {
   return 0;
 }
 
+Real contact_drawn_in(Real rho) {
+  if (rho > 1) return 1 / rho;
+  const Real s = std::sqrt((1 - rho) * (1 + rho));  // 1 - s^3 = (1 - s) (1 + s + s^2), 1 - s = rho^2 / (1 + s)
+  return rho * (1 + s + s * s) / (1 + s);
+}
+
+Real contact_drawn_in_share(Real poisson_ratio) {
+  return 2 * (1 - 2 * poisson_ratio) / (3 * kPi * (1 - poisson_ratio));
+}
+
 Real fade_out(Real distance_m, Real from_m, Real to_m) {
   if (!(distance_m < to_m)) return 0;
   if (distance_m <= from_m) return 1;

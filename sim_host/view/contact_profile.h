@@ -21,6 +21,13 @@ Real contact_profile(TipShape shape, Real rho);
 // Infinite at a cone's point and at the edge of a flat end.
 Real contact_pressure(TipShape shape, Real rho);
 
+// How far a frictionless ball's contact draws the surface in towards its middle, over that at the contact's edge
+// (contact_drawn_in_share), by Hertz' pressure (Johnson 1985, eqs. 3.41b and 3.42b): nothing in the middle, inside
+// (1 - (1 - rho^2)^1.5) / rho, outside 1/rho.
+Real contact_drawn_in(Real rho);
+// At the edge, of the contact's depth: 2 (1 - 2 nu) / (3 pi (1 - nu)). 0 for a material that keeps its volume.
+Real contact_drawn_in_share(Real poisson_ratio);
+
 // Half spaces end: 1 up to `from_m`, 0 from `to_m` on, between them falling without a kink.
 Real fade_out(Real distance_m, Real from_m, Real to_m);
 

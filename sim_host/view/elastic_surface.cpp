@@ -122,6 +122,7 @@ ElasticShape elastic_shape(const Model& model, const State& state) {
     TipDent dent = dent_of(tip, depth_m);
     dent.mean_Pa = state.live.stiffness * force_of(tip, state, tips) / (kPi * dent.across_m * dent.along_m);
     dent.foot_w += given_m * dent.inward;
+    dent.drawn_in_m = contact_drawn_in_share(model.params.poisson_ratio) * depth_m;
     dent.cut_1_per_m = near.cut_1_per_m(modes_m_per_N, tip.row.c_m_per_N);
     shape.dent.push_back(dent);
   }
@@ -146,7 +147,11 @@ Vec3 TipDent::at(Vec3 point_w, Vec3 normal) const {
   const double fade = fade_out(rho, 0.5 * kDentReach, kDentReach);
   const double edge = across_m * cut_1_per_m,
                ends = left_of_half_space(std::max(rho, 1.0) * edge) / left_of_half_space(edge);
-  return (depth_m * contact_profile(TipShape::kBall, rho) * ends * fade * std::min(1.0, 2 * facing)) * inward;
+  const double deep = depth_m * contact_profile(TipShape::kBall, rho) * fade_out((rho - 1) * edge, 0, kModesTakeOver);
+  // Towards the middle across the ellipse's lines of equal rho.
+  const Vec3 aside = tangential_part(from, inward), length = dot(aside, along) * along;
+  const Vec3 outward = unit_or((across_m * across_m / (along_m * along_m)) * length + (aside - length), {0, 0, 0});
+  return (ends * fade * std::min(1.0, 2 * facing)) * (deep * inward - drawn_in_m * contact_drawn_in(rho) * outward);
 }
 
 double TipDent::pressure_Pa(Vec3 point_w, Vec3 normal) const {

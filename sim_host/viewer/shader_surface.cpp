@@ -243,12 +243,13 @@ void ShaderSurface::evaluate(const ElasticShape& shape, const GlMesh& body, bool
   std::vector<Texel> dent;
   for (const TipDent& d : shape.dent)
     dent.insert(dent.end(), {texel(d.foot_w, d.depth_m), texel(d.inward, d.across_m), texel(d.along, d.along_m),
-                             texel({d.mean_Pa, d.cut_1_per_m, 0}, 0)});
+                             texel({d.mean_Pa, d.cut_1_per_m, d.drawn_in_m}, 0)});
   has_dents_ = !dent.empty();
   if (has_dents_) dents_.set(dent.data(), sizeof(Texel) * dent.size(), GL_STREAM_DRAW);
   points_.use();
   points_.set("dents", static_cast<int>(shape.dent.size()));
   points_.set("reach", static_cast<float>(kDentReach));
+  points_.set("take_over", static_cast<float>(kModesTakeOver));
   carried_.look_up(points_, "carried", 0);
   dents_.look_up(points_, "dent", 1);
   keep_vertices(point_array_, level.points, {placed_.buffer(), pressure_.buffer()});

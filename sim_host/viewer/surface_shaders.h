@@ -22,9 +22,9 @@ layout(location = 0) in vec3 rest;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in uvec3 base;
 layout(location = 3) in vec3 share;
-uniform samplerBuffer carried, dent;  // of a dent: foot, depth; inward, across; along, along_m; mean, cut
+uniform samplerBuffer carried, dent;  // of a dent: foot, depth; inward, across; along, along_m; mean, cut, drawn in
 uniform int dents;
-uniform float reach;
+uniform float reach, take_over;
 out vec4 placed;  // position, length of the displacement
 out float pressure;
 const float pi = 3.14159265358979;
@@ -34,6 +34,15 @@ float profile(float rho) {
   // Beyond, two large numbers are nearly the same: the series in 1 / rho instead, good to 5e-6 of itself.
   if (rho > 2.0) return (4.0 / 3.0 + s * (2.0 / 15.0 + s * (3.0 / 70.0 + s * (5.0 / 252.0 + s * 0.011048)))) / (pi * rho);
   return ((2.0 - rho * rho) * atan(1.0, root) + root) / pi;
+}
+float drawn_in(float rho) {
+  if (rho > 1.0) return 1.0 / rho;
+  float s = sqrt((1.0 - rho) * (1.0 + rho));
+  return rho * (1.0 + s + s * s) / (1.0 + s);
+}
+float fade_out(float way) {
+  float s = clamp(way, 0.0, 1.0);
+  return (1.0 - s) * (1.0 - s) * (1.0 + 2.0 * s);
 }
 float left(float by_cut) { return 1.0 - by_cut / sqrt(by_cut * by_cut + 1.0); }
 void main() {
@@ -49,11 +58,17 @@ void main() {
     float x = dot(from, along.xyz);
     float rho = length(vec2(x / along.w, length(from - x * along.xyz) / inward.w));
     if (!(rho < reach)) continue;
-    vec2 mean_cut = texelFetch(dent, 4 * i + 3).xy;
-    float edge = inward.w * mean_cut.y, ends = left(max(rho, 1.0) * edge) / left(edge);
-    float s = clamp(2.0 * rho / reach - 1.0, 0.0, 1.0), fade = (1.0 - s) * (1.0 - s) * (1.0 + 2.0 * s);
-    u += (foot.w * profile(rho) * ends * fade * min(1.0, 2.0 * facing)) * inward.xyz;
-    if (rho < 1.0) pressure += mean_cut.x * 1.5 * sqrt((1.0 - rho) * (1.0 + rho));
+    vec3 more = texelFetch(dent, 4 * i + 3).xyz;
+    float edge = inward.w * more.y, ends = left(max(rho, 1.0) * edge) / left(edge);
+    float deep = foot.w * profile(rho) * fade_out((rho - 1.0) * edge / take_over);
+    vec3 aside = from - dot(from, inward.xyz) * inward.xyz, lengthwise = x * along.xyz;
+    float narrow = inward.w / along.w;
+    vec3 outward = narrow * narrow * lengthwise + aside - lengthwise;
+    float far = length(outward);
+    if (far > 0.0) outward /= far;
+    u += (ends * fade_out(2.0 * rho / reach - 1.0) * min(1.0, 2.0 * facing)) *
+         (deep * inward.xyz - more.z * drawn_in(rho) * outward);
+    if (rho < 1.0) pressure += more.x * 1.5 * sqrt((1.0 - rho) * (1.0 + rho));
   }
   placed = vec4(rest + u, length(u));
 })";

@@ -82,6 +82,24 @@ TEST(ContactProfile, ThePressureIsTheForceAndMakesTheDepth) {
   }
 }
 
+// Under an axisymmetric pressure the surface of a half space moves in by (1 - 2 nu) (1 + nu) / (E r) times the integral
+// of p r dr up to there (Timoshenko & Goodier 1970, section 139), and the pressure is the ball's: 4/3 E* a d in all.
+TEST(ContactProfile, TheSurfaceIsDrawnInAsThePressureAsks) {
+  for (const double nu : {0.0, 0.3, 0.49, 0.5})
+    for (const double rho : {0.01, 0.3, 0.8, 1.0, 1.7, 6.0}) {
+      double pushed = 0;
+      constexpr int kSteps = 4000;
+      const double end = std::min(rho, 1.0);
+      for (int k = 0; k < kSteps; ++k) {
+        const double r = end * (k + 0.5) / kSteps;
+        pushed += contact_pressure(TipShape::kBall, r) * r * end / kSteps;
+      }
+      const double moved = (1 - 2 * nu) / (1 - nu) / rho * 4 / (3 * kPi) * pushed;
+      EXPECT_NEAR(contact_drawn_in_share(nu) * contact_drawn_in(rho), moved, 1e-6) << nu << " " << rho;
+    }
+  EXPECT_EQ(contact_drawn_in(0), 0);
+}
+
 // A ball on a plane: inside the edge the dented surface is the ball's paraboloid, and beyond it lies outside the ball.
 TEST(ContactProfile, TheDentedSurfaceLiesOnTheBall) {
   const double ball_m = 6e-3, depth_m = 1e-3;

@@ -64,6 +64,21 @@ TEST(ElasticSurface, ADentReachesAsFarAsItsRadius) {
   EXPECT_EQ(dent.pressure_Pa({0.0041, 0.1, 0}, {0, 1, 0}), 0);
 }
 
+// Towards the middle from all sides, across an ellipse's lines of equal rho, and only as far as the half space goes.
+TEST(ElasticSurface, AContactDrawsTheSurfaceIn) {
+  TipDent dent{{0, 0.1, 0}, {0, -1, 0}, {1, 0, 0}, 0.002, 0.004, 0.012, 1000, 50, 0.0002};
+  const auto along = [&](double x_m, double z_m) { return dent.at({x_m, 0.1, z_m}, {0, 1, 0}); };
+  EXPECT_EQ(norm(tangential_part(along(0, 0), {0, 1, 0})), 0);
+  EXPECT_NEAR(along(0, 0.004).z, -0.0002, 1e-12);
+  EXPECT_NEAR(along(0.012, 0).x, -0.0002, 1e-12);
+  EXPECT_NEAR(along(-0.012, 0).x, 0.0002, 1e-12);
+  const Vec3 beside = along(0.006, -0.003);
+  EXPECT_NEAR(beside.x / beside.z, -0.006 / 0.003 / 9, 1e-9);  // the ellipse is three times as long as wide
+  // The half space ends at 20 mm: beyond the edge by 24 mm nothing is left along the normal.
+  EXPECT_LT(along(0, 0.012).y, -1e-5);
+  EXPECT_EQ(along(0, 0.0285).y, 0);
+}
+
 // Over the drawn surface the pressure adds up to the force, of every method that has one.
 double force_of_pressure_N(const DeformedSurface& surface) {
   double sum_N = 0;
