@@ -18,6 +18,7 @@
 #include "sim_host/build_id.h"
 #include "sim_host/cli.h"
 #include "sim_host/cli_checks.h"
+#include "sim_host/file_text.h"
 #include "sim_host/json_output.h"
 #include "sim_host/latency/machine_identity.h"
 #include "sim_host/overlay_options.h"
@@ -39,10 +40,6 @@ struct ReportCommand {
   bool solve = false, again = false, quick = false, json = false;
 };
 
-std::string text_of(const std::string& path) {
-  std::ifstream in(path);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 void write_file(const std::string& path, const std::string& text, bool told = true) {
   std::ofstream file(path);
   file << text;
@@ -113,7 +110,7 @@ class Reporter {
 
   CaseReport report(const std::string& scene_path) const {
     const SceneDesc scene = load_scene(scene_path, command_.overlays);
-    const std::string scene_text = text_of(scene_path);
+    const std::string scene_text = file_text(scene_path);
     CaseReport report;
     report.name = scene.name;
     report.about = about(scene_text);
@@ -127,8 +124,8 @@ class Reporter {
     }
     if (fs::exists(reference)) report.reference = read_reference(reference);
     report.press = report.reference ? report.reference->press : stated_place(command_, scene);
-    const std::string key = kRunFormat + scene_text + text_of(reference) + text_of(reference_surface_path(reference)) +
-                            kBuildId + overlay_text();
+    const std::string key = kRunFormat + scene_text + file_text(reference) +
+                            file_text(reference_surface_path(reference)) + kBuildId + overlay_text();
     for (const ModelVariant& variant : model_variants())
       if (wanted(variant)) report.runs.push_back(run(variant, scene, report, key));
     return report;
@@ -146,7 +143,7 @@ class Reporter {
   }
   std::string overlay_text() const {
     std::string text;
-    for (const std::string& file : command_.overlays.file) text += text_of(file);
+    for (const std::string& file : command_.overlays.file) text += file_text(file);
     for (const std::string& setting : command_.overlays.setting) text += setting;
     return text;
   }
@@ -158,7 +155,7 @@ class Reporter {
                                           p.normal.y, p.normal.z, p.radius_m, p.depth_m);
     const std::string path = fmt::format("{}/runs/{}.{}.{:016x}.json", command_.out, report.name, variant.name,
                                          text_hash(key + place + (command_.quick ? "quick" : "")));
-    if (!command_.again && fs::exists(path)) return run_of_json(text_of(path));
+    if (!command_.again && fs::exists(path)) return run_of_json(file_text(path));
     fmt::print("{:<18}{:<16}", report.name, variant.name);
     std::fflush(stdout);
     ModelRunOptions options;
