@@ -200,7 +200,8 @@ using ForceHistory = double[6 * kForceHistory];
   X(double, surplus_J, 0, "what this contact gave the handle and holds, beyond what the handle gave it") \
   X(Vec3, last_coupling_N, {}, "the coupling's force at the last tick")                                  \
   X(Vec3, last_step_N, {}, "and its change then")                                                        \
-  X(double, swings, 0, "ticks in which it changed back, lately")
+  X(double, swings, 0, "ticks in which it changed back, lately")                                         \
+  X(double, unpaid_J, 0, "while the coupling's end stands apart: held, and not given by the hand")
 
 struct SafetyState {
   PALPATE_STATE_FIELDS_OF(PALPATE_SAFETY_STATE)
@@ -239,18 +240,22 @@ struct LateDevice {
 };
 
 // The tool that a hand moves by its device: of one hand the fields of State itself.
-#define PALPATE_TOOL_STATE(X)                                                                          \
-  X(Pose, device_w, {}, "of the handle: the last accepted sample, smoothed within the encoder's step") \
-  X(Pose, device_previous_w, {}, "of the one before")                                                  \
-  X(Pose, tool_w, {}, "at which this tick's contact was evaluated")                                    \
-  X(Pose, tool_previous_w, {}, "and the last tick's")                                                  \
-  X(Matrix6, contact_stiffness, {}, "tangent (force, torque about the tool's origin), row-major")      \
-  X(std::int32_t, started, 0, "0: the next sample is the first")                                       \
-  X(std::int32_t, rejected_ticks, 0, "consecutive samples found implausible")                          \
-  X(Pose, told_w, {}, "of the last accepted sample, as it came")                                       \
-  X(Vec3, observed_m_per_s, {}, "velocity with which device_w goes on between the encoder's steps")    \
-  X(Vec3, observed_rad_per_s, {}, "and turns")                                                         \
-  X(Vec3, hand_velocity_m_per_s, {}, "of the handle, smoothed: bridges lost samples")                  \
+#define PALPATE_TOOL_STATE(X)                                                                           \
+  X(Pose, device_w, {}, "of the handle: the last accepted sample, smoothed within the encoder's step")  \
+  X(Pose, device_previous_w, {}, "of the one before")                                                   \
+  X(Pose, tool_w, {}, "at which this tick's contact was evaluated")                                     \
+  X(Pose, tool_previous_w, {}, "and the last tick's")                                                   \
+  X(Matrix6, contact_stiffness, {}, "tangent (force, torque about the tool's origin), row-major")       \
+  X(std::int32_t, started, 0, "0: the next sample is the first")                                        \
+  X(std::int32_t, rejected_ticks, 0, "consecutive samples found implausible")                           \
+  X(Pose, told_w, {}, "of the last accepted sample, as it came")                                        \
+  X(Vec3, observed_m_per_s, {}, "velocity with which device_w goes on between the encoder's steps")     \
+  X(Vec3, observed_rad_per_s, {}, "and turns")                                                          \
+  X(Vec3, hand_velocity_m_per_s, {}, "of the handle, smoothed: bridges lost samples")                   \
+  X(std::int32_t, unseen_ticks, 0, "consecutive ticks without a sample that tells where the handle is") \
+  X(std::int32_t, apart, 0, "1: samples came anew, the coupling's end does not stand at the handle")    \
+  X(Vec3, seat_m, {}, "from the handle to the coupling's end then")                                     \
+  X(Vec3, seat_rad, {}, "and its turn")                                                                 \
   X(SafetyState, safety, {}, "memory of the last gate")
 
 // The other one of two tools. Its pieces' contacts have Contact::hand and Region::hand as it has.

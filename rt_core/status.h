@@ -59,7 +59,9 @@ namespace palpate {
   X(kSampleBridged, 25, "no fresh device sample this tick; the handle is taken to move on as it did",                  \
     "see docs/realtime.md, missed samples")                                                                            \
   X(kDeviceLate, 26, "the device obeys commands later than its stated delay; the coupling is softened to what it is",  \
-    "measure it with palpate doctor --identify and state it: device.delay_ms")
+    "measure it with palpate doctor --identify and state it: device.delay_ms")                                         \
+  X(kSeatedAnew, 27, "samples came again after a gap or a jump; the tool is held apart from the handle",               \
+    "none: it goes back as the hand lets go of the object; see docs/stability.md")
 
 // X(name, bit, cause, remedy)
 #define PALPATE_FAULT_BITS(X)                                                                                        \

@@ -2,6 +2,7 @@
 
 #include "rt_core/decay.h"
 #include "rt_core/safety/local_device.h"
+#include "rt_core/safety/seat.h"
 
 namespace palpate {
 
@@ -120,7 +121,7 @@ void drain_energy(const Model& model, State& state, Scratch& scratch, const Inpu
                   Vec3& force_N) PALPATE_RT {
   const ModelParams& p = model.params;
   SafetyState& safety = state.safety;
-  const Twist stretch = twist_between(safety.tool_corrected_w, state.device_w);
+  const Twist stretch = twist_between(safety.tool_corrected_w, coupling_end(state));
   const double stored_J =
       scratch.energy_J + spring_J(norm(stretch.translation_m), p.coupling_N_per_m, p.force_max_N) +
       spring_J(norm(stretch.rotation_rad), p.coupling_Nm_per_rad, p.torque_max_Nm > 0 ? p.torque_max_Nm : kHuge);
@@ -132,6 +133,7 @@ void drain_energy(const Model& model, State& state, Scratch& scratch, const Inpu
   const double made_J = dot(on_handle.force_N, way.translation_m) + dot(on_handle.torque_Nm, way.rotation_rad) +
                         stored_J - safety.stored_J - joint_work_J(state, scratch) - given_J;
   const double most_J = 0.5 * p.force_max_N * p.force_max_N / p.coupling_N_per_m;
+  if (state.apart != 0) count_unpaid(state, made_J);
   safety.stored_J = stored_J;
   safety.object_J = scratch.energy_J;
   safety.object_w = scratch.contact_wrench_w;

@@ -3,6 +3,7 @@
 #include "rt_core/safety/hand_energy.h"
 #include "rt_core/safety/local_device.h"
 #include "rt_core/safety/mode_machine.h"
+#include "rt_core/safety/seat.h"
 #include "rt_core/tick.h"
 #include "rt_core/tool/held_body.h"
 #include "rt_core/tool/two_tools.h"
@@ -25,6 +26,7 @@ bool clamp_length(Vec3& v, double limit) PALPATE_RT {
 // After a non-finite number anywhere: drop contact memory and start again from the handle's pose.
 void restart_contact(State& state) PALPATE_RT {
   state.tool_w = state.tool_previous_w = state.safety.tool_corrected_w = state.device_w;
+  forget_seat(state);
   forget_contact(state);
 }
 
@@ -163,6 +165,8 @@ LocalFelt put_out(const Model& model, State& state, Scratch& scratch, const Inpu
   remember_output(model, safety, last_N);
   if (!local) return {{}, state.device_w.position_m};
   const LocalFelt told = local_felt(model, state, felt);
+  // Nobody knows where the handle is whose sample was refused: the force alone, not a spring from there.
+  if ((scratch.status & Status::kInputRejected) != 0) return {{}, told.point_w_m};
   // Without a force there is no sense that it may not turn round against: a spring would pull.
   constexpr double kWireStep_N = 1e-3;
   if (squared_norm(safety.last_device_w.force_N) < kWireStep_N * kWireStep_N) return {{}, told.point_w_m};

@@ -1,5 +1,7 @@
 #include "rt_core/decay.h"
 #include "rt_core/safety/encoder_observer.h"
+#include "rt_core/safety/hand_velocity.h"
+#include "rt_core/safety/seat.h"
 #include "rt_core/tick.h"
 #include "rt_core/tool/two_tools.h"
 #include "rt_core/tool/virtual_coupling.h"
@@ -8,13 +10,6 @@ namespace palpate {
 
 namespace {
 
-// The handle's velocity is smoothed over so many samples, and over no less time: an encoder step of 30 um in one tick
-// is 30 mm/s, here 5. Six samples of a tenth of a millisecond made 50 of it, and the step itself an acceleration that
-// no hand has: one sample in 70 was refused (tools_on_layer at 10 kHz, 2026-11-23).
-constexpr double kVelocityLag_ticks = 6, kVelocityLag_s = 6e-3;
-double velocity_lag_ticks(const ModelParams& params) PALPATE_RT {
-  return max_of(kVelocityLag_ticks, kVelocityLag_s / params.period_s);
-}
 // The share of stale ticks is over about so long.
 constexpr double kStaleWindow_s = 0.256;
 double stale_window_ticks(const ModelParams& params) PALPATE_RT { return max_of(1, kStaleWindow_s / params.period_s); }
@@ -32,7 +27,10 @@ bool is_plausible(const Model& model, const State& state, const Input& input) PA
   if (!is_finite(input.pose_w) || !is_rotation(input.pose_w.orientation)) return false;
   if (state.started == 0) return true;
   if (input.stale_ticks > 0 && state.rejected_ticks == 0) return true;  // tells nothing new
-  const double elapsed_ticks = 1.0 + input.stale_ticks + input.overrun_ticks + state.rejected_ticks;
+  // A silence that was not bridged is time in which the hand went on.
+  const bool gap = input.stale_ticks == 0 && state.unseen_ticks > model.params.silence_hold_ticks;
+  const double elapsed_ticks =
+      1.0 + input.stale_ticks + input.overrun_ticks + (gap ? state.unseen_ticks : state.rejected_ticks);
   const double elapsed_s = model.params.period_s * elapsed_ticks;
   const double reach_m = model.params.speed_max_m_per_s * elapsed_s;
   const double reach_rad = model.params.turn_max_rad_per_s * elapsed_s;
@@ -41,11 +39,10 @@ bool is_plausible(const Model& model, const State& state, const Input& input) PA
   const double chord2 = max_of(0.0, 2 - 2 * cosine);
   const Vec3 way = input.pose_w.position_m - state.told_w.position_m;
   if (!(norm(way) <= reach_m && 4 * chord2 <= reach_rad * reach_rad)) return false;
-  // Nor can it have left the motion it had by more than its largest acceleration makes of the time, and of as long
-  // again for what the smoothed velocity is late by; a step of the encoder is nobody's acceleration.
-  const double bend_m = model.params.acceleration_max_m_per_s2 * elapsed_s *
-                        (elapsed_s + velocity_lag_ticks(model.params) * model.params.period_s);
-  return !(bend_m > 0) || norm(way - elapsed_s * state.hand_velocity_m_per_s) <= bend_m;
+  // Nor can it have left the motion it had by more than its largest acceleration makes of the time; a step of the
+  // encoder is nobody's acceleration.
+  const double most_m = bend_m(model.params, elapsed_s);
+  return !(most_m > 0) || norm(way - elapsed_s * state.hand_velocity_m_per_s) <= most_m;
 }
 
 // `pose`, as the encoders told it, to where the handle is between their steps.
@@ -107,43 +104,57 @@ void take_sample(const Model& model, State& state, Scratch& scratch, const Input
   if (!accepted) {
     scratch.status |= Status::kInputRejected;
     state.rejected_ticks += state.rejected_ticks < kMaxRejectedTicks ? 1 : 0;
+    state.unseen_ticks += state.unseen_ticks < kMaxRejectedTicks ? 1 : 0;
     return;
   }
   Pose pose{input.pose_w.position_m, normalised(input.pose_w.orientation)};
   if (state.started == 0) start_at(state, pose);
   state.told_w = input.drive == Drive::kDevice ? state.told_w : pose;
-  if (input.drive == Drive::kDevice) follow_hand(model, state, scratch, input, pose);
+  const bool tells = nobody_holds || input.stale_ticks == 0 || state.rejected_ticks > 0;
+  if (nobody_holds)
+    forget_seat(state);
+  else if (tells && comes_anew(model, state, input, pose))
+    seat_anew(model, state, pose);
+  else
+    follow_hand(model, state, scratch, input, pose);
   state.device_w = pose;
+  state.unseen_ticks = tells ? 0 : state.unseen_ticks + (state.unseen_ticks < kMaxRejectedTicks ? 1 : 0);
   if (model.params.held_part == HeldPart::kBoth)
     state.second_w = {input.second_w.position_m, normalised(input.second_w.orientation)};
   state.rejected_ticks = 0;
 }
 
-// The tool goes with the handle as far as contact lets it: in the free all the way, however weak the device. Behind a
-// hand that has beaten the motors it goes with the end at which the coupling is held.
-void predict_tool(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
+// The tool goes with the coupling's end, `from` the last tick's, as far as contact lets it: in the free all the way,
+// however weak the device. Behind a hand that has beaten the motors it goes with the end at which the coupling is held.
+void predict_tool(const Model& model, State& state, Scratch& scratch, const Pose& from) PALPATE_RT {
   const Pose& before = state.safety.tool_corrected_w;
-  Twist way = twist_between(state.device_previous_w, state.device_w), tool;
+  const Pose to = coupling_end(state);
+  Twist way = twist_between(from, to), tool;
   if (scratch.held_by_hand != 0) {
     std::uint32_t beaten = 0;
-    const Pose end = held_end(model, state.device_previous_w, before, beaten);
-    if (beaten != 0) way = twist_between(end, held_end(model, state.device_w, before, beaten));
+    const Pose end = held_end(model, from, before, beaten);
+    if (beaten != 0) way = twist_between(end, held_end(model, to, before, beaten));
   }
   if (!follow(model, state, way, tool)) scratch.status |= Status::kCouplingSingular;
   state.tool_w = moved(before, tool);
-  if (scratch.held_by_hand != 0) scratch.grip_w = held_end(model, state.device_w, state.tool_w, scratch.status);
+  if (scratch.held_by_hand != 0) scratch.grip_w = held_end(model, to, state.tool_w, scratch.status);
 }
 
 // One hand's sample, and where its tool is taken to be.
 void sense_tool(const Model& model, State& state, Scratch& scratch, const Input& input) PALPATE_RT {
+  const bool was_apart = state.apart != 0;
+  const Pose end_before = coupling_end(state);
   take_sample(model, state, scratch, input);
+  if (state.apart != 0) ease_seat(model, state);
+  const bool apart = was_apart || state.apart != 0;
+  if (apart) scratch.status |= Status::kSeatedAnew;
   state.tool_previous_w = state.tool_w;
   scratch.grip_w = state.device_w;
   if (scratch.driven != 0) {
     state.tool_w = state.device_w;
     return;
   }
-  predict_tool(model, state, scratch);
+  predict_tool(model, state, scratch, apart ? end_before : state.device_previous_w);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "rt_core/cholesky.h"
 #include "rt_core/contact/contact_stiffness.h"
 #include "rt_core/decay.h"
+#include "rt_core/safety/seat.h"
 #include "rt_core/tool/two_tools.h"
 
 namespace palpate {
@@ -19,11 +20,14 @@ constexpr Real kSwingCalm = 4;
 // How far the tool may go by itself, of the coupling's longest stretch, when the hand goes `hand` of it. Friction that
 // may give energy back needs the wide step: held to the narrow one its surplus grew to kUnstable in a slide of
 // heart_compass_paper (2026-11-23). While no force is rendered there is nothing to step, and what asks whether the tool
-// starts inside the body must not wait until it has come out.
-Real own_share(const ModelParams& p, Mode mode, Real hand) PALPATE_RT {
-  const bool active = p.friction_law == FrictionLaw::kPaper || p.friction_law == FrictionLaw::kPreslidingPaper;
-  return active || mode != Mode::kForce ? kToolStepShare
-                                        : clamp_to(kFollowShare * hand, kCalmStepShare, kToolStepShare);
+// starts inside the body must not wait until it has come out. While the coupling's end stands apart (safety/seat.h) the
+// end gives way to a surplus, so that such friction does without: with the wide step its force swung in 2 ticks after
+// gaps (heart_compass_paper, 2026-11-25).
+Real own_share(const ModelParams& p, const State& state, Real hand) PALPATE_RT {
+  const bool gives = p.friction_law == FrictionLaw::kPaper || p.friction_law == FrictionLaw::kPreslidingPaper;
+  return (gives && state.apart == 0) || state.safety.mode != Mode::kForce
+             ? kToolStepShare
+             : clamp_to(kFollowShare * hand, kCalmStepShare, kToolStepShare);
 }
 
 // Cholesky factor of contact_stiffness + diag(coupling). Returns false when singular.
@@ -141,7 +145,7 @@ Pose within_step(const Model& model, const State& state, const Pose& tool_w, std
   const Real reach_m = p.force_max_N / p.coupling_N_per_m, reach_rad = p.torque_max_Nm / p.coupling_Nm_per_rad;
   const Real way_m = norm(hand.translation_m), way_rad = norm(hand.rotation_rad);
   const Real fast = max_of(reach_m > 0 ? way_m / reach_m : 0, reach_rad > 0 ? way_rad / reach_rad : 0);
-  const Real allowed = own_share(p, state.safety.mode, fast) / (1 + kSwingCalm * state.safety.swings);
+  const Real allowed = own_share(p, state, fast) / (1 + kSwingCalm * state.safety.swings);
   const Real most_m = allowed * reach_m + way_m, length_m = norm(step.translation_m);
   Real share = length_m > most_m ? most_m / length_m : 1;
   if (reach_rad > 0) {
@@ -185,7 +189,7 @@ struct OnSpring {
   Real tick_m;    // inwards in the last tick
 };
 OnSpring on_spring(const ModelParams& p, const State& state, const FeltStiffness& felt) PALPATE_RT {
-  const Vec3 stretch = state.device_w.position_m - state.safety.tool_corrected_w.position_m;
+  const Vec3 stretch = coupling_end(state).position_m - state.safety.tool_corrected_w.position_m;
   const Vec3 inward = unit_or(stretch, {});
   const Real stiffness = dot(inward, felt * inward), over_m = norm(stretch) - p.force_max_N / p.coupling_N_per_m;
   const Real before_m = stiffness > 0 ? over_m * p.coupling_N_per_m / stiffness : -kHuge;

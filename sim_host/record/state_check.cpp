@@ -32,6 +32,9 @@ StateFault check_poses(const State& state) noexcept {
   for (const double k : state.contact_stiffness)
     if (!is_finite(k)) return {"contact_stiffness"};
   if (state.rejected_ticks < 0 || state.rejected_ticks > kMaxRejectedTicks) return {"rejected_ticks"};
+  if (state.unseen_ticks < 0 || state.unseen_ticks > kMaxRejectedTicks) return {"unseen_ticks"};
+  if (state.apart != 0 && state.apart != 1) return {"apart"};
+  if (!are_finite(state.seat_m, state.seat_rad)) return {"seat_m"};
   return {};
 }
 

@@ -108,7 +108,8 @@ void expect_bad_cables_are_borne(const std::string& tables) {
     const Disturbance seen = disturbance(cable.run);
     EXPECT_LE(static_cast<int>(seen.worst), static_cast<int>(row.worst));
     EXPECT_LE(seen.ticks, row.within);
-    EXPECT_GT(norm(cable.rendered_N[2400]), 1.0) << "the force is back";
+    // Seated anew (rt_core/safety/seat.h), the object begins where the hand went on to: 0.73 N and more (2026-11-25).
+    EXPECT_GT(norm(cable.rendered_N[2400]), 0.5) << "the force is back";
   }
 }
 

@@ -244,7 +244,7 @@ TEST(Cia402, SilenceMakesTheDrivesLetGoAndForceComesBack) {
     EXPECT_EQ(run.summary.faults, 0u);
     EXPECT_EQ(arm.sim().heartbeats_lost(), silent_ticks == 12 ? 0u : 3u);
     EXPECT_EQ(run.summary.link_drops, silent_ticks == 12 ? 0u : 1u);
-    EXPECT_GT(norm(arm.rendered_N()[2400]), 1.0);
+    EXPECT_GT(norm(arm.rendered_N()[2400]), 0.5);  // of an object that is met deeper
   }
 }
 

@@ -165,7 +165,7 @@ TEST(Moteus, SilenceTripsTheWatchdogsAndForceComesBack) {
       },
       0, arm.frame());
   EXPECT_EQ(run.summary.faults, 0u) << "19 ms without an answer is silence that passes";
-  EXPECT_GT(norm(arm.rendered_N()[2400]), 1.0);
+  EXPECT_GT(norm(arm.rendered_N()[2400]), 0.5);  // of an object that is met deeper
   arm.silence_controller(true);
   DeviceSample sample;
   for (int i = 0; i < 60; ++i) {
