@@ -80,7 +80,7 @@ void compare_friction(std::string& text, const char* key, double asked, double h
   if (asked <= has * (1 + 1e-9)) return;
   text += std::string(text.empty() ? "" : "\n") + "device." + key + ": the scene smooths the encoder, which asks for " +
           short_text(asked) + " " + unit + " of friction, the device has " + short_text(has) + " " + unit +
-          "; leave device.smooth_encoder at \"auto\", or set it to false";
+          "; bake the scene with this profile (--with PROFILE), or with device.smooth_encoder = false";
 }
 
 // The rule of a bound, and what made it another: "2b / (T + 2 tau) over frame.scale = 2".

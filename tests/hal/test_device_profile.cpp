@@ -165,7 +165,7 @@ TEST(DeviceProfile, ASmoothedSceneAsksForTheFrictionThatHoldsTheHandle) {
   profile.friction_N = 0.075;
   EXPECT_EQ(profile_contradictions(profile, asks),
             "device.friction_N: the scene smooths the encoder, which asks for 0.0750541 N of friction, the device has "
-            "0.075 N; leave device.smooth_encoder at \"auto\", or set it to false");
+            "0.075 N; bake the scene with this profile (--with PROFILE), or with device.smooth_encoder = false");
   profile.friction_Nm = 6e-4;
   asks.local_period_s = 1e-4;  // a device that smooths by itself, but not the angle
   profile.local_Hz = 1e4;
