@@ -271,7 +271,8 @@ void add_vertices(const elastic::ElasticBody<3>& body, const Shapes& shapes, con
 }
 
 // The slopes of c, c1, curvature and beta along the surface, from what stands at the vertices.
-void add_own_slopes(const elastic::ElasticBody<3>& body, ImageContents& image) {
+void add_own_slopes(const elastic::ElasticBody<3>& body, const std::vector<CornerNormals>& normals,
+                    ImageContents& image) {
   using namespace elastic_layout;
   const int s = body.soft, linear = static_cast<int>(body.modes.lambda_Npm3.size()) - s;
   const auto stride = at(vertex_floats(s, linear)), own = at(kTermFloats * terms(s));
@@ -279,7 +280,8 @@ void add_own_slopes(const elastic::ElasticBody<3>& body, ImageContents& image) {
     std::vector<double> value(image.vertex_m.size());
     for (std::size_t v = 0; v < value.size(); ++v)
       value[v] = static_cast<double>(image.elastic_vertex[stride * v + own + which]);
-    const std::vector<Vec3> slope = vertex_slopes(image.vertex_m, image.vertex_normal, image.triangle, value);
+    std::vector<Vec3> slope = vertex_slopes(image.vertex_m, image.vertex_normal, image.triangle, value);
+    stop_at_sharp_edges(image.vertex_m, normals, image.triangle, slope);
     for (std::size_t v = 0; v < value.size(); ++v) {
       float* out = &image.elastic_vertex[stride * v + own + kOwnValues + 3 * which];
       out[0] = static_cast<float>(slope[v].x);
@@ -387,7 +389,7 @@ ElasticReport ElasticBake::write(int soft, int linear, double add_c_mpN, ImageCo
   const SelfField self(parts.rest.surface(), body.self, betas_of(body.self, parts.rest, image), parts.spacing_m);
   add_energy(body.maps.potential, image);
   add_vertices(body, term_shapes(body, parts.gradient), self, parts.feet, image, parts.normals);
-  add_own_slopes(body, image);
+  add_own_slopes(body, parts.normals, image);
   add_moduli(parts.rest, parts.feet, image);
   ModelParams& p = image.params;
   p.elastic_soft = body.soft;

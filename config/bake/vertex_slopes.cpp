@@ -1,10 +1,17 @@
 #include "config/bake/vertex_slopes.h"
 
+#include <array>
+#include <map>
+#include <utility>
+
 #include "rt_core/vec.h"
 
 namespace palpate {
 
 namespace {
+
+// Of two unit vectors the difference where edges of a round rim meet at less than 60 degrees; else a corner.
+constexpr double kStraight = 1.73;
 
 // Normal equations of a gradient in the plane of two axes.
 struct Fit {
@@ -50,6 +57,41 @@ std::vector<Vec3> vertex_slopes(std::span<const Vec3> vertex_m, std::span<const 
   std::vector<Vec3> slope(fit.size());
   for (std::size_t v = 0; v < fit.size(); ++v) slope[v] = gradient_of(fit[v]);
   return slope;
+}
+
+void stop_at_sharp_edges(std::span<const Vec3> vertex_m, std::span<const CornerNormals> normal,
+                         std::span<const Triangle> triangles, std::span<Vec3> slope) {
+  // Of every edge by its ends, smaller first: the normals at them on the side met first.
+  std::map<std::pair<std::int32_t, std::int32_t>, std::array<Vec3, 2>> met;
+  struct Ends {
+    int count = 0;
+    Vec3 along;
+  };
+  std::vector<Ends> sharp(vertex_m.size());
+  const auto ends_at = [&](std::int32_t v, std::int32_t other) {
+    Ends& ends = sharp[static_cast<std::size_t>(v)];
+    const Vec3 along = vertex_m[static_cast<std::size_t>(other)] - vertex_m[static_cast<std::size_t>(v)];
+    ends.along += (ends.count == 0 ? 1.0 : -1.0) * unit_or(along, {});
+    ends.count += 1;
+  };
+  for (std::size_t i = 0; i < triangles.size(); ++i)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t next = (k + 1) % 3;
+      std::int32_t a = triangles[i].vertex[k], b = triangles[i].vertex[next];
+      std::array<Vec3, 2> here{normal[i].normal[k], normal[i].normal[next]};
+      if (a > b) std::swap(a, b), std::swap(here[0], here[1]);
+      const auto [at, is_first] = met.try_emplace({a, b}, here);
+      if (is_first || (at->second[0] == here[0] && at->second[1] == here[1])) continue;
+      ends_at(a, b);
+      ends_at(b, a);
+    }
+  for (std::size_t v = 0; v < sharp.size(); ++v) {
+    if (sharp[v].count == 0) continue;
+    // Two ends of one line, or a corner.
+    const bool is_line = sharp[v].count == 2 && norm(sharp[v].along) > kStraight;
+    const Vec3 along = unit_or(sharp[v].along, {});
+    slope[v] = is_line ? dot(slope[v], along) * along : Vec3{};
+  }
 }
 
 }  // namespace palpate

@@ -13,4 +13,9 @@ namespace palpate {
 std::vector<Vec3> vertex_slopes(std::span<const Vec3> vertex_m, std::span<const Vec3> normal,
                                 std::span<const Triangle> triangles, std::span<const double> value);
 
+// Leaves of the gradients at a sharp edge what runs along it, and at corners nothing: beyond the edge a place holds
+// still across it, so that cubics through values and gradients have no kink there.
+void stop_at_sharp_edges(std::span<const Vec3> vertex_m, std::span<const CornerNormals> normal,
+                         std::span<const Triangle> triangles, std::span<Vec3> slope);
+
 }  // namespace palpate
