@@ -1,4 +1,7 @@
+#include <type_traits>
+
 #include "rt_core/contact/elastic/carried_edge.h"
+#include "rt_core/contact/elastic/place_numbers.h"
 #include "rt_core/surface/closest_point.h"
 
 namespace palpate {
@@ -7,17 +10,46 @@ namespace {
 
 using namespace elastic_layout;
 
-// What a change of each corner's 12 numbers (displacement, deformation gradient) does to the travel.
-struct TravelSlope {
+// What a change of each corner's 12 numbers (displacement, deformation gradient) does to one number.
+struct CornerSlope {
   alignas(32) Real of[3][kTermFloats];
 };
+// To the travel, and the other way to the foot's area coordinates 1 and 2.
+struct FootSlopes {
+  CornerSlope travel, slide[2];
+};
+
+// How a corner's unit normal U = cof(F) n / |cof(F) n| turns with the rows r_i of its F.
+struct CornerTurn {
+  Vec3 across[3];  // n x r_i
+  Real inverse;    // 1 / |cof(F) n|
+
+  CornerTurn(const CarriedVertex& vertex, Vec3 n) PALPATE_RT {
+    const Vec3* r = vertex.row;
+    for (int i = 0; i < 3; ++i) across[i] = cross(n, r[i]);  // bound: 3
+    inverse = 1.0 / norm(Vec3{dot(r[1], across[2]), dot(r[2], across[0]), dot(r[0], across[1])});
+  }
+  // What changes of the corner's place and of its normal are, in its 12 numbers.
+  void show(Vec3 unit_normal, Vec3 by_place, Vec3 by_normal, Real* out) const PALPATE_RT {
+    const Vec3 b = inverse * tangential_part(by_normal, unit_normal);
+    const Vec3 rows[4] = {by_place, b.y * across[2] - b.z * across[1], b.z * across[0] - b.x * across[2],
+                          b.x * across[1] - b.y * across[0]};
+    for (int i = 0; i < 4; ++i) {  // bound: 4
+      out[3 * i] = rows[i].x;
+      out[3 * i + 1] = rows[i].y;
+      out[3 * i + 2] = rows[i].z;
+    }
+  }
+};
+using CornerTurns = CornerTurn[3];
 
 // Where the foot holds: the height's derivative in corners and normals, backwards through
 //   sum w_i V_i - t sum w_i U_i = centre,  height = -(t |N| + sag),  N = sum w_i U_i,  sag = sum w_i (V_i - X) . U_i /
 //   2,
-// and the normals U = cof(F) n / |cof(F) n|. The plain n . sum w_i dV_i misses how the surface bends between its
+// and the corners' normals. The plain n . sum w_i dV_i misses how the surface bends between its
 // vertices: 1 to 3 % of a mode's pull on an arch (2026-11-22), and forces that are no slope of the energy.
-TravelSlope travel_slope(const Model& model, ElasticRow& row, const CarriedTriangle& t) PALPATE_RT {
+// Returns t.
+Real travel_slope(const CornerTurns& turns, ElasticRow& row, const CarriedTriangle& t, CornerSlope& slope) PALPATE_RT {
   const Vec3 *v = t.corners.v, *u = t.corners.u;
   const Real* w = row.foot.weight;
   const Vec3 mixed = w[0] * u[0] + w[1] * u[1] + w[2] * u[2], place = w[0] * v[0] + w[1] * v[1] + w[2] * v[2];
@@ -34,27 +66,32 @@ TravelSlope travel_slope(const Model& model, ElasticRow& row, const CarriedTrian
   const Vec3 moved =
       along_b * row.foot.gradient_per_m[1] + along_c * row.foot.gradient_per_m[2] - (length / dot(xy, mixed)) * xy;
   row.rise = -moved;
-  TravelSlope slope;
-  const CornerNormals& rest = model.corner_normal[static_cast<std::size_t>(row.foot.triangle)];
   for (int k = 0; k < 3; ++k) {  // bound: 3
     const Vec3 by_place = -w[k] * (moved - 0.5 * (u[k] - mixed));
     const Vec3 by_normal = w[k] * (below * moved + ratio * mixed + 0.5 * (v[k] - place));
-    const Vec3 n = rest.normal[k], *r = t.vertex[k].row;
-    const Vec3 b = (1.0 / norm(t.vertex[k].carried(n))) * tangential_part(by_normal, u[k]);
-    const Vec3 rows[4] = {by_place, b.y * cross(n, r[2]) + b.z * cross(r[1], n),
-                          b.x * cross(r[2], n) + b.z * cross(n, r[0]), b.x * cross(n, r[1]) + b.y * cross(r[0], n)};
-    for (int i = 0; i < 4; ++i) {
-      slope.of[k][3 * i] = rows[i].x;
-      slope.of[k][3 * i + 1] = rows[i].y;
-      slope.of[k][3 * i + 2] = rows[i].z;
+    turns[k].show(u[k], by_place, by_normal, slope.of[k]);
+  }
+  return below;
+}
+
+// The same equation differentiated: sum w_i (dV_i - t dU_i) moves the foot along the material as the centre going the
+// other way does. Along the axis of a capsule's side the place goes with the material.
+void slide_slopes(const CornerTurns& turns, const ElasticRow& row, const CarriedTriangle& t, Real below,
+                  CornerSlope (&slide)[2]) PALPATE_RT {
+  const Vec3 axis = row.tip.half_axis_w;
+  const Real square = squared_norm(axis), held = square > 0 ? row.tip.sideness() / square : 0.0;
+  for (int i = 0; i < 2; ++i) {  // bound: 2 x 3
+    const Vec3 any = row.foot.gradient_per_m[i + 1], to = any - (held * dot(any, axis)) * axis;
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 by_place = row.foot.weight[k] * to;
+      turns[k].show(t.corners.u[k], by_place, -below * by_place, slide[i].of[k]);
     }
   }
-  return slope;
 }
 
 // On a facet, where the normal holds still.
-TravelSlope facet_slope(const ElasticRow& row) PALPATE_RT {
-  TravelSlope slope{};
+CornerSlope facet_slope(const ElasticRow& row) PALPATE_RT {
+  CornerSlope slope{};
   for (int k = 0; k < 3; ++k) {  // bound: 3
     slope.of[k][0] = row.foot.weight[k] * row.foot.normal_w.x;
     slope.of[k][1] = row.foot.weight[k] * row.foot.normal_w.y;
@@ -63,36 +100,56 @@ TravelSlope facet_slope(const ElasticRow& row) PALPATE_RT {
   return slope;
 }
 
-// How far each shape moves the surface towards the tip, how the corners under it move with each amplitude, and the
-// material there: one pass over the shapes.
-template <class Count>
-void show_modes(const Model& model, Count soft, const Real* y, const TravelSlope& slope, ElasticRow& row,
+Real first_of(Real one) PALPATE_RT { return one; }
+Real first_of(const Double4& four) PALPATE_RT { return four[0]; }
+// The sums of three vectors, each in the order of sum().
+Double4 sums(const Double4& a, const Double4& b, const Double4& c) PALPATE_RT {
+  const Double4 two = __builtin_shufflevector(a, b, 0, 4, 2, 6) + __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  const Double4 third = c + __builtin_shufflevector(c, c, 1, 0, 3, 2);
+  return __builtin_shufflevector(two, third, 0, 1, 4, 4) + __builtin_shufflevector(two, third, 2, 3, 6, 6);
+}
+
+// How far each shape moves the surface towards the tip and, with kSlides, the foot along the material, how the corners
+// under it move with each amplitude, and the material there: one pass over the shapes. What the corners' places do to
+// the slides comes last, by `corner`.
+template <bool kSlides, class Count>
+void show_modes(const Model& model, Count soft, const Real* y, const FootSlopes& slopes, ElasticRow& row,
                 Double4 (&corner)[3][kMaxSoftModes]) PALPATE_RT {
+  using Along = std::conditional_t<kSlides, Double4, Real>;  // travel, slides
   const Triangle& triangle = model.triangle[static_cast<std::size_t>(row.foot.triangle)];
   const float* block[3];
   for (int k = 0; k < 3; ++k) block[k] = vertex_block(model, triangle.vertex[k]);  // bound: 3
   const auto along = [&](std::int32_t term, Double4(&moved)[3]) PALPATE_RT {
-    Double4 total{};
+    Double4 total{}, slide[2] = {};
     for (int k = 0; k < 3; ++k) {  // bound: 3 x 3
       const float* u = block[k] + kTermFloats * term;
       moved[k] = widen4(u);
-      total += load4(slope.of[k]) * moved[k];
-      for (int i = 4; i < kTermFloats; i += 4) total += load4(slope.of[k] + i) * widen4(u + i);
+      total += load4(slopes.travel.of[k]) * moved[k];
+      for (int i = 4; i < kTermFloats; i += 4) {
+        const Double4 part = widen4(u + i);
+        total += load4(slopes.travel.of[k] + i) * part;
+        if constexpr (kSlides)
+          for (int s = 0; s < 2; ++s) slide[s] += load4(slopes.slide[s].of[k] + i) * part;
+      }
     }
-    return sum(total);
+    if constexpr (kSlides)
+      return sums(total, slide[0], slide[1]);
+    else
+      return sum(total);
   };
+  Along gain[kMaxSoftModes];
   Double4 moved[3];
   for (std::int32_t a = 0; a < soft; ++a) {  // bound: 3 soft
-    row.pull[a] = along(a, moved);
+    gain[a] = along(a, moved);
     for (int k = 0; k < 3; ++k) corner[k][a] = moved[k];
   }
   std::int32_t pair = 0;
   for (std::int32_t a = 0; a < soft; ++a) {  // bound: 3 pairs
     for (std::int32_t b = a; b < soft; ++b, ++pair) {
-      const Real h = along(soft + pair, moved);
-      row.pull[a] += h * y[b];
-      row.pull[b] += h * y[a];
-      row.turn[pair] = a == b ? 2 * h : h;
+      const Along h = along(soft + pair, moved);
+      gain[a] += h * y[b];
+      gain[b] += h * y[a];
+      row.turn[pair] = a == b ? 2 * first_of(h) : first_of(h);
       for (int k = 0; k < 3; ++k) {
         corner[k][a] += splat4(y[b]) * moved[k];
         corner[k][b] += splat4(y[a]) * moved[k];
@@ -100,9 +157,17 @@ void show_modes(const Model& model, Count soft, const Real* y, const TravelSlope
     }
   }
   const Real* w = row.foot.weight;
-  for (std::int32_t a = 0; a < soft; ++a) {  // bound: soft
+  for (std::int32_t a = 0; a < soft; ++a) {  // bound: 3 soft
     const Double4 sweep = splat4(w[0]) * corner[0][a] + splat4(w[1]) * corner[1][a] + splat4(w[2]) * corner[2][a];
     row.sweep_w[a] = {sweep[0], sweep[1], sweep[2]};
+    if constexpr (kSlides) {
+      Double4 slide[2] = {};
+      for (int k = 0; k < 3; ++k)
+        for (int s = 0; s < 2; ++s) slide[s] += load4(slopes.slide[s].of[k]) * corner[k][a];
+      gain[a] += sums(Double4{}, slide[0], slide[1]);
+      for (int s = 0; s < 2; ++s) row.slide[s][a] = gain[a][s + 1];
+    }
+    row.pull[a] = first_of(gain[a]);
   }
 }
 
@@ -144,93 +209,24 @@ void turn_with_foot(Count soft, ElasticRow& row, const Double4 (&corner)[3][kMax
 }
 
 // On an edge the nearest place slides along it alone, at an end not at all: f_ab = s_a.s_b / d - n.u_ab, s_a what u_a
-// has across.
+// has across. Where it is, w = (centre - V) . along / along^2, changes as the edge turns, too.
 template <class Count>
-void turn_on_edge(Count soft, const EdgePlace& on, ElasticRow& row) PALPATE_RT {
+void turn_on_edge(Count soft, const EdgePlace& on, const Double4 (&corner)[3][kMaxSoftModes],
+                  ElasticRow& row) PALPATE_RT {
   const Vec3 n = row.foot.normal_w;
-  const Real square = squared_norm(on.along_w), bend = 1.0 / row.foot.height_m;
+  const Real square = squared_norm(on.along_w), bend = 1.0 / row.foot.height_m, inverse = square > 0 ? 1 / square : 0.0;
+  const int next = (on.edge + 1) % 3;
   Vec3 across[kMaxSoftModes];
   for (std::int32_t a = 0; a < soft; ++a) {  // bound: soft
-    across[a] = tangential_part(row.sweep_w[a], n);
-    if (square > 0) across[a] -= (dot(across[a], on.along_w) / square) * on.along_w;
+    const Real along = inverse * dot(row.sweep_w[a], on.along_w);
+    across[a] = tangential_part(row.sweep_w[a], n) - along * on.along_w;
+    const Double4 turned = corner[next][a] - corner[on.edge][a];
+    const Real slid = along - inverse * row.foot.height_m * (n.x * turned[0] + n.y * turned[1] + n.z * turned[2]);
+    for (int s = 0; s < 2; ++s) row.slide[s][a] = s + 1 == next ? slid : s + 1 == on.edge ? -slid : 0.0;  // bound: 2
   }
   std::int32_t pair = 0;
   for (std::int32_t a = 0; a < soft; ++a)  // bound: pairs
     for (std::int32_t b = a; b < soft; ++b, ++pair) row.turn[pair] -= bend * dot(across[a], across[b]);
-}
-
-// A number between the vertices that hold it and its gradient g: the cubic that has both there, in Bezier form, its
-// middle coefficient the one that keeps parabolas. Along an edge it is the same from both sides, and at the vertices
-// the gradient has no kink. Straight between the vertices, c1's kink on the crest of a ring threw the tip aside by 0.5
-// N of 10 N and to the other side beyond the edge (2026-11-22).
-struct VertexCubic {
-  Real corner[3], next[3], before[3], middle;
-
-  // `edge_m`: X_(k+1) - X_k.
-  VertexCubic(const Vec3* edge_m, const float* const* own, std::int32_t which) PALPATE_RT {
-    Real sides = 0, corners = 0;
-    for (int k = 0; k < 3; ++k) {  // bound: 3
-      const float* g = own[k] + kOwnValues + 3 * which;
-      const Vec3 gradient{static_cast<Real>(g[0]), static_cast<Real>(g[1]), static_cast<Real>(g[2])};
-      corner[k] = static_cast<Real>(own[k][which]);
-      next[k] = corner[k] + dot(gradient, edge_m[k]) / 3;
-      before[k] = corner[k] - dot(gradient, edge_m[(k + 2) % 3]) / 3;
-      sides += next[k] + before[k];
-      corners += corner[k];
-    }
-    middle = 0.25 * sides - corners / 6;
-  }
-  // And its derivatives in the area coordinates.
-  Real at(const Real* w, Real (&slope)[3]) const PALPATE_RT {
-    Real value = 0;
-    for (int k = 0; k < 3; ++k) {  // bound: 3
-      const int i = (k + 1) % 3, j = (k + 2) % 3;
-      slope[k] = 3 * (w[k] * w[k] * corner[k] + w[i] * w[i] * before[i] + w[j] * w[j] * next[j]) +
-                 6 * (w[k] * (w[i] * next[k] + w[j] * before[k]) + w[i] * w[j] * middle);
-      value += w[k] * slope[k] / 3;  // Euler: homogeneous of degree three
-    }
-    return value;
-  }
-};
-
-void show_modulus(const Model& model, ElasticRow& row) PALPATE_RT {
-  row.modulus = 1;
-  row.modulus_gradient = {};
-  if (!has_moduli(model)) return;
-  const Triangle& triangle = model.triangle[static_cast<std::size_t>(row.foot.triangle)];
-  row.modulus = 0;
-  for (int k = 0; k < 3; ++k) {  // bound: 3
-    const Real ratio = modulus_ratio(model, triangle.vertex[k]);
-    row.modulus += row.foot.weight[k] * ratio;
-    row.modulus_gradient += ratio * row.foot.gradient_per_m[k];
-  }
-}
-
-void show_own_terms(const Model& model, ElasticRow& row) PALPATE_RT {
-  const Triangle& triangle = model.triangle[static_cast<std::size_t>(row.foot.triangle)];
-  const float* own[3];
-  Vec3 edge_m[3];
-  for (int k = 0; k < 3; ++k) {  // bound: 3
-    own[k] = own_terms(model, triangle.vertex[k]);
-    edge_m[k] = model.vertex_m[static_cast<std::size_t>(triangle.vertex[(k + 1) % 3])] -
-                model.vertex_m[static_cast<std::size_t>(triangle.vertex[k])];
-  }
-  Real value[kOwnSlopes];
-  Vec3 gradient[kOwnSlopes];
-  for (int i = 0; i < kOwnSlopes; ++i) {  // bound: 4 x 3
-    Real slope[3];
-    value[i] = VertexCubic(edge_m, own, i).at(row.foot.weight, slope);
-    for (int k = 0; k < 3; ++k) gradient[i] += slope[k] * row.foot.gradient_per_m[k];
-  }
-  row.c_m_per_N = value[0];
-  row.c1_m_per_N2 = value[1];
-  row.curvature_1_per_m = value[2];
-  row.beta_1_per_mN = value[3];
-  row.c_gradient = gradient[0];
-  row.c1_gradient = gradient[1];
-  row.curvature_gradient = gradient[2];
-  row.beta_gradient = gradient[3];
-  show_modulus(model, row);
 }
 
 // One Newton step along a capsule's axis to where its height is least; `rise` and how the normal turns as the centre
@@ -266,8 +262,8 @@ Vec3 CarriedSurface::displacement(std::int32_t vertex) const PALPATE_RT {
   return carry(model, y, vertex).position_w - rest;
 }
 
-void CarriedSurface::place(const RoundTip& tip, std::int32_t triangle, Vec3 near_w, Real nearer_m,
-                           ElasticRow& row) const PALPATE_RT {
+void CarriedSurface::place(const RoundTip& tip, std::int32_t triangle, Vec3 near_w, Real nearer_m, ElasticRow& row,
+                           bool has_force) const PALPATE_RT {
   CarriedTriangle last{model, y, shown, -1, {}, {}};
   row.tip = tip;
   row.along_1_per_m = 0;
@@ -289,18 +285,30 @@ void CarriedSurface::place(const RoundTip& tip, std::int32_t triangle, Vec3 near
     *shown += 2 * terms(model.params.elastic_soft);
     return;
   }
-  if (!found) row.rise = row.foot.normal_w;
-  const TravelSlope slope = found ? travel_slope(model, row, last) : facet_slope(row);
-  show_own_terms(model, row);
+  row.has_slide = has_force && (found || on.edge >= 0);
+  FootSlopes slopes;
+  if (found) {
+    const Vec3* n = model.corner_normal[static_cast<std::size_t>(row.foot.triangle)].normal;
+    const CornerTurns turns = {{last.vertex[0], n[0]}, {last.vertex[1], n[1]}, {last.vertex[2], n[2]}};
+    const Real below = travel_slope(turns, row, last, slopes.travel);
+    if (row.has_slide) slide_slopes(turns, row, last, below, slopes.slide);
+  } else {
+    row.rise = row.foot.normal_w;
+    slopes.travel = facet_slope(row);
+  }
+  show_place_numbers(model, row);
   with_mode_count(model.params.elastic_soft, [&](auto n) PALPATE_RT {
     Double4 corner[3][kMaxSoftModes];
-    show_modes(model, n, y, slope, row, corner);
-    if (on.edge >= 0) turn_on_edge(n, on, row);
+    if (found && row.has_slide)
+      show_modes<true>(model, n, y, slopes, row, corner);
+    else
+      show_modes<false>(model, n, y, slopes, row, corner);
+    if (on.edge >= 0) turn_on_edge(n, on, corner, row);
     if (!found) return;
     if (!tip.is_ball()) slide_along(last.corners, row);
     turn_with_foot(n, row, corner);
   });
-  *shown += 6 * terms(model.params.elastic_soft) + (found && !tip.is_ball() ? kSlideWork : 0);
+  *shown += (found ? 8 : 6) * terms(model.params.elastic_soft) + (found && !tip.is_ball() ? kSlideWork : 0);
 }
 
 bool CarriedSurface::place_on_facet(Vec3 centre_w, std::int32_t triangle, ElasticRow& row) const PALPATE_RT {

@@ -28,6 +28,9 @@ constexpr Real kLeastLeft = 0.02;
 // body would go, the answer was one tick late, and ring and tube let a resting hand buzz for 35 ticks (2026-11-22).
 constexpr std::int32_t kSolvesOfFriction = 2;
 
+// What the places ask of the modes, in tip laws evaluated: two of them, and sums over numbers and modes.
+constexpr std::int32_t kPlaceLaws = 5;
+
 // Shifts and forces of the regions.
 void solve_forces(const ElasticLoad& load, Scratch& scratch, Real* force_N) PALPATE_RT {
   if (load.n > 1) {
@@ -101,7 +104,7 @@ void solve_pressed(const Model& model, State& state, Scratch& scratch, Count sof
   for (std::int32_t r = 0; r < regions; ++r) before_N[r] = state.region[scratch.rows.slot[r]].normal_force_N;
   Real force_N[kMaxRegions];
   body.prepare(before_N);
-  body.gather();
+  scratch.work.tip_laws += kPlaceLaws * regions;
   for (std::int32_t i = 0; i < kSolvesOfFriction; ++i) {  // bound: kSolvesOfFriction
     if (i > 0 && !body.slips(force_N)) break;
     body.let_give(i == 0 ? before_N : force_N);
@@ -194,14 +197,15 @@ void create_work(const Model& model, void* block) noexcept {
 // loses it.
 void add_most_work(const Model& model, const SceneSizes& n, Work& work) noexcept {
   const std::int32_t soft = model.params.elastic_soft, pair = pairs(soft);
-  const std::int32_t place = (3 * (kFootWalk + 2) + 4) * terms(soft) + kSlideWork;
+  const std::int32_t place = (3 * (kFootWalk + 2) + 6) * terms(soft) + kSlideWork;
   add_most_points(model, n, work);
   work.queries += 2 * n.points;  // a capsule asks three times
   add_most_regions(n, kSolvesOfFriction * TipLaws::kIterations, work);
   work.shown += n.points * (2 * place + terms(soft));
   work.soft_pairs += soft_work(pair);
   work.tip_laws +=
-      kSolvesOfFriction * (kSeriesIterations + 1 + TipLaws::kIterations * (kStepHalvings + 1)) * n.contacts;
+      kSolvesOfFriction * (kSeriesIterations + 1 + TipLaws::kIterations * (kStepHalvings + 1)) * n.contacts +
+      kPlaceLaws * n.regions;
   work.linearised += kSolvesOfFriction * n.regions;
   work.linked += kSolvesOfFriction * n.regions * (n.regions + 1) / 2 * (model.params.elastic_linear + soft);
   work.soft_pairs_again += soft_work(pair) / 2;

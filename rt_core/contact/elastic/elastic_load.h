@@ -23,6 +23,20 @@ struct PlacedLaw {
 };
 PlacedLaw placed_law(const TipLaw& law, const ElasticRow& row) PALPATE_RT;
 
+// What the energy stored under a tip gains, at a held travel, as the place's numbers fall: c, c1, curvature, beta; and
+// the modulus.
+struct PlaceForce {
+  Real by[elastic_layout::kOwnSlopes] = {}, by_modulus = 0;
+  void scale(Real factor) PALPATE_RT {
+    for (Real& one : by) one *= factor;
+    by_modulus *= factor;
+  }
+  Vec3 along(const ElasticRow& row) const PALPATE_RT {
+    return by[0] * row.c_gradient + by[1] * row.c1_gradient + by[2] * row.curvature_gradient +
+           by[3] * row.beta_gradient + by_modulus * row.modulus_gradient;
+  }
+};
+
 struct ElasticLoad : TipLaws {
   static constexpr bool kPullsAside = true;
   Tip tip[kMaxPieces];
@@ -53,7 +67,7 @@ struct ElasticLoad : TipLaws {
     const LawPoint point = tip_at(tip[i], e);
     const Real energy = tip_energy_J(tip[i], e), f = point.force_N;
     const Vec3 aside =
-        f * (stands.rise - stands.foot.normal_w + pair_aside[r]) + far_aside(r, stands, f) - law_aside(i, e, energy);
+        f * (stands.rise - stands.foot.normal_w + pair_aside[r]) + place_force(r, i, e, energy, f).along(stands);
     // Never steeper than 45 degrees: far beyond the range the second power of the force is no physics.
     const Real length = norm(aside), share = length > f ? f / length : 1.0;
     // Where the second order goes on by its tangent, and off the smooth surface, no press of the bake has been.
@@ -61,27 +75,29 @@ struct ElasticLoad : TipLaws {
         e > tip[i].local.tip->depth_max_m || f > own[r].force_max_N || stands.foot.state != FootState::kFound;
     return {point, energy, stands.tip.centre_w(), share * aside, is_beyond};
   }
-  // How the energy of the far field and, the other way, that of the tip's law change along the surface.
-  Vec3 far_aside(std::int32_t r, const ElasticRow& stands, Real force_N) const PALPATE_RT {
-    if (!(stands.c_m_per_N > 0)) return {};
-    const FarChange change = far_change(own[r], force_N);
-    return change.per_c0_N2 * stands.c_gradient + change.per_c1_N3 * stands.c1_gradient;
-  }
-  Vec3 law_aside(std::int32_t i, Real e, Real energy_J) const PALPATE_RT {
+  // How the energy of the far field and, the other way, that of the tip's law change with the place's numbers.
+  PlaceForce place_force(std::int32_t r, std::int32_t i, Real e, Real energy_J, Real force_N) const PALPATE_RT {
+    const ElasticRow& stands = *placed[i];
     const PlacedLaw& here = law[i];
-    const Real range_m = tip[i].local.tip->depth_max_m;
-    const PlaceEnergies place = place_energies(range_m, e);
+    const PlaceEnergies place = place_energies(tip[i].local.tip->depth_max_m, e);
     const Real alone = (energy_J - place.J(here.terms)) / here.scale;
-    const Real by_c = placed[i]->c_m_per_N < 0 ? alone * here.scale_by_c + place.J(here.by_c) : 0.0;
     const Real by_scale = alone + place.J(here.by_scale);
-    const Vec3 aside = by_c * placed[i]->c_gradient +
-                       (here.scale_by_curvature * by_scale) * placed[i]->curvature_gradient +
-                       place.J(here.by_beta) * placed[i]->beta_gradient;
-    if (placed[i]->modulus_gradient == Vec3{}) return aside;
-    const Real inverse = 1.0 / placed[i]->modulus;  // the terms' powers of it: rho's by their own, beta's as of m^2
+    PlaceForce out{};
+    out.by[2] = -here.scale_by_curvature * by_scale;
+    out.by[3] = -place.J(here.by_beta);
+    if (stands.c_m_per_N > 0) {
+      const FarChange change = far_change(own[r], force_N);
+      out.by[0] = change.per_c0_N2;
+      out.by[1] = change.per_c1_N3;
+    } else if (stands.c_m_per_N < 0) {
+      out.by[0] = -(alone * here.scale_by_c + place.J(here.by_c));
+    }
+    if (stands.modulus_gradient == Vec3{}) return out;
+    const Real inverse = 1.0 / stands.modulus;  // the terms' powers of it: rho's by their own, beta's as of m^2
     const PlaceTerms by_modulus = {2 * inverse * here.terms.second_N_per_m2, 3 * inverse * here.terms.between_N_per_m25,
                                    2 * inverse * here.terms.third_N_per_m3, 3 * inverse * here.terms.fourth_N_per_m4};
-    return aside + (alone * here.scale_by_modulus + place.J(by_modulus)) * placed[i]->modulus_gradient;
+    out.by_modulus = -(alone * here.scale_by_modulus + place.J(by_modulus));
+    return out;
   }
   // What the last forces ask for; a new region as if it were alone.
   Real start(std::int32_t r) const PALPATE_RT { return before_N[r] > 0 ? shift_under(before_N, r) : TipLaws::start(r); }

@@ -37,6 +37,12 @@ struct ElasticRow {
   Real pull[kMaxSoftModes];              // d travel / d p
   Real turn[elastic_layout::kMaxPairs];  // d2 travel / d p2, with the foot's slide
   Vec3 sweep_w[kMaxSoftModes];           // of the material at the foot, by each amplitude
+  // Of a tip that had a force, on the smooth surface or an edge: the foot's area coordinates 1 and 2 by each amplitude,
+  // the other way; and of c, c1, the curvature and beta in those two the slopes, and the bends 11, 12 and 22.
+  bool has_slide;
+  Real slide[2][kMaxSoftModes];
+  Real number_slope[2][elastic_layout::kOwnSlopes], number_bend[3][elastic_layout::kOwnSlopes];
+  Real modulus_slope[2];
   Real c_m_per_N, c1_m_per_N2, curvature_1_per_m, beta_1_per_mN;  // there; config/elastic/self_terms.h, width_law.h
   Real modulus;  // contact modulus there, of that of the parameters; its gradient is zero on bodies of one material
   Vec3 modulus_gradient;
@@ -60,8 +66,9 @@ struct CarriedSurface {
   // one step to where it is deepest, and the travel is that of there, to second order. Beyond a sharp edge on that
   // (carried_edge.h); below the focal surface on the facet nearest to the centre as it was before the body moved, with
   // foot.triangle -1 where the tick's share of surface work is used up. A tip that is still apart when the surface
-  // comes `nearer_m` towards it gets its foot and travel alone.
-  void place(const RoundTip& tip, std::int32_t triangle, Vec3 near_w, Real nearer_m, ElasticRow& row) const PALPATE_RT;
+  // comes `nearer_m` towards it gets its foot and travel alone, and one without a force in the last tick no slide.
+  void place(const RoundTip& tip, std::int32_t triangle, Vec3 near_w, Real nearer_m, ElasticRow& row,
+             bool has_force = false) const PALPATE_RT;
 
  private:
   bool place_on_facet(Vec3 centre_w, std::int32_t triangle, ElasticRow& row) const PALPATE_RT;

@@ -66,13 +66,14 @@ class Finder {
     ElasticRow& row = work_.row[piece_of(index)];
     if (touched) tip.come_near(point.closest_w);
     const bool followed = touched && has_stayed(point, tip);
+    const bool has_force = point.region >= 0 && state_.region[point.region].normal_force_N > 0;
     if (followed) {
-      surface_.place(tip, point.triangle, point.closest_w, nearer_m_, row);
+      surface_.place(tip, point.triangle, point.closest_w, nearer_m_, row, has_force);
       // Lifted off: looked for from the next tick on.
       if (row.foot.triangle >= 0) return free_depth(row) > 0 ? keep(index, row) : let_lift(point, row, 0);
     }
     if (!search(tip, point, touched && !followed ? -1 : point.triangle)) return;
-    surface_.place(tip, point.triangle, point.closest_w, nearer_m_, row);
+    surface_.place(tip, point.triangle, point.closest_w, nearer_m_, row, has_force);
     if (row.foot.triangle < 0) {
       hold(point);
       return;

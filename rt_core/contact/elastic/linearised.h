@@ -35,10 +35,9 @@ class Linearised {
  public:
   Linearised(const Model& model, State& state, Scratch& scratch, ElasticLoad& load, Count soft) PALPATE_RT;
 
-  // Every tip sticks. `force_N`: of every region before.
+  // Laws of all tips; every tip sticks. `force_N`: of every region before.
   void prepare(const Real* force_N) PALPATE_RT;
-  // Laws of all tips, once; then, for every solve, depths and far fields of all regions and what couples them.
-  void gather() PALPATE_RT;
+  // For every solve, depths and far fields of all regions and what couples them.
   void let_give(const Real* before_N) PALPATE_RT;
   // The step under the forces found. True: a tip slips under it, and the linearisation is made anew for that.
   bool slips(const Real* force_N) PALPATE_RT;
@@ -57,6 +56,9 @@ class Linearised {
   NearField near_field() const PALPATE_RT {
     return {far_field_scale_m2_per_N(model_.params.youngs_modulus_Pa, model_.params.poisson_ratio)};
   }
+  void gather() PALPATE_RT;
+  Real place_ahead(const Real* force_N, std::int32_t r, PlaceForce& place) const PALPATE_RT;
+  void add_places(const Real* force_N) PALPATE_RT;
   void factorise(const Real* force_N) PALPATE_RT;
   Real find_step(const Real* force_N, Real* delta) const PALPATE_RT;
   void sweep(Real share, const Real* delta, std::int32_t r) PALPATE_RT;
@@ -73,8 +75,10 @@ class Linearised {
   ElasticWork& work_;
   const FrictionParameters friction_;
   const Count n_;
-  const ElasticRow* leading_[kMaxRegions];  // deepest of each region
+  ElasticRow* leading_[kMaxRegions];  // deepest of each region
   Real factor_[kMaxSoftModes * kMaxSoftModes];
+  // Slope of the places' own energies in the amplitudes, less what the rows' pull has of it.
+  Real place_rootJ_[kMaxSoftModes];
   Real free_step_[kMaxSoftModes];
   Real moved_[kMaxRegions][kMaxSoftModes];
   Real along_linear_[kMaxRegions][kMaxLinearModes];  // show_linear_modes()
