@@ -119,7 +119,7 @@ const SlideCase kSlides[] = {
 
 class ElasticSlides : public testing::TestWithParam<SlideCase> {};
 
-// 0.002 to 0.20 % on 2026-11-25.
+// 0.001 to 0.20 % on 2026-11-25.
 TEST_P(ElasticSlides, ForceHasNoSteps) {
   const SlideCase& given = GetParam();
   Slide slide(given.scene);
