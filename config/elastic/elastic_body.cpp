@@ -19,7 +19,7 @@ template <int kDim>
 ElasticStock<kDim> make_elastic_stock(const RestBody<kDim>& rest, const std::vector<int>& contact_nodes, int modes,
                                       const ElasticOptions& options) {
   const double probe_m = options.probe_share * rest.surface().extent_m();
-  return {&rest, surface_modes(rest, modes), self_samples(rest, contact_nodes, probe_m, options.patch_edges)};
+  return {&rest, surface_modes(rest, modes), self_samples(rest, contact_nodes, probe_m, options.patch)};
 }
 
 template <int kDim>

@@ -12,10 +12,7 @@ struct ElasticOptions {
   int linear = 30;  // more modes, linear
   // Probing displacement, share of the body's extent. At 60 mm 0.12 mm: above rounding, below fifth order.
   double probe_share = 2e-3;
-  // Width of the patch behind the self terms, in edges. A narrower one is not carried by a mesh graded towards the
-  // contact (block under a sphere: 0.8 % of error at 1, 6.9 % at 0.6); a wider one flattens what a body of large
-  // elements does under it (arch, elements as long as its wall: 15 to 25 % at 1, 3.3 % at 0.6; measured 2026-11-22).
-  double patch_edges = 1;
+  PatchOptions patch = {};
   bool second_order = false;  // c1; see docs/models_elastic.md for when it helps
 };
 

@@ -1,4 +1,4 @@
-#include "config/response/layer_contact.h"
+#include "config/response/layer_loss.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -44,18 +44,6 @@ const Quadrature& rule() {
   return q;
 }
 
-// 1 - L(w), from exp(-2w) so that nothing overflows or cancels at large w.
-double lost(const ElasticLayer& layer, double w) {
-  const double x = math::exp(-2 * w), x2 = x * x;
-  if (layer.base == LayerBase::kSlip) {
-    // 2 sinh^2 w = cosh 2w - 1.
-    return (2 * x * (1 + 2 * w) - 2 * x2) / (1 - x2 + 4 * w * x);
-  }
-  const double k = 3 - 4 * layer.poisson_ratio;
-  const double rest = k * k + 1 + 4 * w * w + 4 * w;
-  return (2 * k * x2 + rest * x) / (k * (1 + x2) + (k * k + 1 + 4 * w * w) * x);
-}
-
 double profile_at(const Indenter& indenter, double x) {
   switch (indenter.profile) {
     case TipProfile::kFlat:
@@ -81,6 +69,18 @@ double first_radius(const Indenter& indenter, double depth) {
 
 }  // namespace
 
+// From exp(-2w) so that nothing overflows or cancels at large w.
+double layer_loss(const ElasticLayer& layer, double w) {
+  const double x = math::exp(-2 * w), x2 = x * x;
+  if (layer.base == LayerBase::kSlip) {
+    // 2 sinh^2 w = cosh 2w - 1.
+    return (2 * x * (1 + 2 * w) - 2 * x2) / (1 - x2 + 4 * w * x);
+  }
+  const double k = 3 - 4 * layer.poisson_ratio;
+  const double rest = k * k + 1 + 4 * w * w + 4 * w;
+  return (2 * k * x2 + rest * x) / (k * (1 + x2) + (k * k + 1 + 4 * w * w) * x);
+}
+
 LayerContact::LayerContact(const ElasticLayer& layer, double largest_radius_m) : layer_(layer) {
   if (!(layer.thickness_m > 0)) return;
   const double reach = 2.02 * largest_radius_m / layer.thickness_m + 0.05;
@@ -92,7 +92,7 @@ LayerContact::LayerContact(const ElasticLayer& layer, double largest_radius_m) :
   const Quadrature panel = gauss_legendre(12);
   for (int p = 0; p < 96; ++p) {
     for (std::size_t k = 0; k < panel.x.size(); ++k) {
-      const double w = 0.25 * (p + panel.x[k]), share = 0.25 * panel.w[k] * lost(layer, w);
+      const double w = 0.25 * (p + panel.x[k]), share = 0.25 * panel.w[k] * layer_loss(layer, w);
       // cos and sin of w s on the uniform grid by rotation.
       const double c1 = math::cos(w * step_), s1 = math::sin(w * step_);
       double c = 1, s = 0;

@@ -49,8 +49,16 @@ double rms_share(const std::vector<PairForces>& felt, const PairForces* referenc
   return share;
 }
 
-TEST(ElasticCoupled, TwoBallsOnAnArchFeelOneAnotherAsElementsDo) {
-  const BakedScene scene(pair_scene());
+// On elements of half the wall and of a third of it, by how much the forces may differ: 6.2 and 1.7 % RMS
+// (2026-11-25; 3.7 on 3 mm). Alone on the first, one ball is 3.8 % RMS too soft, on those of 3 mm 1.6; with the width
+// law before, the parabola, 1.5 and 4.1: what was nearer on half the wall was not on a finer mesh. The reference
+// with 1.3 mm under the balls is 0.3 to 0.5 % lower.
+class ElasticCoupled : public testing::TestWithParam<std::tuple<const char*, double>> {};
+TEST_P(ElasticCoupled, TwoBallsOnAnArchFeelOneAnotherAsElementsDo) {
+  const auto& [edge_mm, most] = GetParam();
+  std::string text = pair_scene();
+  text.replace(text.find("edge_mm = 6"), 11, std::string("edge_mm = ") + edge_mm);
+  const BakedScene scene(text);
   Bench bench(scene.model());
   std::vector<PairForces> felt;
   PairState at{-5e-4, 0};
@@ -61,8 +69,9 @@ TEST(ElasticCoupled, TwoBallsOnAnArchFeelOneAnotherAsElementsDo) {
     EXPECT_EQ(bench.output.status & Status::kNotConverged, 0u);
     felt.push_back(forces_of(bench));
   }
-  EXPECT_LT(rms_share(felt, kPairReference.data()), 0.05);
+  EXPECT_LT(rms_share(felt, kPairReference.data()), most);
 }
+INSTANTIATE_TEST_SUITE_P(Elements, ElasticCoupled, testing::Values(std::tuple{"6", 0.065}, std::tuple{"4", 0.03}));
 
 // From state to state, by 20 um a tick at most.
 void move_jaws(Bench& bench, const PinchedBody& body, const PinchState& from, const PinchState& to) {
