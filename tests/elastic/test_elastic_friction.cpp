@@ -2,6 +2,7 @@
 // up.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -64,6 +65,21 @@ TEST(ElasticFriction, TheTipHoldsASlenderBodyUp) {
   EXPECT_GT(press(slippery, 1e-3), 2 * kFreeEuler_N);  // 3.17 N
   EXPECT_LT(press(slippery, 2.2e-3), kFreeEuler_N);
   EXPECT_GT(press(rough, 2.2e-3), 0.6 * kHeldEuler_N);  // 7.2 N of 10.3
+}
+
+// Deeper, the column goes out from under a tip without friction: a snap. No tick of it says more than the column can
+// carry held at both ends; before a place's law was bounded by its width single ticks said up to 2.6e5 N (2026-11-25).
+TEST(ElasticFriction, AColumnThatSnapsFromUnderATipThrowsNoForce) {
+  const BakedScene slippery = baked_column("none", 0);
+  for (const double aside_m : {5e-5, 3e-4, 1e-3, 2e-3}) {
+    Bench bench(slippery.model());
+    const Vec3 top = kTop + Vec3{aside_m, 0, 0};
+    double most_N = 0;
+    for (int i = 0; i <= 700; ++i)
+      most_N = std::max(most_N, norm(bench.tick_at({top - Vec3{0, 5e-6 * i, 0}, {}}, {}).contact_w.force_N));
+    EXPECT_GT(most_N, kFreeEuler_N) << aside_m;
+    EXPECT_LT(most_N, kHeldEuler_N) << aside_m;  // 6.8 to 8.4 N of 10.3
+  }
 }
 
 // Below 0.35 N, where the column sways from under a tip that slides.
