@@ -106,7 +106,7 @@ std::string drawn_table(const std::vector<DrawnRun>& runs) {
   std::string text, last;
   for (const DrawnRun& d : runs) {
     const std::string head =
-        fmt::format("{:<24}{}, coupling {:.0f} N/m", d.run.scene, d.device.text(), d.coupling_N_per_m);
+        fmt::format("{:<25}{}, coupling {:.0f} N/m", d.run.scene, d.device.text(), d.coupling_N_per_m);
     if (head != last) text += (last.empty() ? "" : "\n") + head;
     last = head;
     if (!d.failure.empty()) text += fmt::format("\n  {}: {}", d.run.manoeuvre, d.failure);

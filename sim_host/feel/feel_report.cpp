@@ -86,10 +86,10 @@ std::string feel_failure(const FeelRun& run) {
 
 std::string feel_table(const std::vector<FeelRun>& runs) {
   std::string text =
-      fmt::format("{:<24}{:<10}{:>8}{:>8}{:>7}{:>7}{:>7}{:>7}{:>7}{:>8}{:>8}  {}\n", "scene", "manoeuvre", "force N",
+      fmt::format("{:<25}{:<10}{:>8}{:>8}{:>7}{:>7}{:>7}{:>7}{:>7}{:>8}{:>8}  {}\n", "scene", "manoeuvre", "force N",
                   "model N", "step %", "swings", "lag mm", "N/mm", "mN RMS", "port mJ", "hand mJ", "");
   for (const FeelRun& run : runs)
-    text += cells(run, "{:<24}{:<10}{:>8.2f}{:>8.1f}{:>7.2f}{:>7}{:>7.2f}{:>7.2f}{:>7.1f}{:>8.3f}{:>8.3f}  {}\n");
+    text += cells(run, "{:<25}{:<10}{:>8.2f}{:>8.1f}{:>7.2f}{:>7}{:>7.2f}{:>7.2f}{:>7.1f}{:>8.3f}{:>8.3f}  {}\n");
   return text;
 }
 
