@@ -21,12 +21,26 @@ double lowest_of_tool_m(const Model& model) {
   return lowest;
 }
 
+constexpr double kTop = 1e-3;  // of the body's height: what is no lower is its top
+
+// Of a body's top the vertex nearest to its middle: of a flat one no corner or rim, from which the tool would slide.
+Vec3 middle_of_top(const Model& model, const Bounds& body) {
+  const double lowest = body.upper_m.y - kTop * body.size_m().y;
+  Vec3 sum;
+  double count = 0;
+  for (const Vec3& p : model.vertex_m)
+    if (p.y >= lowest) sum += p, count += 1;
+  const Vec3 middle = (1 / count) * sum;
+  return *std::ranges::min_element(model.vertex_m, {},
+                                   [&](Vec3 p) { return p.y >= lowest ? squared_norm(p - middle) : kHuge; });
+}
+
 }  // namespace
 
 bool add_default_path(SceneDesc& scene, const Model& model) {
   if (!scene.path.point.empty() || scene.articulation != Articulation::kRigid || model.vertex_m.empty()) return false;
   const Bounds body = bounds_of(model.vertex_m);
-  const Vec3 top = *std::ranges::max_element(model.vertex_m, {}, [](Vec3 p) { return p.y; });
+  const Vec3 top = middle_of_top(model, body);
   const Vec3 touching = top - Vec3{0, lowest_of_tool_m(model), 0}, above = touching + Vec3{0, kGap_m, 0};
   const double depth_m = std::min(kDeepest * body.size_m().y, 0.5 * scene.contact.max_depth_m);
   const Vec3 pressed = touching - Vec3{0, depth_m, 0}, slid = pressed + Vec3{kSlide * body.size_m().x, 0, 0};

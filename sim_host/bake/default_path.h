@@ -1,5 +1,6 @@
-// What the simulated hand does in a scene that does not say: it lowers the tool on the body's highest point, presses,
-// slides along x and lifts. So that a first scene of one's own can be pressed and run before its motion is written.
+// What the simulated hand does in a scene that does not say: it lowers the tool on the middle of the body's top,
+// presses, slides along x and lifts. So that a first scene of one's own can be pressed and run before its motion is
+// written.
 #pragma once
 
 #include "config/scene/scene.h"

@@ -119,6 +119,18 @@ TEST(DefaultPath, PressesTheHighestPointAndLetsGo) {
   EXPECT_EQ(last_N, 0);
 }
 
+TEST(DefaultPath, OnAFlatTopItPressesTheMiddle) {
+  const SceneModel scene(parse_scene(
+      "name = \"s\"\n[body]\nshape = \"box\"\nsize_mm = [80, 16, 60]\n[[tool.piece]]\nshape = \"sphere\"\nradius_mm = "
+      "8\n",
+      "s.toml"));
+  for (const PathPoint& point : scene.scene()->path.point) {
+    EXPECT_GT(point.position_m.x, -0.005);
+    EXPECT_LT(point.position_m.x, 0.013);  // slid by a tenth of the length
+    EXPECT_NEAR(point.position_m.z, 0, 0.005);
+  }
+}
+
 // A sphere held against the side of a ball: force along the line of centres, of the size the law says.
 SceneDesc ball_scene() {
   return parse_scene(R"(
