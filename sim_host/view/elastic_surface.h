@@ -13,7 +13,7 @@ inline constexpr double kDentReach = 8;
 
 // What goes along the normal is gone this many lengths 1 / cut_1_per_m beyond the contact's edge: the linear modes hold
 // all of it there. Without, the surface around a ball was 2 to 6 % of the travel too deep two to four radii away, on
-// all of the cases of docs/accuracy.md that were kept back; from 0.7 to 1.4 their mean RMS changes by 0.1 % of it.
+// all of the cases of docs/accuracy.md that were kept back; from 0.7 to 1.4 their mean RMS changes by 0.2 % of it.
 inline constexpr double kModesTakeOver = 1.2;
 
 // What a tip in contact adds: the profile of a frictionless contact on a half space (Hertz; Johnson 1985, eq. 3.42),
