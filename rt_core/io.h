@@ -65,6 +65,9 @@ struct Input {
   X(Pose, tool_w, "safety", "where the virtual tool is")                                                             \
   X(double, penetration_m, "rows", "deepest sample depth")                                                           \
   X(double, energy_J, "account", "stored elastic energy of contact and friction springs")                            \
+  X(double, surplus_J, "safety",                                                                                     \
+    "what this contact gave the handle and holds beyond what the handle gave it, as the account of energy stands: "  \
+    "above 0 it is braked away, below 0 it is credit; of the first of two hands")                                    \
   X(double, residual_m, "solve", "of the coupled region solve")                                                      \
   X(double, strain, "account", "largest strain at the gauges of a finite-element body")                              \
   X(double, ramp, "safety", "0..1 force ramp")                                                                       \

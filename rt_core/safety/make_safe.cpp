@@ -212,6 +212,7 @@ void make_safe(const Model& model, State& state, Scratch& scratch, const Input& 
   output.handle_w_m = told.point_w_m;
   output.felt_along_N_per_m = told.felt.along;
   output.felt_across_N_per_m = told.felt.across;
+  output.surplus_J = safety.surplus_J;
   output.ramp = safety.ramp;
   output.fault = safety.fault;
   output.mode = safety.mode;

@@ -99,7 +99,8 @@ FeelRun run_feel(const Model& model, const SceneDesc& scene, const TouchPlace& p
 
 std::string feel_csv_header() {
   return "time_s,handle_x_mm,handle_y_mm,handle_z_mm,tool_x_mm,tool_y_mm,tool_z_mm,force_x_N,force_y_N,force_z_N,"
-         "torque_x_Nm,torque_y_Nm,torque_z_Nm,model_N,depth_mm,stored_J,motor_J,hand_J,fingers_J,mode,stale_ticks,"
+         "torque_x_Nm,torque_y_Nm,torque_z_Nm,model_N,depth_mm,stored_J,surplus_J,motor_J,hand_J,fingers_J,mode,stale_"
+         "ticks,"
          "status\n";
 }
 
@@ -108,10 +109,10 @@ std::string feel_csv_row(const FeelTick& tick) {
   const Vec3 f = tick.output.device_w.force_N, m = tick.output.device_w.torque_Nm;
   return fmt::format(
       "{:.4f},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.5f},{:.6g},"
-      "{:.6g},{:.6g},{:.6g},{},{},{}\n",
+      "{:.6g},{:.6g},{:.6g},{:.6g},{},{},{}\n",
       tick.time_s, h.x, h.y, h.z, t.x, t.y, t.z, f.x, f.y, f.z, m.x, m.y, m.z, norm(tick.output.contact_w.force_N),
-      1e3 * tick.output.penetration_m, tick.output.energy_J, tick.energy.motor_J, tick.energy.to_hand_J(),
-      tick.fingers_J, mode_name(tick.output.mode), tick.input.stale_ticks,
+      1e3 * tick.output.penetration_m, tick.output.energy_J, tick.output.surplus_J, tick.energy.motor_J,
+      tick.energy.to_hand_J(), tick.fingers_J, mode_name(tick.output.mode), tick.input.stale_ticks,
       bit_names(status_bit_texts(), tick.output.status));
 }
 

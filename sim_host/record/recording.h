@@ -66,7 +66,7 @@ RecordingHeader recording_header(const TelemetryRegion& telemetry);
 namespace plr {
 
 inline constexpr std::uint64_t kMagic = 0x003130434552504Cull;  // bytes "LPREC01\0"
-inline constexpr std::uint32_t kVersion = 4;
+inline constexpr std::uint32_t kVersion = 5;
 inline constexpr std::uint32_t kRecordsPerChunk = 256;
 inline constexpr std::size_t kRecordPrefix = offsetof(TickRecord, region);
 // Of the image, unpacked, in one chunk; packed it may be a little more.

@@ -39,7 +39,7 @@
 namespace palpate {
 
 inline constexpr std::uint64_t kTelemetryMagic = 0x3130544C4554504Cull;  // bytes "LPTELT01"
-inline constexpr std::uint32_t kTelemetryVersion = 3;
+inline constexpr std::uint32_t kTelemetryVersion = 4;
 // Slots of the ring: 4 s at 1 kHz, so an ordinary process under load does not lose records. Overflow: the oldest
 // record is overwritten and the reader counts it as lost.
 inline constexpr std::uint64_t kTelemetryCapacity = 4096;
@@ -90,6 +90,7 @@ constexpr std::uint64_t record_layout_hash() noexcept {
                                  offsetof(Output, tool_w),
                                  offsetof(Output, penetration_m),
                                  offsetof(Output, energy_J),
+                                 offsetof(Output, surplus_J),
                                  offsetof(Output, ramp),
                                  offsetof(Output, status),
                                  offsetof(Output, fault),

@@ -18,6 +18,7 @@ TrackTick track_tick(const TickRecord& record) {
   tick.device_N = record.output.device_w.force_N;
   tick.depth_m = record.output.penetration_m;
   tick.energy_J = record.output.energy_J;
+  tick.surplus_J = record.output.surplus_J;
   tick.status = record.output.status;
   tick.fault = record.output.fault;
   tick.mode = record.output.mode;
@@ -182,6 +183,7 @@ TrackColumns RunTrack::columns(double from_s, double until_s, std::size_t number
       take(columns.depth_mm, 1e3 * std::max(0.0, tick->depth_m));
       take(columns.stored_mJ, 1e3 * tick->energy_J);
       take(columns.given_mJ, 1e3 * tick->given_J);
+      take(columns.surplus_mJ, 1e3 * tick->surplus_J);
       take(columns.compute_us, 1e-3 * tick->compute_ns);
       for (std::size_t i = 0; i < kStageCount; ++i) take(columns.stage_us[i], 1e-3 * tick->stage_ns[i]);
       columns.regions[c] = first ? tick->regions : std::max(columns.regions[c], tick->regions);

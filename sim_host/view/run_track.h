@@ -20,7 +20,7 @@ struct TrackTick {
   std::uint64_t tick = 0;
   Input input;
   Vec3 contact_N, device_N;  // of the body on the tool; what the hand feels
-  double depth_m = 0, energy_J = 0;
+  double depth_m = 0, energy_J = 0, surplus_J = 0;
   double given_J = 0;  // by the hands to the devices since the track's first tick: what they pushed against, on its way
   std::uint32_t status = 0, fault = 0;
   Mode mode = Mode::kIdle;
@@ -44,12 +44,13 @@ struct TrackColumns {
   struct Range {
     float low = 0, high = 0;
   };
-  std::vector<Range> contact_N, felt_N, depth_mm, stored_mJ, given_mJ;
+  std::vector<Range> contact_N, felt_N, depth_mm, stored_mJ, given_mJ, surplus_mJ;
   std::vector<Range> compute_us, stage_us[kStageCount];
   std::vector<std::int32_t> regions;  // most
   template <class Visitor>
   void each(Visitor visit) {
-    for (std::vector<Range>* line : {&contact_N, &felt_N, &depth_mm, &stored_mJ, &given_mJ, &compute_us}) visit(*line);
+    for (std::vector<Range>* line : {&contact_N, &felt_N, &depth_mm, &stored_mJ, &given_mJ, &surplus_mJ, &compute_us})
+      visit(*line);
     for (std::vector<Range>& line : stage_us) visit(line);
   }
 };

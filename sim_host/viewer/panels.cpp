@@ -135,7 +135,8 @@ void plots(const PanelScene& scene, double now_s) {
   const PlotLine depth[] = {{"deepest", theme::kDepth, data.depth_mm}};
   history_plot("Depth", "mm", depth, from_s, until_s, now_s, plot_height.of(8));
   const PlotLine energy[] = {{"given by the hand", theme::kFelt, data.given_mJ},
-                             {"stored", theme::kForce, data.stored_mJ}};
+                             {"stored", theme::kForce, data.stored_mJ},
+                             {"surplus", theme::kFriction, data.surplus_mJ}};
   history_plot("Energy", "mJ", energy, from_s, until_s, now_s, plot_height.of(8));
 }
 
