@@ -71,6 +71,13 @@ namespace palpate {
   X(double, relax_kept_2, "-", 0, 1, "of the second")                                                             \
   X(double, relax_kept_3, "-", 0, 1, "of the third")                                                              \
   X(double, lost_share, "-", 0, 0.5, "part of a press's work that its release does not give back, however slow")
+// What rings at a touch (rt_core/safety/contact_transient.h).
+#define PALPATE_TRANSIENT_PARAMS(X)                                                                             \
+  X(double, transient_N_per_m_s, "N*s/m", 0, 1e6, "first value, of the speed of the touch; 0: nothing rings")   \
+  X(double, transient_turn, "-", -2, 2, "2 exp(-decay T) cos(2 pi frequency T): of the last value in the next") \
+  X(double, transient_kept, "-", 0, 1, "exp(-2 decay T): of the one before, which is taken off it")             \
+  X(double, transient_most, "-", 0, 1, "largest first value, of force_max_N")                                   \
+  X(std::int32_t, transient_ticks, "ticks", 0, 1'000'000, "until a hundredth is left: it ends, another may begin")
 // Friction.
 #define PALPATE_FRICTION_PARAMS(X)                                                                    \
   PALPATE_CHOICE_PARAM(X, FrictionLaw, friction_law, "limit and motion of friction")                  \
@@ -136,6 +143,7 @@ namespace palpate {
   G("nodes of a finite-element body", PALPATE_NODE_PARAMS, kOfNodes)               \
   G("elastic body", PALPATE_ELASTIC_PARAMS, kOfElastic)                            \
   G("relaxation", PALPATE_RELAXATION_PARAMS, kOfPoints | kOfTips | kOfElastic)     \
+  G("what rings at a touch", PALPATE_TRANSIENT_PARAMS, kOfAll)                     \
   G("friction", PALPATE_FRICTION_PARAMS, kOfAll)                                   \
   G("regions, and how they influence one another", PALPATE_REGION_PARAMS, kOfAll)  \
   G("the shape as drawn, and beams", PALPATE_SKELETON_PARAMS, kOfPoints | kOfTips) \
@@ -149,6 +157,7 @@ namespace palpate {
   PALPATE_NODE_PARAMS(X)        \
   PALPATE_ELASTIC_PARAMS(X)     \
   PALPATE_RELAXATION_PARAMS(X)  \
+  PALPATE_TRANSIENT_PARAMS(X)   \
   PALPATE_FRICTION_PARAMS(X)    \
   PALPATE_REGION_PARAMS(X)      \
   PALPATE_SKELETON_PARAMS(X)    \

@@ -201,7 +201,11 @@ using ForceHistory = double[6 * kForceHistory];
   X(Vec3, last_coupling_N, {}, "the coupling's force at the last tick")                                  \
   X(Vec3, last_step_N, {}, "and its change then")                                                        \
   X(double, swings, 0, "ticks in which it changed back, lately")                                         \
-  X(double, unpaid_J, 0, "while the coupling's end stands apart: held, and not given by the hand")
+  X(double, unpaid_J, 0, "while the coupling's end stands apart: held, and not given by the hand")       \
+  X(Vec3, ring_N, {}, "what rings since a touch, along the normal there")                                \
+  X(Vec3, ring_before_N, {}, "and at the tick before")                                                   \
+  X(std::int32_t, ring_ticks, 0, "until it has ended, and the next touch rings")                         \
+  X(std::int32_t, ring_reserved, 0, "-")
 
 struct SafetyState {
   PALPATE_STATE_FIELDS_OF(PALPATE_SAFETY_STATE)

@@ -2,7 +2,9 @@
 // relaxes from tick to tick.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "config/scene/scene.h"
 #include "rt_core/model.h"
@@ -37,6 +39,21 @@ inline Smoothing smoothing_of(const DeviceDesc& d, double coupling_N_per_m, doub
   return s;
 }
 
+// What rings at a touch, as the resonator that a tick steps (rt_core/safety/contact_transient.h). Of A exp(-decay t)
+// sin(w t) a tick changes at most A |1 - r exp(i w)|, w and r those of a tick: the height is lowered to where that is
+// kRingStep of the largest force, half of what an output may change, for the contact itself changes it too.
+inline void set_transient(const TransientDesc& t, double period_s, ModelParams& p) {
+  constexpr double kRingStep = 0.05, kLeft = 0.01;
+  if (!(t.amplitude_N_per_m_s > 0)) return;
+  const double w = 2 * std::numbers::pi * t.frequency_Hz * period_s, r = std::exp(-t.decay_per_s * period_s);
+  const double first = r * std::sin(w), step = std::sqrt(1 - 2 * r * std::cos(w) + r * r);
+  p.transient_N_per_m_s = t.amplitude_N_per_m_s * first;
+  p.transient_turn = 2 * r * std::cos(w);
+  p.transient_kept = r * r;
+  p.transient_most = std::min(1.0, kRingStep / step) * first;
+  p.transient_ticks = static_cast<std::int32_t>(std::ceil(-std::log(kLeft) / (t.decay_per_s * period_s)));
+}
+
 // Needs p.coupling_N_per_m and p.coupling_Nm_per_rad.
 inline void set_times(const SceneDesc& scene, ModelParams& p) {
   const DeviceDesc& d = scene.device;
@@ -51,6 +68,7 @@ inline void set_times(const SceneDesc& scene, ModelParams& p) {
   const auto kept = [&](double s) { return std::exp(-d.period_s / s); };
   p.relax_share_1 = share.x, p.relax_share_2 = share.y, p.relax_share_3 = share.z;
   p.relax_kept_1 = kept(time_s.x), p.relax_kept_2 = kept(time_s.y), p.relax_kept_3 = kept(time_s.z);
+  set_transient(scene.transient, d.period_s, p);
 }
 
 }  // namespace palpate

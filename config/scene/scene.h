@@ -120,6 +120,12 @@ struct NodalDesc {
   double strain_limit = 0.1;
   double proxy_speed_max_m_per_s = 0.5;
 };
+// What rings at a touch; see rt_core/safety/contact_transient.h.
+struct TransientDesc {
+  double amplitude_N_per_m_s = 0;
+  double frequency_Hz = 0;
+  double decay_per_s = 0;
+};
 // Defaults: Luo & Xiao 2006, section VII, read in millimetres and newtons.
 struct DuffingDesc {
   double mass_kg = 1.0;
@@ -302,6 +308,7 @@ struct SceneDesc {
   SkeletonDesc skeleton;
   ContactDesc contact;
   NodalDesc nodal;
+  TransientDesc transient;
   ElasticDesc elastic;
   DuffingDesc duffing;
   CubicDesc cubic;

@@ -356,6 +356,20 @@ void check_backend(const SceneDesc& scene) {
     check_effect(scene, "contact.nodal", {"sweeps"}, {}, "with solver = \"pivoting\"");
 }
 
+void check_transient(const SceneDesc& scene) {
+  const TransientDesc& t = scene.transient;
+  if (!(t.amplitude_N_per_m_s > 0)) return;
+  for (const auto& [key, value] : {std::pair{"frequency_Hz", t.frequency_Hz}, {"decay_per_s", t.decay_per_s}})
+    if (!(value > 0))
+      fail(scene, std::string("contact.transient.") + key,
+           "must be stated beside amplitude_N_per_m_s: what rings, how often and for how long");
+  const double most_Hz = 0.4 / scene.device.period_s;
+  if (!(t.frequency_Hz <= most_Hz))
+    fail(scene, "contact.transient.frequency_Hz",
+         number_text(t.frequency_Hz) + " is too fast for samples every " + number_text(1e3 * scene.device.period_s) +
+             " ms; at most " + number_text(most_Hz));
+}
+
 // What error_target is a choice of: the models that follow from the material.
 void check_error_target(const SceneDesc& scene) {
   if (scene.error_target.empty() || scene.error_target == "none") return;
@@ -455,6 +469,7 @@ void check_scene(const SceneDesc& scene) {
   check_contact(scene);
   check_friction(scene);
   check_backend(scene);
+  check_transient(scene);
   check_tips(scene);
   check_tool(scene);
   check_articulation(scene);

@@ -151,6 +151,10 @@ const EffectRule kRules[] = {
     {"device.grip_mm",
      [](const SceneDesc& s) { return s.device.holds == HeldPart::kBody || s.device.holds == HeldPart::kBoth; },
      "where no hand holds the body", "remove it or state device.holds"},
+    {"contact.transient.frequency_Hz", [](const SceneDesc& s) { return s.transient.amplitude_N_per_m_s > 0; },
+     "without contact.transient.amplitude_N_per_m_s, of which nothing rings", "remove it or state the amplitude"},
+    {"contact.transient.decay_per_s", [](const SceneDesc& s) { return s.transient.amplitude_N_per_m_s > 0; },
+     "without contact.transient.amplitude_N_per_m_s, of which nothing rings", "remove it or state the amplitude"},
     {"contact.nodal.friction_sweeps", [](const SceneDesc& s) { return !is_nodal(s) || slides(s); }, kNoFriction,
      kRemove},
 };

@@ -91,6 +91,15 @@ const KeySpec kNodal[] = {
                                                 "the tool in contact moves no faster than the handle and this: what a "
                                                 "snap may jump in a tick"),
 };
+const KeySpec kTransient[] = {
+    number<&TransientDesc::amplitude_N_per_m_s>("amplitude_N_per_m_s", 0, 1e5, 1,
+                                                "height of the decaying sinusoid at a touch, of the speed of the "
+                                                "touch; 0: nothing rings. Lowered where it would "
+                                                "change the force by more than 5 % of force_max_N in a tick"),
+    number<&TransientDesc::frequency_Hz>("frequency_Hz", 1, 5000, 1,
+                                         "of it; at most 0.4 of the device's sample rate. 0: not stated"),
+    number<&TransientDesc::decay_per_s>("decay_per_s", 1, 1e4, 1, "of its envelope, exp(-decay t). 0: not stated"),
+};
 const KeySpec kDuffing[] = {
     number<&DuffingDesc::mass_kg>("mass_kg", 1e-6, 1e6, 1, "m; with the two below in mm and N: k1 = m omega0^2 N/mm"),
     number<&DuffingDesc::omega0>("omega0", 0, 1e3, 1, "omega0 of Luo & Xiao 2006"),
@@ -392,6 +401,11 @@ const TableSpec kTables[] = {
      "With law = \"tool\": how two tips lean on one another; other pairs use the far field.", kPair, open_pair},
     {"contact.table", kOne, "With law = \"table\": presses, measured or computed.", kTable, open<&SceneDesc::table>},
     {"contact.nodal", kOne, "With backend = \"nodal\".", kNodal, open<&SceneDesc::nodal>},
+    {"contact.transient", kOne,
+     "What a hard object does at a touch beside pushing back: it rings (after Okamura, Cutkosky & Dennerlein 2001). "
+     "Off "
+     "by default.",
+     kTransient, open<&SceneDesc::transient>},
     {"friction", kOne, "Friction per contact region.", kFriction, open<&SceneDesc::friction>},
     {"shape", kOne, "How the deformed surface is drawn. No effect on forces.", kShape, open<&SceneDesc::shape>},
     {"coupling", kOne, "Several contact regions at once.", kCoupling, open<&SceneDesc::coupling>},

@@ -1,5 +1,6 @@
 // The last stage of every tick, in every mode, for every model:
 //   wrench of the virtual coupling -> its damping, energy -> finite? -> magnitude -> mode gain -> rate.
+#include "rt_core/safety/contact_transient.h"
 #include "rt_core/safety/hand_energy.h"
 #include "rt_core/safety/local_device.h"
 #include "rt_core/safety/mode_machine.h"
@@ -26,6 +27,7 @@ bool clamp_length(Vec3& v, double limit) PALPATE_RT {
 // After a non-finite number anywhere: drop contact memory and start again from the handle's pose.
 void restart_contact(State& state) PALPATE_RT {
   state.tool_w = state.tool_previous_w = state.safety.tool_corrected_w = state.device_w;
+  state.safety.ring_N = state.safety.ring_before_N = {};
   forget_seat(state);
   forget_contact(state);
 }
@@ -115,6 +117,7 @@ Asked judge(const Model& model, State& state, Scratch& scratch, const Input& inp
   if (input.drive == Drive::kDevice && is_finite_wrench(wrench)) {
     if (is_unstable(model, safety, wrench.force_N)) faults |= Fault::kUnstable;
     add_coupling_damping(model, safety, wrench.force_N);
+    ring(model, state, scratch, wrench.force_N);
     drain_energy(model, state, scratch, input, given_J, wrench.force_N);
   }
   if (!is_finite_wrench(wrench)) faults |= Fault::kNotFinite;

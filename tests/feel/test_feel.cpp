@@ -374,6 +374,27 @@ TEST(FeelPath, ASnapAndASlipAreNoStep) {
   }
 }
 
+// What rings at a touch is felt, and counted: the taps' forces oscillate at its frequency, and the hand is given
+// nothing, on a device that holds forces and on one with a loop of its own.
+TEST(FeelTransient, IsFeltAndGivesTheHandNothing) {
+  const auto tapped = [](bool rings, bool local) {
+    SceneOverlays overlays;
+    if (local) overlays.file = {PALPATE_SOURCE_DIR "/config/devices/sim-6dof-local.toml"};
+    if (rings)
+      overlays.setting = {"contact.transient.amplitude_N_per_m_s=5", "contact.transient.frequency_Hz=100",
+                          "contact.transient.decay_per_s=80"};
+    const SceneModel scene(PALPATE_SOURCE_DIR "/config/scenes/half_shell.toml", overlays);
+    std::vector<double> force_N;
+    const TouchPlace place = touch_place_of(scene.model(), *scene.scene());
+    const FeelRun run = run_feel(scene.model(), *scene.scene(), place, Manoeuvre::kTap, {},
+                                 [&](const FeelTick& now) { force_N.push_back(norm(now.output.device_w.force_N)); });
+    EXPECT_LT(run.figures.hand_J, kGridHandMost_J);
+    EXPECT_EQ(feel_failure(run), "");
+    return band_rms(force_N, 1e-3, 80, 120);
+  };
+  for (const bool local : {false, true}) EXPECT_GT(tapped(true, local), 1.5 * tapped(false, local)) << local;
+}
+
 // Five fingers close on a cylinder and pull the hand towards it. What they do, by the forces on each part and its
 // motion, is at least what object and tool receive, E' - E + F dx, by which the tick credits it: friction takes the
 // rest. The hand gets none that is not theirs.
