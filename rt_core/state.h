@@ -182,6 +182,7 @@ struct ArticulationState : ArticulationFields {
 
 // Outputs of the last ticks, six numbers each: force, torque.
 using ForceHistory = double[6 * kForceHistory];
+using BrakeHistory = double[3 * kForceHistory];
 
 #define PALPATE_SAFETY_STATE(X)                                                                          \
   X(Mode, mode, Mode::kIdle, "of the mode machine")                                                      \
@@ -202,6 +203,7 @@ using ForceHistory = double[6 * kForceHistory];
   X(Vec3, last_step_N, {}, "and its change then")                                                        \
   X(double, swings, 0, "ticks in which it changed back, lately")                                         \
   X(double, unpaid_J, 0, "while the coupling's end stands apart: held, and not given by the hand")       \
+  X(BrakeHistory, braked, {}, "of a local device: brakes in the last outputs, newest first")             \
   X(Vec3, ring_N, {}, "what rings since a touch, along the normal there")                                \
   X(Vec3, ring_before_N, {}, "and at the tick before")                                                   \
   X(std::int32_t, ring_ticks, 0, "until it has ended, and the next touch rings")                         \

@@ -14,11 +14,11 @@ namespace palpate {
 
 // Stiffest coupling that "auto" gives a device with a loop of its own: it learns of a contact tau late and has
 // gone v tau into it for nothing, whose K (v tau)^2 / 2 comes back, and as much again while its slope makes up for it
-// (1 + K v / slope times as much). With 0.3 of the largest force met at 0.3 m/s what comes back is braked away on the
-// way out; with 0.45, 4250 N/m at 3 ms, 2.6 mJ reached a medium hand and 3.2 a firm one (tools_on_cylinder, b = 0.5 N
-// s/m, 2026-11-25).
+// (1 + K v / slope times as much). With 0.2 of the largest force met at 0.3 m/s what comes back is braked away on the
+// way out; with 0.3, 3148 N/m at 2.7 ms, 0.9 mJ reached a drawn hand of 316 N/m where b was 0.33 N s/m, and with 0.45,
+// 4250 N/m at 3 ms, 2.6 mJ a medium one at 0.5 (tools_on_cylinder, 2026-11-25).
 inline double impact_coupling_N_per_m(double local_Hz, double delay_s, double force_max_N) {
-  constexpr double kTap_m_per_s = 0.3, kForceShare = 0.3;
+  constexpr double kTap_m_per_s = 0.3, kForceShare = 0.2;
   return local_Hz > 0 && delay_s > 0 ? kForceShare * force_max_N / (kTap_m_per_s * delay_s) : kHuge;
 }
 

@@ -17,6 +17,9 @@ constexpr double kDampingSmooth_s = 4e-3;
 // A surplus below this lifts a handle of 0.1 kg by 1 mm: no kick, however weak the device (one of 0.05 N holds 0.6 uJ
 // in its coupling, which an encoder step makes).
 constexpr double kKick_J = 1e-3;
+// Nor does a share of what is stored: fingers that squeeze a block hold 17 mJ in it, of which its nodes' energy errs by
+// 3.7 while it is turned, slowly; a stiff coupling of 10,000 N/m holds 3.6 at the largest force (2026-11-25).
+constexpr double kStoredShare = 0.3;
 // A change of the force counts as a swing from this share of the largest force on.
 // A weak device's from what a few encoder steps of 30 um make through a coupling of 1 to 2 N/mm.
 constexpr double kSwingShare = 0.02, kSwingLeast_N = 0.1;
@@ -39,45 +42,63 @@ void add_brake(Vec3 brake_N, Vec3& force_N) PALPATE_RT {
   force_N += brake_N;
 }
 
-// What was sent the delay ago.
-Wrench under_way(const Model& model, const SafetyState& safety) PALPATE_RT {
+// The delay in ticks: `a` was sent its whole ones ago, `b` a tick before, and for `part` of this tick it still acted.
+struct Late {
+  const double *a, *b;
+  double part;
+};
+Late late_of(const Model& model, const double* newest, std::int32_t numbers) PALPATE_RT {
   const double late = clamp_to(model.params.delay_s / model.params.period_s, 0, kForceHistory - 1.001);
   const auto whole = static_cast<std::int32_t>(late);
-  const double part = late - whole;
-  const double *a = safety.sent + 6 * whole, *b = a + 6;
-  return {(1 - part) * Vec3{a[0], a[1], a[2]} + part * Vec3{b[0], b[1], b[2]},
-          (1 - part) * Vec3{a[3], a[4], a[5]} + part * Vec3{b[3], b[4], b[5]}};
+  const double* a = newest + numbers * whole;
+  return {a, a + numbers, late - whole};
+}
+Vec3 at(const double* of) PALPATE_RT { return {of[0], of[1], of[2]}; }
+
+// What was sent the delay ago.
+Wrench under_way(const Model& model, const SafetyState& safety) PALPATE_RT {
+  const auto [a, b, part] = late_of(model, safety.sent, 6);
+  return {(1 - part) * at(a) + part * at(b), (1 - part) * at(a + 3) + part * at(b + 3)};
 }
 
 bool is_local(const Model& model) PALPATE_RT { return model.params.local_period_s > 0; }
 
 // Its outputs are remembered as what is left of them to come.
-Vec3 last_lag_N(const SafetyState& safety) PALPATE_RT { return {safety.sent[0], safety.sent[1], safety.sent[2]}; }
+Vec3 last_lag_N(const SafetyState& safety) PALPATE_RT { return at(safety.sent); }
 
 // What a device that evaluates the local model has not come to yet of `now_N`, after `last_N`: all of it until it has
 // been told of the contact, tau after it; from then on its slope takes from that, for the handle's own way acts at
 // once. A hand that comes in pays so much less than it is met with when it goes out: K (v tau)^2 / 2 and, with 3 ms on
 // 3 N/mm, as much again while the slope makes up for it (a tap of 0.3 m/s gave the hand 2.8 mJ where that was not
-// counted, 2026-11-25).
+// counted, 2026-11-25). A delay that ends within a tick leaves it the rest of that tick to follow (counted as the
+// whole, a firm hand was given 0.33 mJ at 0.7 ms on 4 N/mm, and none at 1 ms; 2026-11-25).
 Vec3 lag_N(const Model& model, const SafetyState& safety, Vec3 last_N, Vec3 now_N) PALPATE_RT {
   if (squared_norm(last_N) == 0) return now_N;
   const Vec3 lag = last_lag_N(safety);
   if (squared_norm(lag) == 0) return {};
-  if (squared_norm(under_way(model, safety).force_N) == 0) return now_N;
+  const auto [a, b, part] = late_of(model, safety.sent, 6);
+  if (squared_norm(at(a)) == 0) return now_N;
+  const bool told_before = squared_norm(at(b)) != 0;
+  const double share = told_before ? 1 : 1 - part;  // of this tick, in which it was told
   const ModelParams& p = model.params;
-  const double made_up_N = 1e3 * kLocalSlopeShare_per_ms * p.period_s * p.force_max_N;
-  return max_of(0, 1 - made_up_N / norm(lag)) * lag;
+  const double made_up_N = share * 1e3 * kLocalSlopeShare_per_ms * p.period_s * p.force_max_N;
+  const Vec3 left = lag + (1 - share) * (now_N - last_N);
+  return max_of(0, 1 - made_up_N / max_of(norm(left), kNothing)) * left;
 }
 
 // What acted on the handle between the last two samples: an output takes the delay to arrive; but a device that
 // evaluates the local model pushes with what the last tick said at the beginning and with `now_N` at the end, each less
-// what it has not come to.
+// what it has not come to. It obeys a brake the delay later: counted at once, as what acts already, brakes that a
+// contact's end cuts off were taken for paid (2026-11-25: 0.27 mJ to a light hand, 3 ms, b 0.25 N s/m).
 Wrench acted(const Model& model, const SafetyState& safety, Vec3 now_N) PALPATE_RT {
   const Wrench held = under_way(model, safety);
   if (!is_local(model)) return held;
   const Vec3 last_N = safety.last_device_w.force_N;
   const Vec3 before_N = last_N - last_lag_N(safety), after_N = now_N - lag_N(model, safety, last_N, now_N);
-  return {0.5 * (before_N + after_N), held.torque_Nm};
+  const Late late = late_of(model, safety.braked, 3);
+  const double* last = safety.braked;
+  const Vec3 brake_N = (1 - late.part) * at(late.a) + late.part * at(late.b);
+  return {0.5 * (before_N - at(last) + after_N) + brake_N, held.torque_Nm};
 }
 
 // Energy of a spring whose force stays at `most` from there on.
@@ -103,6 +124,34 @@ bool nothing_sent(const SafetyState& safety) PALPATE_RT {
     if (value != 0) return false;
   }
   return true;
+}
+
+// Brakes what the account has too much.
+void brake_surplus(const Model& model, const State& state, Scratch& scratch, Vec3& force_N) PALPATE_RT {
+  const ModelParams& p = model.params;
+  const SafetyState& safety = state.safety;
+  const Vec3 way_m = state.device_w.position_m - state.device_previous_w.position_m;
+  // A device with a loop of its own smooths its encoder, and is braked on its way out alone: a brake of a hand that
+  // comes in would arrive when it goes out again, and push it. A step of the encoder is 30 mm/s of one tick, and the
+  // smoothed velocity 6 ms late: the mean of both (swings in 10 ticks with the first alone, 3 ms; 2026-11-25).
+  const bool local = is_local(model);
+  const Vec3 tick_m_per_s = (1 / p.period_s) * way_m;
+  const Vec3 velocity = local ? 0.5 * (tick_m_per_s + state.hand_velocity_m_per_s) : state.hand_velocity_m_per_s;
+  const double speed2 = squared_norm(velocity);
+  if (!(safety.surplus_J > 0 && speed2 > kDampingDead_m_per_s * kDampingDead_m_per_s)) return;
+  if (local && !(dot(force_N, velocity) > 0)) return;
+  const double most = p.coupling_N_per_m * (p.period_s + 2 * p.delay_s);
+  const double damping = min_of(safety.surplus_J / (kDrain_ticks * p.period_s * speed2), most);
+  const double fade =
+      local ? 1 - kDampingDead_m_per_s / square_root(speed2) : 1;  // not at once from one tick to the next
+  scratch.status |= Status::kEnergyDrained;
+  add_brake(-(fade * damping) * velocity, force_N);
+}
+
+void remember_brake(SafetyState& safety, Vec3 brake_N) PALPATE_RT {
+  for (std::int32_t i = 3 * kForceHistory - 1; i >= 3; --i) safety.braked[i] = safety.braked[i - 3];  // bound: history
+  const double now[3] = {brake_N.x, brake_N.y, brake_N.z};
+  for (std::int32_t i = 0; i < 3; ++i) safety.braked[i] = now[i];
 }
 
 }  // namespace
@@ -139,21 +188,9 @@ void drain_energy(const Model& model, State& state, Scratch& scratch, const Inpu
   safety.object_w = scratch.contact_wrench_w;
   safety.surplus_J = counts && is_finite(made_J) ? max_of(-kCreditShare * most_J, safety.surplus_J + made_J) : 0.0;
   if (squared_norm(force_N) == 0 && nothing_sent(safety)) safety.surplus_J = 0;
-  // A device with a loop of its own smooths its encoder, and is braked on its way out alone: a brake of a hand that
-  // comes in would arrive when it goes out again, and push it. A step of the encoder is 30 mm/s of one tick, and the
-  // smoothed velocity 6 ms late: the mean of both (swings in 10 ticks with the first alone, 3 ms; 2026-11-25).
-  const bool local = is_local(model);
-  const Vec3 tick_m_per_s = (1 / p.period_s) * way.translation_m;
-  const Vec3 velocity = local ? 0.5 * (tick_m_per_s + state.hand_velocity_m_per_s) : state.hand_velocity_m_per_s;
-  const double speed2 = squared_norm(velocity);
-  if (!(safety.surplus_J > 0 && speed2 > kDampingDead_m_per_s * kDampingDead_m_per_s)) return;
-  if (local && !(dot(force_N, velocity) > 0)) return;
-  const double most = p.coupling_N_per_m * (p.period_s + 2 * p.delay_s);
-  const double damping = min_of(safety.surplus_J / (kDrain_ticks * p.period_s * speed2), most);
-  const double fade =
-      local ? 1 - kDampingDead_m_per_s / square_root(speed2) : 1;  // not at once from one tick to the next
-  scratch.status |= Status::kEnergyDrained;
-  add_brake(-(fade * damping) * velocity, force_N);
+  const Vec3 unbraked_N = force_N;
+  brake_surplus(model, state, scratch, force_N);
+  if (is_local(model)) remember_brake(safety, force_N - unbraked_N);
 }
 
 bool is_unstable(const Model& model, SafetyState& safety, Vec3 force_N) PALPATE_RT {
@@ -165,7 +202,8 @@ bool is_unstable(const Model& model, SafetyState& safety, Vec3 force_N) PALPATE_
   safety.swings = settled(kSwingKept * safety.swings + (back ? 1 : 0));
   safety.last_step_N = step;
   safety.last_coupling_N = force_N;
-  const double most_J = max_of(kKick_J, 0.5 * p.force_max_N * p.force_max_N / p.coupling_N_per_m);
+  const double held_J = 0.5 * p.force_max_N * p.force_max_N / p.coupling_N_per_m;
+  const double most_J = max_of(kKick_J, max_of(held_J, kStoredShare * safety.stored_J));
   return safety.swings > kSwingsMost || safety.surplus_J > most_J;
 }
 

@@ -27,7 +27,7 @@ void drain_energy(const Model& model, State& state, Scratch& scratch, const Inpu
                   Vec3& force_N) PALPATE_RT;
 
 // True when the coupling's force has changed its sense of change in most of the last ticks, or when the surplus is more
-// than the coupling holds at the largest force: Fault::kUnstable.
+// than the coupling holds at the largest force, and than 0.3 of all that is stored: Fault::kUnstable.
 bool is_unstable(const Model& model, SafetyState& safety, Vec3 force_N) PALPATE_RT;
 
 // The output of this tick, after `last_N`, into the history of those that may still be under way; of a device that

@@ -56,6 +56,10 @@ Model baked_for(const Model& model, const SceneDesc& scene, double damping, doub
   p.coupling_N_per_m = std::clamp(
       std::min(kCouplingShare * bound.value, impact_coupling_N_per_m(scene.device.local_Hz, delay_s, p.force_max_N)),
       1.0, 1e4);
+  // Torques are held, whatever the device does by itself.
+  const StiffnessBound turning = admissible_stiffness(scene.device.damping_Nms_per_rad, scene.device.friction_Nm,
+                                                      scene.device.encoder_step_rad, p.period_s, delay_s);
+  p.coupling_Nm_per_rad = std::clamp(kCouplingShare * turning.value, 1e-6, 1e4);
   SceneDesc stated = scene;
   stated.device.delay_s = delay_s;
   stated.device.encoder_step_m = encoder_m;
