@@ -51,7 +51,8 @@ inline void set_transient(const TransientDesc& t, double period_s, ModelParams& 
   p.transient_turn = 2 * r * std::cos(w);
   p.transient_kept = r * r;
   p.transient_most = std::min(1.0, kRingStep / step) * first;
-  p.transient_ticks = static_cast<std::int32_t>(std::ceil(-std::log(kLeft) / (t.decay_per_s * period_s)));
+  p.transient_ticks =
+      static_cast<std::int32_t>(std::min(1e6, std::ceil(-std::log(kLeft) / (t.decay_per_s * period_s))));
 }
 
 // Needs p.coupling_N_per_m and p.coupling_Nm_per_rad.

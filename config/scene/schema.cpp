@@ -96,9 +96,9 @@ const KeySpec kTransient[] = {
                                                 "height of the decaying sinusoid at a touch, of the speed of the "
                                                 "touch; 0: nothing rings. Lowered where it would "
                                                 "change the force by more than 5 % of force_max_N in a tick"),
-    number<&TransientDesc::frequency_Hz>("frequency_Hz", 1, 5000, 1,
+    number<&TransientDesc::frequency_Hz>("frequency_Hz", 0, 5000, 1,
                                          "of it; at most 0.4 of the device's sample rate. 0: not stated"),
-    number<&TransientDesc::decay_per_s>("decay_per_s", 1, 1e4, 1, "of its envelope, exp(-decay t). 0: not stated"),
+    number<&TransientDesc::decay_per_s>("decay_per_s", 0, 1e4, 1, "of its envelope, exp(-decay t). 0: not stated"),
 };
 const KeySpec kDuffing[] = {
     number<&DuffingDesc::mass_kg>("mass_kg", 1e-6, 1e6, 1, "m; with the two below in mm and N: k1 = m omega0^2 N/mm"),
