@@ -35,11 +35,26 @@ struct RegionSolution {
 //   load(r, shift)               LawPoint: F_r and -dF_r/dshift of its rows, all depths reduced by the shift
 //   shift_under(force, r)        dW/dF_r
 //   curvature(force, i, j)       d2W/dF_i dF_j
+// or, of many regions at once, instead of all but the constants: start(), evaluate() and newton_step() themselves.
 namespace region_solve {
+
+template <class Laws>
+concept HasSteps = requires(const Laws& laws, RegionSystem& s) {
+  laws.newton_step(s);
+};
+
+template <class Laws>
+void start(const Laws& laws, std::int32_t n, RegionSystem& s) PALPATE_RT {
+  if constexpr (HasSteps<Laws>)
+    laws.start(s.shift_m);
+  else
+    for (std::int32_t r = 0; r < n; ++r) s.shift_m[r] = laws.start(r);  // bound: regions
+}
 
 // Forces, root tangents and residuals dW/dF - shift at `shift`. Returns the largest.
 template <class Laws>
-Real evaluate(const Laws& laws, std::int32_t n, const Real* shift, RegionSystem& s) PALPATE_RT {
+Real evaluate(const Laws& laws, std::int32_t n, const Real* shift, RegionSystem& s) PALPATE_RT
+    requires(!HasSteps<Laws>) {
   for (std::int32_t r = 0; r < n; ++r) {  // bound: regions
     const LawPoint load = laws.load(r, shift[r]);
     s.force_N[r] = load.force_N;
@@ -55,7 +70,7 @@ Real evaluate(const Laws& laws, std::int32_t n, const Real* shift, RegionSystem&
 
 // Newton step, from (I + g H g) y = -g r, step = r + H g y; false when that is not positive definite.
 template <class Laws>
-bool newton_step(const Laws& laws, std::int32_t n, RegionSystem& s) PALPATE_RT {
+bool newton_step(const Laws& laws, std::int32_t n, RegionSystem& s) PALPATE_RT requires(!HasSteps<Laws>) {
   const Real* g = s.root_tangent;
   Real* y = s.trial_m;
   Real h[kMaxRegions * kMaxRegions];      // both uses ask for it once
@@ -75,23 +90,23 @@ bool newton_step(const Laws& laws, std::int32_t n, RegionSystem& s) PALPATE_RT {
   return true;
 }
 
+template <class Laws>
+Real evaluate(const Laws& laws, std::int32_t, const Real* shift, RegionSystem& s) PALPATE_RT requires HasSteps<Laws> {
+  return laws.evaluate(shift, s);
+}
+template <class Laws>
+bool newton_step(const Laws& laws, std::int32_t, RegionSystem& s) PALPATE_RT requires HasSteps<Laws> {
+  return laws.newton_step(s);
+}
+
 }  // namespace region_solve
 
-// Solves shift_r = dW/dF_r(F), F_r = F_r(shift_r) by Newton's method in symmetric form: with r = dW/dF - shift, H the
-// Hessian of W and g = sqrt(-F'), (I + g H g) y = -g r by Cholesky, shift += r + H g y. A step that leaves more than
-// kTolerance_m and more than before is halved. The forces are the gradient of one potential, so with W held fixed no
-// closed path returns energy; the caller holds it for as long as two regions last together (see set_lean in
-// region_load.h). Measured for cubic laws (2026-11-21, 2000 random 15-region problems, C_ii to 1.5e-4 m/N): see
-// tests/force/test_coupled_regions.cpp. Leaves shift_m and force_N in `system`. Bound: Laws::kIterations steps of
-// regions^3/6 multiply-adds and kStepHalvings + 1 evaluations.
+// Goes on with a solution until no more than enough_m is left. Bound: Laws::kIterations steps.
 template <class Laws>
-RegionSolution solve_regions(const Laws& laws, std::int32_t n, RegionSystem& system) PALPATE_RT {
-  RegionSolution result;
-  for (std::int32_t r = 0; r < n; ++r) system.shift_m[r] = laws.start(r);  // bound: regions
-  result.residual_m = region_solve::evaluate(laws, n, system.shift_m, system);
-  result.evaluations = 1;
+void refine_regions(const Laws& laws, std::int32_t n, RegionSystem& system, Real enough_m,
+                    RegionSolution& result) PALPATE_RT {
   for (std::int32_t k = 0; k < Laws::kIterations; ++k) {  // bound: Laws::kIterations
-    if (result.residual_m <= Laws::kEnough_m) break;
+    if (result.residual_m <= enough_m) break;
     result.steps += 1;
     if (!region_solve::newton_step(laws, n, system)) {
       result.singular = true;
@@ -108,6 +123,23 @@ RegionSolution solve_regions(const Laws& laws, std::int32_t n, RegionSystem& sys
     }
     for (std::int32_t r = 0; r < n; ++r) system.shift_m[r] = system.trial_m[r];  // bound: regions
   }
+}
+
+// Solves shift_r = dW/dF_r(F), F_r = F_r(shift_r) by Newton's method in symmetric form: with r = dW/dF - shift, H the
+// Hessian of W and g = sqrt(-F'), (I + g H g) y = -g r by Cholesky, shift += r + H g y. A step that leaves more than
+// kTolerance_m and more than before is halved. The forces are the gradient of one potential, so with W held fixed no
+// closed path returns energy; the caller holds it for as long as two regions last together (see set_lean in
+// region_load.h). Measured for cubic laws (2026-11-21, 2000 random 15-region problems, C_ii to 1.5e-4 m/N): see
+// tests/force/test_coupled_regions.cpp. Leaves shift_m and force_N in `system`. Bound: Laws::kIterations steps of
+// regions^3/6 multiply-adds and kStepHalvings + 1 evaluations.
+template <class Laws>
+RegionSolution solve_regions(const Laws& laws, std::int32_t n, RegionSystem& system,
+                             Real enough_m = Laws::kEnough_m) PALPATE_RT {
+  RegionSolution result;
+  region_solve::start(laws, n, system);
+  result.residual_m = region_solve::evaluate(laws, n, system.shift_m, system);
+  result.evaluations = 1;
+  refine_regions(laws, n, system, enough_m, result);
   return result;
 }
 

@@ -331,13 +331,26 @@ void show_linear_modes(const Model& model, const ElasticRow& row, Real* along) P
   const Triangle& triangle = model.triangle[static_cast<std::size_t>(row.foot.triangle)];
   const Vec3 n = row.foot.normal_w;
   const std::int32_t count = model.params.elastic_linear;
-  for (std::int32_t m = 0; m < count; ++m) along[m] = 0;  // bound: kMaxLinearModes
-  for (int k = 0; k < 3; ++k) {                           // bound: 3 kMaxLinearModes
-    const float* shape = linear_shapes(model, triangle.vertex[k]);
-    const Vec3 push = row.foot.weight[k] * n;
-    for (std::int32_t m = 0; m < count; ++m)
-      along[m] += push.x * static_cast<Real>(shape[3 * m]) + push.y * static_cast<Real>(shape[3 * m + 1]) +
-                  push.z * static_cast<Real>(shape[3 * m + 2]);
+  const float* shape[3];
+  for (int k = 0; k < 3; ++k) shape[k] = linear_shapes(model, triangle.vertex[k]);  // bound: 3
+  const Real* w = row.foot.weight;
+  const auto blend = [&](std::int32_t i) PALPATE_RT {
+    return splat4(w[0]) * widen4(shape[0] + i) + splat4(w[1]) * widen4(shape[1] + i) +
+           splat4(w[2]) * widen4(shape[2] + i);
+  };
+  std::int32_t m = 0;
+  for (; m + 4 <= count; m += 4) {  // bound: kMaxLinearModes / 4, and 3
+    Vec3 four[4];
+    for (int i = 0; i < 3; ++i) store(&four[0].x + 4 * i, blend(3 * m + 4 * i));
+    store(along + m, dot(load4(four), splat4(n)));
+  }
+  for (; m < count; ++m) {
+    const auto at = [&](std::int32_t i) PALPATE_RT {
+      const std::int32_t of = 3 * m + i;
+      return w[0] * static_cast<Real>(shape[0][of]) + w[1] * static_cast<Real>(shape[1][of]) +
+             w[2] * static_cast<Real>(shape[2][of]);
+    };
+    along[m] = at(0) * n.x + at(1) * n.y + at(2) * n.z;
   }
 }
 

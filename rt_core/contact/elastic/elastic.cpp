@@ -31,22 +31,33 @@ constexpr std::int32_t kSolvesOfFriction = 2;
 // What the places ask of the modes, in tip laws evaluated: two of them, and sums over numbers and modes.
 constexpr std::int32_t kPlaceLaws = 5;
 
-// Shifts and forces of the regions.
-void solve_forces(const ElasticLoad& load, Scratch& scratch, Real* force_N) PALPATE_RT {
+// Shifts and forces of the regions, to `enough_m` where there are several.
+RegionSolution solve_forces(const ElasticLoad& load, Scratch& scratch, Real enough_m, Real* force_N) PALPATE_RT {
+  RegionSolution result;
   if (load.n > 1) {
-    const RegionSolution result = solve_regions(load, load.n, scratch.system);
-    scratch.work.tip_laws += count_solution(result, load.n, scratch.contact_count, scratch.work);
-    scratch.residual_m = result.residual_m;
-    if (result.singular) scratch.status |= Status::kCouplingSingular;
+    result = solve_regions(load, load.n, scratch.system, enough_m);
   } else {
-    const TravelResult result = solve_travel(load.region[0], load.shift_under(load.before_N, 0));
-    scratch.work.tip_laws += result.evaluations * load.region[0].count;
-    scratch.system.shift_m[0] = result.shift_m;
-    scratch.residual_m = result.residual_m;
+    const TravelResult alone = solve_travel(load.region[0], load.shift_alone_m(0));
+    scratch.work.tip_laws += alone.evaluations * load.region[0].count;
+    scratch.system.shift_m[0] = alone.shift_m;
+    scratch.system.force_N[0] = region_at(load.region[0], alone.shift_m).force_N;
+    result.residual_m = alone.residual_m;
   }
+  for (std::int32_t r = 0; r < load.n; ++r) force_N[r] = scratch.system.force_N[r];  // bound: kMaxRegions
+  return result;
+}
+
+// And to the end, where the first solve is the last.
+void finish_forces(const ElasticLoad& load, Scratch& scratch, RegionSolution& result, Real* force_N) PALPATE_RT {
+  if (load.n > 1) refine_regions(load, load.n, scratch.system, ElasticLoad::kEnough_m, result);
+  for (std::int32_t r = 0; r < load.n; ++r) force_N[r] = scratch.system.force_N[r];  // bound: kMaxRegions
+}
+
+void judge_solution(const ElasticLoad& load, const RegionSolution& result, Scratch& scratch) PALPATE_RT {
+  if (load.n > 1) scratch.work.tip_laws += count_solution(result, load.n, scratch.contact_count, scratch.work);
+  scratch.residual_m = result.residual_m;
+  if (result.singular) scratch.status |= Status::kCouplingSingular;
   if (!(scratch.residual_m <= kTravelTolerance_m)) scratch.status |= Status::kNotConverged;
-  for (std::int32_t r = 0; r < load.n; ++r)  // bound: kMaxRegions
-    force_N[r] = region_at(load.region[r], scratch.system.shift_m[r]).force_N;
 }
 
 // How far the tick moved any place of the surface at most.
@@ -99,6 +110,8 @@ template <class Count>
 void solve_pressed(const Model& model, State& state, Scratch& scratch, Count soft) PALPATE_RT {
   const std::int32_t regions = scratch.rows.regions;
   ElasticLoad load;
+  Real own_bend_m_per_N[kMaxRegions];
+  load.own_bend_m_per_N = own_bend_m_per_N;
   Linearised<Count> body(model, state, scratch, load, soft);
   Real before_N[kMaxRegions];
   for (std::int32_t r = 0; r < regions; ++r) before_N[r] = state.region[scratch.rows.slot[r]].normal_force_N;
@@ -106,11 +119,15 @@ void solve_pressed(const Model& model, State& state, Scratch& scratch, Count sof
   body.prepare(before_N);
   scratch.work.tip_laws += kPlaceLaws * regions;
   for (std::int32_t i = 0; i < kSolvesOfFriction; ++i) {  // bound: kSolvesOfFriction
-    if (i > 0 && !body.slips(force_N)) break;
     body.let_give(i == 0 ? before_N : force_N);
-    solve_forces(load, scratch, force_N);
+    const bool is_last = i + 1 == kSolvesOfFriction;
+    RegionSolution result = solve_forces(load, scratch, is_last ? ElasticLoad::kEnough_m : kTravelTolerance_m, force_N);
     scratch.work.linearised += regions;
     scratch.work.linked += regions * (regions + 1) / 2 * (model.params.elastic_linear + model.params.elastic_soft);
+    const bool goes_on = !is_last && body.slips(force_N);
+    if (!goes_on && !is_last) finish_forces(load, scratch, result, force_N);
+    judge_solution(load, result, scratch);
+    if (!goes_on) break;
   }
   const Real left_m = body.step(force_N);
   scratch.work.soft_pairs_again += soft_work(pairs(model.params.elastic_soft)) / 2;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "rt_core/contact/elastic/elastic_row.h"
+#include "rt_core/contact/elastic/pair_lanes.h"
 #include "rt_core/contact/region_load.h"
 #include "rt_core/contact/tips/travel.h"
 
@@ -46,6 +47,8 @@ struct ElasticLoad : TipLaws {
   FarField own[kMaxRegions];     // c and c1 of the region, without the modes
   Vec3 pair_aside[kMaxRegions];  // slope along the surface of what the others' forces move under a region
   const Real* before_N;          // the last tick's forces, of all regions
+  PairLanes pair;                // of several regions
+  Real* own_bend_m_per_N;        // room for evaluate() to tell newton_step(): d2W/dF^2 of every region
 
   std::int32_t at(std::int32_t r, std::int32_t k) const PALPATE_RT {
     return static_cast<std::int32_t>(region[r].tip - tip) + k;
@@ -99,8 +102,16 @@ struct ElasticLoad : TipLaws {
     out.by_modulus = -(alone * here.scale_by_modulus + place.J(by_modulus));
     return out;
   }
-  // What the last forces ask for; a new region as if it were alone.
-  Real start(std::int32_t r) const PALPATE_RT { return before_N[r] > 0 ? shift_under(before_N, r) : TipLaws::start(r); }
+  // Region alone: what the last force asks for.
+  Real shift_alone_m(std::int32_t r) const PALPATE_RT { return far_shift_m(region[r].far, before_N[r]); }
+  // What the region solver asks (region_solve.h), all regions at once. The start: what the last forces ask for.
+  void start(Real* shift_m) const PALPATE_RT;
+  Real evaluate(const Real* shift_m, RegionSystem& s) const PALPATE_RT;
+  bool newton_step(RegionSystem& s) const PALPATE_RT;
+  // d2W/dF_i dF_j of i != j.
+  Real curvature(const Real* force, std::int32_t i, std::int32_t j) const PALPATE_RT {
+    return pair.c_m_per_N[i][j] + pair.h_m_per_N2[i][j] * force[i] + pair.h_m_per_N2[j][i] * force[j];
+  }
   Real coupling_J(std::int32_t r, Real force_N, Real) const PALPATE_RT { return far_energy_J(own[r], force_N); }
 };
 

@@ -202,8 +202,8 @@ void Linearised<Count>::prepare(const Real* force_N) PALPATE_RT {
   for (std::int32_t r = 0; r < regions(); ++r) {  // bound: kMaxContacts rows
     leading_[r] = &work_.row[deepest_of(rows_of(scratch_, r)).piece];
     let_stick(model_, state_, *leading_[r], work_.rub[r]);
-    if (regions() > 1) link(r);
   }
+  if (regions() > 1) pairs_.link(model_, leading_, regions());
   gather();
   add_places(force_N);
   factorise(force_N);
@@ -217,9 +217,8 @@ Real Linearised<Count>::place_ahead(const Real* force_N, std::int32_t r, PlaceFo
   const ElasticRow& row = *leading_[r];
   const FarField& own = load_.own[r];
   Real e = row.travel_m - far_shift_m(own, force_N[r]);
-  for (std::int32_t j = 0; j < regions(); ++j) {  // bound: kMaxRegions
-    if (j != r) e -= linear_[r][j] * force_N[j];
-  }
+  for (std::int32_t j = 0; j < regions() && regions() > 1; ++j)  // bound: kMaxRegions
+    e -= pairs_.linear_m_per_N[r][j] * force_N[j];
   const LawPoint point = tip_at(load_.tip[i], e);
   const Real give = far_slope_m_per_N(own, force_N[r]);
   const Real change = (point.force_N - force_N[r]) / (1.0 + give * point.tangent_N_per_m);
@@ -250,32 +249,6 @@ void Linearised<Count>::add_places(const Real* force_N) PALPATE_RT {
   }
 }
 
-// Region r with those before it.
-template <class Count>
-void Linearised<Count>::link(std::int32_t r) PALPATE_RT {
-  const std::int32_t modes = model_.params.elastic_linear;
-  const NearField near = near_field();
-  show_linear_modes(model_, *leading_[r], along_linear_[r]);
-  linear_[r][r] = dot(along_linear_[r], along_linear_[r], modes);
-  cut_1_per_m_[r] = near.cut_1_per_m(linear_[r][r], leading_[r]->c_m_per_N);
-  for (std::int32_t j = 0; j < r; ++j) {  // bound: kMaxRegions kMaxLinearModes
-    const Real shared = dot(along_linear_[r], along_linear_[j], modes);
-    share_[r][j] = linear_[r][r] > 0 ? clamp_to(shared / linear_[r][r], -1.0, 1.0) : 0.0;
-    share_[j][r] = linear_[j][j] > 0 ? clamp_to(shared / linear_[j][j], -1.0, 1.0) : 0.0;
-    linear_[j][r] = linear_[r][j] =
-        shared + near.between(*leading_[r], *leading_[j], 0.5 * (cut_1_per_m_[r] + cut_1_per_m_[j]));
-  }
-}
-
-// c1 is what the modes' travel under one tip does to it; of two tips that hold one another's modes still it is nothing:
-// W = c1 F^2 (F + sum share F_j) / 3. A wall pinched from both sides had a place softer than nothing (2026-11-23).
-template <class Count>
-Real Linearised<Count>::second_order(std::int32_t r, std::int32_t j) const PALPATE_RT {
-  const FarField& own = load_.own[r];
-  const Real force = load_.before_N[r], held = force > own.force_max_N ? own.force_max_N / force : 1.0;
-  return 2.0 / 3 * held * own.c1_m_per_N2 * share_[r][j];
-}
-
 template <class Count>
 bool Linearised<Count>::slips(const Real* force_N) PALPATE_RT {
   Real delta[kMaxSoftModes];
@@ -303,8 +276,12 @@ void Linearised<Count>::factorise(const Real* force_N) PALPATE_RT {
   }
   factor_stiffened(h, n_, factor_);
   cholesky_solve(factor_, free_step_, n_);
-  for (std::int32_t r = 0; r < regions(); ++r)  // bound: kMaxRegions soft^2
-    answer(factor_, leading_[r]->pull, n_, moved_[r]);
+  for (std::int32_t r = 0; r < regions(); ++r) {  // bound: kMaxRegions soft^2
+    Real moved[kMaxSoftModes];
+    answer(factor_, leading_[r]->pull, n_, moved);
+    for (std::int32_t a = 0; a < n_; ++a) moved_[a][r] = moved[a];
+  }
+  for (std::int32_t a = 0; a < n_; ++a) end_lanes(regions(), moved_[a]);
 }
 
 template <class Count>
@@ -313,7 +290,6 @@ void Linearised<Count>::gather() PALPATE_RT {
   load_.n = regions();
   load_.region = load_.tips_of;
   load_.evaluated = &scratch_.work.tip_laws;
-  load_.coupling = {scratch_.system.compliance_m_per_N, scratch_.system.second_order_m_per_N2};
   for (std::int32_t r = 0; r < load_.n; ++r) {  // bound: kMaxPieces tips
     const RegionRows rows = rows_of(scratch_, r);
     load_.own[r] = own_field(*leading_[r]);
@@ -330,13 +306,15 @@ void Linearised<Count>::let_give(const Real* before_N) PALPATE_RT {
   load_.before_N = before_N;
   for (std::int32_t r = 0; r < load_.n; ++r) {  // bound: kMaxPieces tips, kMaxRegions^2 / 2
     const RegionRows rows = rows_of(scratch_, r);
-    load_.tips_of[r].far.c0_m_per_N = load_.own[r].c0_m_per_N + dot(leading_[r]->pull, moved_[r], n_);
+    Real soft = 0;
+    for (std::int32_t a = 0; a < n_; ++a) soft += leading_[r]->pull[a] * moved_[a][r];
+    load_.tips_of[r].far.c0_m_per_N = load_.own[r].c0_m_per_N + soft;
     for (std::int32_t k = 0; k < load_.tips_of[r].count; ++k) {
       const ElasticRow& row = *load_.placed[load_.at(r, k)];
       load_.tip[load_.at(r, k)].depth_m = rows[k].depth_m = row.travel_m + dot(row.pull, free_step_, n_);
     }
-    for (std::int32_t j = 0; j < r; ++j) couple(r, j);
   }
+  if (load_.n > 1) couple();
 }
 
 // Returns the share of it that is taken.
@@ -344,7 +322,7 @@ template <class Count>
 Real Linearised<Count>::find_step(const Real* force_N, Real* delta) const PALPATE_RT {
   for (std::int32_t a = 0; a < n_; ++a) {  // bound: soft x kMaxRegions
     delta[a] = free_step_[a];
-    for (std::int32_t r = 0; r < regions(); ++r) delta[a] -= force_N[r] * moved_[r][a];
+    for (std::int32_t r = 0; r < regions(); ++r) delta[a] -= force_N[r] * moved_[a][r];
   }
   const Real length = square_root(dot(delta, delta, n_)), longest = kLongestStep * model_.params.elastic_radius_rootJ;
   return length <= longest ? 1.0 : longest / length;
@@ -396,7 +374,11 @@ Real Linearised<Count>::left_m(const Real* force_N, Real share, const Real* delt
     }
   }
   Real most = 0;
-  for (std::int32_t r = 0; r < regions(); ++r) most = max_of(most, abs_of(dot(moved_[r], left, n_)));
+  for (std::int32_t r = 0; r < regions(); ++r) {
+    Real moves = 0;
+    for (std::int32_t a = 0; a < n_; ++a) moves += moved_[a][r] * left[a];
+    most = max_of(most, abs_of(moves));
+  }
   return most;
 }
 
@@ -420,29 +402,17 @@ void Linearised<Count>::yield_to_rubs() PALPATE_RT {
   }
 }
 
-// The near field's alone: the linear modes are straight between the vertices, and their slope would step from facet to
-// facet, by 1.3 % of the force on a pinched wall (2026-11-23).
-template <class Count>
-void Linearised<Count>::pull_aside(const Real* force_N) PALPATE_RT {
-  const NearField near = near_field();
-  for (std::int32_t r = 0; r < regions(); ++r) {  // bound: kMaxRegions^2
-    Vec3 slope;
-    for (std::int32_t j = 0; j < regions(); ++j) {
-      if (j != r)
-        slope += force_N[j] * near.slope(*leading_[r], *leading_[j], 0.5 * (cut_1_per_m_[r] + cut_1_per_m_[j]));
-    }
-    load_.pair_aside[r] = slope;
-  }
-}
-
 template <class Count>
 Real Linearised<Count>::linear_energy_J(const Real* force_N) const PALPATE_RT {
   Real energy = 0;
-  for (std::int32_t r = 0; r < regions(); ++r)  // bound: kMaxRegions^2 / 2
-    for (std::int32_t j = 0; j < r; ++j) {
-      const Real second = second_order(r, j) * force_N[r] + second_order(j, r) * force_N[j];
-      energy += (linear_[r][j] + second) * force_N[r] * force_N[j];
+  for (std::int32_t r = 0; r < regions() && regions() > 1; ++r) {  // bound: kMaxRegions^2
+    Real first = 0, second = 0;
+    for (std::int32_t j = 0; j < regions(); ++j) {
+      first += pairs_.linear_m_per_N[r][j] * force_N[j];
+      second += load_.pair.h_m_per_N2[r][j] * force_N[j];
     }
+    energy += force_N[r] * (0.5 * first + force_N[r] * second);
+  }
   return energy;
 }
 
@@ -460,16 +430,31 @@ void Linearised<Count>::add_tip(Contact& contact, std::int32_t at) PALPATE_RT {
   contact.normal_w = row.foot.normal_w;
 }
 
+// c1 is what the modes' travel under one tip does to it; of two tips that hold one another's modes still it is nothing:
+// W = c1 F^2 (F + sum share F_j) / 3. A wall pinched from both sides had a place softer than nothing (2026-11-23).
 template <class Count>
-void Linearised<Count>::couple(std::int32_t r, std::int32_t j) PALPATE_RT {
-  const std::int32_t n = regions();
-  Real* c = scratch_.system.compliance_m_per_N;
-  c[r * n + j] = c[j * n + r] = linear_[r][j] + dot(leading_[r]->pull, moved_[j], n_);
-  Real* h = scratch_.system.second_order_m_per_N2;
-  h[r * n + j] = second_order(r, j);
-  h[j * n + r] = second_order(j, r);
+void Linearised<Count>::couple() PALPATE_RT {
+  PairLanes& pair = load_.pair;
+  for (std::int32_t r = 0; r < load_.n; ++r) {  // bound: kMaxRegions^2 soft / 4
+    const FarField& own = load_.own[r];
+    const Real force = load_.before_N[r], held = force > own.force_max_N ? own.force_max_N / force : 1.0;
+    const Double4 second = splat4(2.0 / 3 * held * own.c1_m_per_N2);
+    for (std::int32_t b = 0; b < load_.n; b += kRegionLanes) {
+      Double4 c = load4(pairs_.linear_m_per_N[r] + b);
+      for (std::int32_t a = 0; a < n_; ++a) c += splat4(leading_[r]->pull[a]) * load4(moved_[a] + b);
+      store(pair.c_m_per_N[r] + b, c);
+      store(pair.h_m_per_N2[r] + b, second * load4(pairs_.share[r] + b));
+    }
+    pair.c_m_per_N[r][r] = 0;
+    end_lanes(load_.n, pair.c_m_per_N[r]);
+  }
+  for (std::int32_t r = 0; r < load_.n; ++r) {  // bound: kMaxRegions^2
+    for (std::int32_t j = 0; j < load_.n; ++j) pair.h_across_m_per_N2[j][r] = pair.h_m_per_N2[r][j];
+  }
+  for (std::int32_t r = 0; r < load_.n; ++r) end_lanes(load_.n, pair.h_across_m_per_N2[r]);
 }
 
+template class Linearised<TwoModes>;
 template class Linearised<FourModes>;
 template class Linearised<std::int32_t>;
 

@@ -4,7 +4,7 @@
 #include "rt_core/contact/elastic/elastic_load.h"
 #include "rt_core/contact/elastic/elastic_work.h"
 #include "rt_core/contact/elastic/mode_count.h"
-#include "rt_core/contact/elastic/near_field.h"
+#include "rt_core/contact/elastic/mode_pairs.h"
 #include "rt_core/contact/region_solve.h"
 
 namespace palpate {
@@ -45,7 +45,9 @@ class Linearised {
   // any region.
   Real step(const Real* force_N) PALPATE_RT;
   // What the pairs' compliance asks for along the surface, for ElasticLoad::row().
-  void pull_aside(const Real* force_N) PALPATE_RT;
+  void pull_aside(const Real* force_N) PALPATE_RT {
+    if (regions() > 1) pairs_.pull_aside(regions(), force_N, load_.pair_aside);
+  }
   // After the step: what the surface gives under every friction.
   void yield_to_rubs() PALPATE_RT;
   Real energy_J() const PALPATE_RT { return energy_J_; }
@@ -53,9 +55,6 @@ class Linearised {
 
  private:
   std::int32_t regions() const PALPATE_RT { return scratch_.rows.regions; }
-  NearField near_field() const PALPATE_RT {
-    return {far_field_scale_m2_per_N(model_.params.youngs_modulus_Pa, model_.params.poisson_ratio)};
-  }
   void gather() PALPATE_RT;
   Real place_ahead(const Real* force_N, std::int32_t r, PlaceForce& place) const PALPATE_RT;
   void add_places(const Real* force_N) PALPATE_RT;
@@ -64,9 +63,7 @@ class Linearised {
   void sweep(Real share, const Real* delta, std::int32_t r) PALPATE_RT;
   Real left_m(const Real* force_N, Real share, const Real* delta) PALPATE_RT;
   void add_tip(Contact& contact, std::int32_t at) PALPATE_RT;
-  void couple(std::int32_t r, std::int32_t j) PALPATE_RT;
-  void link(std::int32_t r) PALPATE_RT;
-  Real second_order(std::int32_t r, std::int32_t j) const PALPATE_RT;
+  void couple() PALPATE_RT;
 
   const Model& model_;
   State& state_;
@@ -80,11 +77,8 @@ class Linearised {
   // Slope of the places' own energies in the amplitudes, less what the rows' pull has of it.
   Real place_rootJ_[kMaxSoftModes];
   Real free_step_[kMaxSoftModes];
-  Real moved_[kMaxRegions][kMaxSoftModes];
-  Real along_linear_[kMaxRegions][kMaxLinearModes];  // show_linear_modes()
-  Real cut_1_per_m_[kMaxRegions];                    // NearField
-  Real linear_[kMaxRegions][kMaxRegions];            // modes and near field; on the diagonal the modes alone
-  Real share_[kMaxRegions][kMaxRegions];             // of the modes' travel under a region, what another's newton makes
+  Real moved_[kMaxSoftModes][kMaxRegions];
+  ModePairs pairs_;  // of several regions
   Real energy_J_ = 0;
   bool slips_ = false;  // some tip does
 };

@@ -9,11 +9,13 @@
 
 namespace palpate {
 
-using FourModes = std::integral_constant<std::int32_t, 4>;  // every shipped scene's
+using TwoModes = std::integral_constant<std::int32_t, 2>;   // grasps
+using FourModes = std::integral_constant<std::int32_t, 4>;  // the other shipped scenes'
 
-// use(FourModes) or use(soft).
+// use(TwoModes), use(FourModes) or use(soft).
 template <class Use>
 void with_mode_count(std::int32_t soft, const Use& use) PALPATE_RT {
+  if (soft == TwoModes::value) return use(TwoModes{});
   if (soft == FourModes::value) return use(FourModes{});
   use(soft);
 }

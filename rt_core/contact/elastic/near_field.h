@@ -31,18 +31,7 @@ struct NearField {
     const Real r = square_root(square), by_cut = r * cut_1_per_m;
     return scale_m2_per_N * share / r * (1 - by_cut / square_root(by_cut * by_cut + 1));
   }
-  // Its gradient as a's place moves, the normals' turn left out.
-  Vec3 slope(const ElasticRow& a, const ElasticRow& b, Real cut_1_per_m) const PALPATE_RT {
-    const Vec3 apart = b.foot.foot_w - a.foot.foot_w;
-    const Real core = kCore * (a.tip.margin_m + b.tip.margin_m), square = squared_norm(apart) + core * core;
-    const Real by_cut = square_root(square) * cut_1_per_m, root = square_root(by_cut * by_cut + 1);
-    // K = s / r - s c / sqrt(r^2 c^2 + 1): dK/dr = -K / r (1 + x (x + root) / root^2) with x = r c
-    const Real value = between(a, b, cut_1_per_m);
-    return (value / square * (1 + by_cut * (by_cut + root) / (root * root))) * tangential_part(apart, a.foot.normal_w);
-  }
-
- private:
-  static constexpr Real kCore = 0.1;
+  static constexpr Real kCore = 0.1;  // of the radii: a contact is a fifth of them wide
 };
 
 }  // namespace palpate
