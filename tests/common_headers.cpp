@@ -1,0 +1,1 @@
+// Nothing of its own: carries the headers that clang's builds of the tests share (CMakeLists.txt).
