@@ -74,9 +74,10 @@ Gap<3> gap_of<3>(const RigidTool& tool, const Point<3>& p) {
   const double along = tool.axis[0] * p[0] + tool.axis[1] * p[1] + tool.axis[2] * p[2];
   if (tool.shape == RigidShape::kPlane) return flat_gap<3>(tool.axis, along);
   if (tool.shape != RigidShape::kCylinder) return round_gap<3>(p, {0, 0, 0}, tool.radius_m);
+  const double on_axis = std::clamp(along, -tool.half_length_m, tool.half_length_m);
   Point<3> across = p;
-  for (std::size_t i = 0; i < 3; ++i) across[i] -= along * tool.axis[i];
-  return round_gap<3>(across, tool.axis, tool.radius_m);
+  for (std::size_t i = 0; i < 3; ++i) across[i] -= on_axis * tool.axis[i];
+  return round_gap<3>(across, on_axis == along ? tool.axis : Point<3>{}, tool.radius_m);
 }
 
 namespace {

@@ -14,7 +14,7 @@ enum class RigidShape : std::uint8_t {
   kPlane,     // half space behind the plane through the origin; `axis` points to the free side
   kPunch,     // plane only: flat face |x| <= radius_m, edge rounded by fillet_m
   kCone,      // plane only: cone about y with half_apex_rad from the axis, tip rounded by fillet_m
-  kCylinder,  // space only: infinite cylinder of radius_m about `axis`
+  kCylinder,  // space only: cylinder of radius_m about `axis`, infinite or with round ends (half_length_m)
 };
 
 struct RigidTool {
@@ -22,6 +22,7 @@ struct RigidTool {
   double radius_m = 0;
   double fillet_m = 0;
   double half_apex_rad = 0;
+  double half_length_m = 1e30;               // of a cylinder's axis, to the middles of its round ends
   std::array<double, 3> axis = {0, 1, 0};    // unit
   std::array<double, 3> press = {0, -1, 0};  // unit, from the tool into the body: how the linear law measures its gap
 };

@@ -10,6 +10,7 @@
 #include "config/body/supports.h"
 #include "config/elastic/solid_mesh.h"
 #include "config/fem/large_strain_solver.h"
+#include "tests/elastic/pinched_block.h"
 #include "tests/elastic/pinched_bodies.h"
 #include "tests/elastic/two_balls_on_an_arch.h"
 #include "tests/support/baked_scene.h"
@@ -23,6 +24,7 @@ struct TwoBalls {
   double radius_m, fine_m, fine_reach_m, touched_reach_m;  // elements under the balls, and how far around `place_m`
   Centres place_m, touching_m;                             // where they touch first, and their centres then
   std::vector<Centres> states_m;
+  double half_length_m = 0;  // of capsules along z
 };
 
 // Forces on both balls at every state; the elements elsewhere are the scene's.
@@ -31,7 +33,9 @@ std::vector<PairForces> solve(const SceneDesc& scene, const TwoBalls& balls) {
   std::vector<std::string> warnings;
   const TetMesh base = make_elastic_mesh(scene, image, warnings);
   std::vector<Refinement> zones;
-  for (const Vec3& place : balls.place_m) zones.push_back({place, balls.fine_reach_m, balls.fine_m});
+  for (const Vec3& place : balls.place_m)
+    for (int along = -1; along <= (balls.half_length_m > 0 ? 1 : -1); ++along)
+      zones.push_back({place + Vec3{0, 0, balls.half_length_m * along}, balls.fine_reach_m, balls.fine_m});
   const TetMesh fine = refine_elastic_mesh(scene, image, base, zones);
   const fem::StrainMesh<3> solid = elastic::solid_mesh(fine, "pair");
   std::vector<int> touched;
@@ -43,6 +47,11 @@ std::vector<PairForces> solve(const SceneDesc& scene, const TwoBalls& balls) {
       }
   fem::RigidTool ball;
   ball.radius_m = balls.radius_m;
+  if (balls.half_length_m > 0) {
+    ball.shape = fem::RigidShape::kCylinder;
+    ball.axis = {0, 0, 1};
+    ball.half_length_m = balls.half_length_m;
+  }
   fem::StrainOptions options;  // as the baker's check presses
   options.gap_tolerance = 5e-3;
   options.residual_tolerance = 1e-4;
@@ -96,6 +105,21 @@ TEST_P(LongPinch, IsTheReference) {
 }
 INSTANTIATE_TEST_SUITE_P(LongReport, LongPinch, testing::ValuesIn(kPinchedBodies),
                          [](const auto& body) { return std::string(body.param.name); });
+
+// The jaws of pinch_block.
+TEST(LongReport, PinchedBlock) {
+  const SceneDesc scene = parse_scene(pinched_block(), "pinched.toml");
+  const auto centres = [](double closed_m) {
+    const double off = kBlockHalf_m + kJawRadius_m - closed_m;
+    return Centres{{{off, kJawHeight_m, 0}, {-off, kJawHeight_m, 0}}};
+  };
+  TwoBalls jaws{
+      kJawRadius_m, 2e-3, 4e-3,      9e-3, {{{kBlockHalf_m, kJawHeight_m, 0}, {-kBlockHalf_m, kJawHeight_m, 0}}},
+      centres(0),   {},   kJawHalf_m};
+  for (const BlockState& state : kBlockStates) jaws.states_m.push_back(centres(state.closed_m));
+  const std::vector<PairForces> forces = solve(scene, jaws);
+  for (std::size_t i = 0; i < forces.size(); ++i) EXPECT_NEAR(forces[i].right_N.x, kBlockStates[i].force_N, 1e-3) << i;
+}
 
 }  // namespace
 }  // namespace palpate::test
