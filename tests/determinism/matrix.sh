@@ -4,7 +4,7 @@
 # clang, -O1 and -O3, here; `aarch64`: gcc -O1 and -O3 for AArch64, under qemu-user.
 # Usage: matrix.sh compilers|aarch64 RELEASE_BUILD_DIR JOBS [NAME=BUILD_DIR...]
 # The other builds are made beside the release build, but for those given: a sanitizer's build is one of -O1 and computes
-# the same arithmetic, as in `matrix.sh compilers build/release 2 gcc-O1=build/asan clang-O1=build/rtsan`.
+# the same arithmetic, as in `matrix.sh compilers build/release 2 clang-O1=build/asan`.
 # shellcheck disable=SC2317  # called through each()
 set -euo pipefail
 usage='usage: matrix.sh compilers|aarch64 RELEASE_BUILD_DIR JOBS [NAME=BUILD_DIR...]'
