@@ -166,6 +166,12 @@ class WatchedModel {
   Model* model_;
 };
 
+// What rings at a touch is read about at the touch and after it alone.
+bool may_begin_to_ring(const Model& model, const State& state, const Output& last) {
+  if (!(model.params.transient_N_per_m_s > 0)) return false;
+  return last.regions == 0 || state.safety.ring_ticks == model.params.transient_ticks;
+}
+
 // The scripted hand, its first ticks and every 400th with closed parameters; then what goes wrong with a device: a
 // jump, silence to the fault, a reset, a stop.
 void play(WatchedModel& watched) {
@@ -177,7 +183,7 @@ void play(WatchedModel& watched) {
   ScriptedHand hand(model);
   for (int i = 0; i < kScriptTicks; ++i) {
     input = hand.next(output);
-    if (i < 3 || i % 400 == 399)
+    if (i < 3 || i % 400 == 399 || may_begin_to_ring(model, *state, output))
       watched.tick_with_closed_parameters(*state, *scratch, input, output);
     else
       tick(model, *state, *scratch, input, output);
