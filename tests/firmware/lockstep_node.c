@@ -29,7 +29,7 @@ static int take_all(struct device* d) {
 
 /* The hand of docs/examples/device.c: it aims 28 mm down and up again every 2 s, and pulls like a spring. */
 static void step_control(struct device* d, int32_t position[3]) {
-  const double dt_s = 1.0 / kControl_Hz;
+  const double dt_s = 1.0 / (double)kControl_Hz;
   const double aim_m[3] = {-0.010, 0.076 + 0.014 * cos(3.14159265358979 * d->time_s), 0};
   for (int i = 0; i < 3; ++i) position[i] = (int32_t)lround(d->position_m[i] * 1e7);
   hn_control(&d->node, position, &d->motors);

@@ -18,7 +18,9 @@ namespace {
 constexpr int kNode = 3;
 constexpr hn_config kConfig{kNode, 10000, 8.5f, 0.2f, 3000.0f};
 
-Vec3 vector_of(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
+Vec3 vector_of(const float (&v)[3]) {
+  return {static_cast<Real>(v[0]), static_cast<Real>(v[1]), static_cast<Real>(v[2])};
+}
 
 class HapticNode : public testing::Test {
  protected:
