@@ -41,6 +41,7 @@ class KrylovBasis {
   // The images that are missing, together: a solve spends its time on fetching the factor.
   void solve() {
     const std::size_t first = image_.size();
+    if (first == size()) return;  // exhausted
     Eigen::MatrixXd load(body_.size(), static_cast<Eigen::Index>(size() - first));
     for (std::size_t i = first; i < size(); ++i) load.col(static_cast<Eigen::Index>(i - first)) = weighted_[i];
     const Eigen::MatrixXd images = body_.solve_all(load);

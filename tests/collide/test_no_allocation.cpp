@@ -36,6 +36,7 @@ TEST(NoAllocation, StagesWithOverflowAndLoss) {
   body.piece[0].point_count = 100;
   for (int i = 0; i < 100; ++i) body.tool_point.push_back({{1e-3 * (i % 10), 1e-3 * (i / 10), 0}, 5e-3, 1e-6, 1, 0, 0});
   body.bind();
+  body.model.params.period_s = 1e-3;
   body.model.params.cluster_distance_m = 2e-4;  // every contact its own region
   const auto state = test::roomy_state();
   const auto scratch = test::roomy_scratch();
