@@ -70,6 +70,8 @@ bool has_power_limit(const SceneDesc& s) {
          s.friction.law == FrictionLaw::kMindlin;
 }
 
+bool rings(const SceneDesc& s) { return s.transient.amplitude_N_per_m_s > 0; }
+
 struct EffectRule {
   const char* key;
   bool (*works)(const SceneDesc&);
@@ -79,6 +81,8 @@ struct EffectRule {
 
 constexpr const char* kNoSkeleton = "without a skeleton (skeleton.law = \"none\")";
 constexpr const char* kNoFriction = "with friction.law = \"none\"";
+constexpr const char* kNothingRings = "without contact.transient.amplitude_N_per_m_s, of which nothing rings";
+constexpr const char* kStateAmplitude = "remove it or state the amplitude";
 constexpr const char* kNoMaterial =
     "on the force: this scene's contact law is given by numbers of its own, and nothing else in it follows from the "
     "material";
@@ -151,10 +155,8 @@ const EffectRule kRules[] = {
     {"device.grip_mm",
      [](const SceneDesc& s) { return s.device.holds == HeldPart::kBody || s.device.holds == HeldPart::kBoth; },
      "where no hand holds the body", "remove it or state device.holds"},
-    {"contact.transient.frequency_Hz", [](const SceneDesc& s) { return s.transient.amplitude_N_per_m_s > 0; },
-     "without contact.transient.amplitude_N_per_m_s, of which nothing rings", "remove it or state the amplitude"},
-    {"contact.transient.decay_per_s", [](const SceneDesc& s) { return s.transient.amplitude_N_per_m_s > 0; },
-     "without contact.transient.amplitude_N_per_m_s, of which nothing rings", "remove it or state the amplitude"},
+    {"contact.transient.frequency_Hz", rings, kNothingRings, kStateAmplitude},
+    {"contact.transient.decay_per_s", rings, kNothingRings, kStateAmplitude},
     {"contact.nodal.friction_sweeps", [](const SceneDesc& s) { return !is_nodal(s) || slides(s); }, kNoFriction,
      kRemove},
 };

@@ -42,10 +42,14 @@ void add_brake(Vec3 brake_N, Vec3& force_N) PALPATE_RT {
   force_N += brake_N;
 }
 
+Vec3 at(const double* of) PALPATE_RT { return {of[0], of[1], of[2]}; }
+
 // The delay in ticks: `a` was sent its whole ones ago, `b` a tick before, and for `part` of this tick it still acted.
 struct Late {
   const double *a, *b;
   double part;
+  // Of the three numbers from `first` on.
+  Vec3 mean(std::int32_t first) const PALPATE_RT { return (1 - part) * at(a + first) + part * at(b + first); }
 };
 Late late_of(const Model& model, const double* newest, std::int32_t numbers) PALPATE_RT {
   const double late = clamp_to(model.params.delay_s / model.params.period_s, 0, kForceHistory - 1.001);
@@ -53,12 +57,17 @@ Late late_of(const Model& model, const double* newest, std::int32_t numbers) PAL
   const double* a = newest + numbers * whole;
   return {a, a + numbers, late - whole};
 }
-Vec3 at(const double* of) PALPATE_RT { return {of[0], of[1], of[2]}; }
+
+// `now` before what a history of so many numbers a tick has.
+void remember(const double* now, std::int32_t numbers, double* history) PALPATE_RT {
+  for (std::int32_t i = numbers * kForceHistory - 1; i >= numbers; --i) history[i] = history[i - numbers];  // bound: it
+  for (std::int32_t i = 0; i < numbers; ++i) history[i] = now[i];
+}
 
 // What was sent the delay ago.
 Wrench under_way(const Model& model, const SafetyState& safety) PALPATE_RT {
-  const auto [a, b, part] = late_of(model, safety.sent, 6);
-  return {(1 - part) * at(a) + part * at(b), (1 - part) * at(a + 3) + part * at(b + 3)};
+  const Late late = late_of(model, safety.sent, 6);
+  return {late.mean(0), late.mean(3)};
 }
 
 bool is_local(const Model& model) PALPATE_RT { return model.params.local_period_s > 0; }
@@ -95,10 +104,8 @@ Wrench acted(const Model& model, const SafetyState& safety, Vec3 now_N) PALPATE_
   if (!is_local(model)) return held;
   const Vec3 last_N = safety.last_device_w.force_N;
   const Vec3 before_N = last_N - last_lag_N(safety), after_N = now_N - lag_N(model, safety, last_N, now_N);
-  const Late late = late_of(model, safety.braked, 3);
-  const double* last = safety.braked;
-  const Vec3 brake_N = (1 - late.part) * at(late.a) + late.part * at(late.b);
-  return {0.5 * (before_N - at(last) + after_N) + brake_N, held.torque_Nm};
+  const Vec3 brake_N = late_of(model, safety.braked, 3).mean(0);
+  return {0.5 * (before_N - at(safety.braked) + after_N) + brake_N, held.torque_Nm};
 }
 
 // Energy of a spring whose force stays at `most` from there on.
@@ -126,11 +133,10 @@ bool nothing_sent(const SafetyState& safety) PALPATE_RT {
   return true;
 }
 
-// Brakes what the account has too much.
-void brake_surplus(const Model& model, const State& state, Scratch& scratch, Vec3& force_N) PALPATE_RT {
+// Brakes what the account has too much; the handle went `way_m` in this tick.
+void brake_surplus(const Model& model, const State& state, Scratch& scratch, Vec3 way_m, Vec3& force_N) PALPATE_RT {
   const ModelParams& p = model.params;
   const SafetyState& safety = state.safety;
-  const Vec3 way_m = state.device_w.position_m - state.device_previous_w.position_m;
   // A device with a loop of its own smooths its encoder, and is braked on its way out alone: a brake of a hand that
   // comes in would arrive when it goes out again, and push it. A step of the encoder is 30 mm/s of one tick, and the
   // smoothed velocity 6 ms late: the mean of both (swings in 10 ticks with the first alone, 3 ms; 2026-11-25).
@@ -146,12 +152,6 @@ void brake_surplus(const Model& model, const State& state, Scratch& scratch, Vec
       local ? 1 - kDampingDead_m_per_s / square_root(speed2) : 1;  // not at once from one tick to the next
   scratch.status |= Status::kEnergyDrained;
   add_brake(-(fade * damping) * velocity, force_N);
-}
-
-void remember_brake(SafetyState& safety, Vec3 brake_N) PALPATE_RT {
-  for (std::int32_t i = 3 * kForceHistory - 1; i >= 3; --i) safety.braked[i] = safety.braked[i - 3];  // bound: history
-  const double now[3] = {brake_N.x, brake_N.y, brake_N.z};
-  for (std::int32_t i = 0; i < 3; ++i) safety.braked[i] = now[i];
 }
 
 }  // namespace
@@ -189,8 +189,11 @@ void drain_energy(const Model& model, State& state, Scratch& scratch, const Inpu
   safety.surplus_J = counts && is_finite(made_J) ? max_of(-kCreditShare * most_J, safety.surplus_J + made_J) : 0.0;
   if (squared_norm(force_N) == 0 && nothing_sent(safety)) safety.surplus_J = 0;
   const Vec3 unbraked_N = force_N;
-  brake_surplus(model, state, scratch, force_N);
-  if (is_local(model)) remember_brake(safety, force_N - unbraked_N);
+  brake_surplus(model, state, scratch, way.translation_m, force_N);
+  if (!is_local(model)) return;
+  const Vec3 brake_N = force_N - unbraked_N;
+  const double now[3] = {brake_N.x, brake_N.y, brake_N.z};
+  remember(now, 3, safety.braked);
 }
 
 bool is_unstable(const Model& model, SafetyState& safety, Vec3 force_N) PALPATE_RT {
@@ -210,9 +213,8 @@ bool is_unstable(const Model& model, SafetyState& safety, Vec3 force_N) PALPATE_
 void remember_output(const Model& model, SafetyState& safety, Vec3 last_N) PALPATE_RT {
   const Wrench& w = safety.last_device_w;
   const Vec3 force_N = is_local(model) ? lag_N(model, safety, last_N, w.force_N) : w.force_N;
-  for (std::int32_t i = 6 * kForceHistory - 1; i >= 6; --i) safety.sent[i] = safety.sent[i - 6];  // bound: the history
   const double now[6] = {force_N.x, force_N.y, force_N.z, w.torque_Nm.x, w.torque_Nm.y, w.torque_Nm.z};
-  for (std::int32_t i = 0; i < 6; ++i) safety.sent[i] = now[i];
+  remember(now, 6, safety.sent);
 }
 
 }  // namespace palpate

@@ -9,8 +9,8 @@
 
 namespace palpate {
 
-using TwoModes = std::integral_constant<std::int32_t, 2>;   // grasps
-using FourModes = std::integral_constant<std::int32_t, 4>;  // the other shipped scenes'
+using TwoModes = std::integral_constant<std::int32_t, 2>;   // of many finger parts on one body: none ships
+using FourModes = std::integral_constant<std::int32_t, 4>;  // every shipped scene's
 
 // use(TwoModes), use(FourModes) or use(soft).
 template <class Use>

@@ -40,7 +40,8 @@ void ModePairs::stand(const Model& model, const ElasticRow* const* row, std::int
   }
 }
 
-// NearField::between() and the fall of it, four at a time.
+// The near field with the core of both contacts, and the fall of it. Of normals that look away from one another it is
+// what goes through the wall between them.
 void ModePairs::near(std::int32_t r, std::int32_t b, const Double4& shared) PALPATE_RT {
   const Vec3x4 apart = foot(b) - splat4(foot_of(r)), ours = splat4(normal_of(r)), theirs = normal(b);
   const Double4 core = splat4(core_m_[r]) + load4(core_m_ + b), square = dot(apart, apart) + core * core;

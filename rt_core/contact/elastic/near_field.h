@@ -19,19 +19,8 @@ struct NearField {
   Real cut_1_per_m(Real modes_m_per_N, Real c_m_per_N) const PALPATE_RT {
     return max_of(modes_m_per_N - c_m_per_N, 0.0) / scale_m2_per_N;
   }
-  Real between(const ElasticRow& a, const ElasticRow& b, Real cut_1_per_m) const PALPATE_RT {
-    const Vec3 apart = b.foot.foot_w - a.foot.foot_w;
-    // Two tips at one place: the mean of 1/r over a contact a fifth of their radii wide is finite.
-    const Real core = kCore * (a.tip.margin_m + b.tip.margin_m), square = squared_norm(apart) + core * core;
-    Real share = dot(a.foot.normal_w, b.foot.normal_w);
-    if (share < 0) {
-      const Real in = -dot(apart, a.foot.normal_w), out = dot(apart, b.foot.normal_w);
-      share *= in > 0 && out > 0 ? in * out / square : 0.0;
-    }
-    const Real r = square_root(square), by_cut = r * cut_1_per_m;
-    return scale_m2_per_N * share / r * (1 - by_cut / square_root(by_cut * by_cut + 1));
-  }
-  static constexpr Real kCore = 0.1;  // of the radii: a contact is a fifth of them wide
+  // Two tips at one place: the mean of 1/r over a contact a fifth of their radii wide is finite.
+  static constexpr Real kCore = 0.1;  // of the radii
 };
 
 }  // namespace palpate
