@@ -51,23 +51,6 @@ Vec3 carried_motion(const Pose& before, const Pose& now, Vec3 point) PALPATE_RT 
   return point - transform(before, inverse_transform(now, point));
 }
 
-void add_tangential_stiffness(ContactStiffness& stiffness, const FrictionForce& friction, Vec3 normal,
-                              Vec3 arm) PALPATE_RT {
-  const Vec3 any = unit_or(tangential_part(axis_off(normal), normal), {});
-  const Vec3 along = unit_or(friction.direction_w, any), across = cross(normal, along);
-  add_spring(stiffness, friction.along_N_per_m, along, cross(arm, along));
-  add_spring(stiffness, friction.across_N_per_m, across, cross(arm, across));
-}
-
-Real in_series_N_per_m(Real stiffness_N_per_m, Real yield_m_per_N) PALPATE_RT {
-  return stiffness_N_per_m / (1.0 + stiffness_N_per_m * yield_m_per_N);
-}
-void yield_to(const SurfaceUnderRub& under, FrictionForce& friction) PALPATE_RT {
-  friction.along_N_per_m = in_series_N_per_m(friction.along_N_per_m, under.yield_m_per_N[0]);
-  friction.reversal_N_per_m = in_series_N_per_m(friction.reversal_N_per_m, under.yield_m_per_N[0]);
-  friction.across_N_per_m = in_series_N_per_m(friction.across_N_per_m, under.yield_m_per_N[1]);
-}
-
 }  // namespace
 
 void sort_rows(State& state, Scratch& scratch) PALPATE_RT {
@@ -148,9 +131,7 @@ void press(Scratch& scratch, Region& region, const RegionRows& rows, const Regio
   region.normal_force_N = max_of(dot(load.resultant_w, centre.normal_w), 0.0);
   region.wrench_w = {load.resultant_w + load.aside_w, load.torque_w};
   region.energy_J = load.energy_J + coupling_J;
-  region.tangent_N_per_m = stiffness_along_N_per_m(load.stiffness, centre.normal_w);
   region.hand = rows[0].hand;
-  add_to(stiffness_of(scratch, region.hand), load.stiffness);
   if (load.is_beyond) scratch.status |= Status::kDepthBeyondRange;
 }
 
@@ -172,15 +153,14 @@ Vec3 material_motion(const Model& model, const State& state, const RegionRows& r
   return total > 0 ? (1.0 / total) * sum : motion;
 }
 
-void slide(const Model& model, const State& state, Scratch& scratch, const FrictionParameters& parameters,
-           const RegionRows& rows, FrictionLoad& load, Region& region, const SurfaceUnderRub& under) PALPATE_RT {
-  load.step_w = material_motion(model, state, rows, region.centre_w) - under.step_w;
+FrictionForce rub_region(const Model& model, const State& state, const FrictionParameters& parameters,
+                         const RegionRows& rows, FrictionLoad& load, Region& region, Vec3 surface_w) PALPATE_RT {
+  load.step_w = material_motion(model, state, rows, region.centre_w) - surface_w;
   load.normal_w = region.normal_w;
   load.force_N = region.normal_force_N;
   load.depth_m = region.depth_equivalent_m;
   FrictionMemory memory{region.stretch_w, region.tangential_k_N_per_m, region.friction};
-  FrictionForce friction = friction_step(parameters, load, memory);
-  yield_to(under, friction);
+  const FrictionForce friction = friction_step(parameters, load, memory);
   region.stretch_w = memory.stretch_w;
   region.tangential_k_N_per_m = memory.stiffness_N_per_m;
   region.friction = memory.mode;
@@ -192,7 +172,23 @@ void slide(const Model& model, const State& state, Scratch& scratch, const Frict
   region.wrench_w.force_N += force;
   region.wrench_w.torque_Nm += cross(arm, force);
   region.energy_J += friction.energy_J;
-  add_tangential_stiffness(stiffness_of(scratch, region.hand), friction, region.normal_w, arm);
+  return friction;
+}
+
+TangentAxes tangent_axes(const FrictionForce& friction, Vec3 normal) PALPATE_RT {
+  const Vec3 any = unit_or(tangential_part(axis_off(normal), normal), {});
+  const Vec3 along = unit_or(friction.direction_w, any);
+  return {along, cross(normal, along)};
+}
+
+void slide(const Model& model, const State& state, Scratch& scratch, const FrictionParameters& parameters,
+           const RegionRows& rows, FrictionLoad& load, Region& region) PALPATE_RT {
+  const FrictionForce friction = rub_region(model, state, parameters, rows, load, region);
+  const TangentAxes axes = tangent_axes(friction, region.normal_w);
+  const Vec3 arm = region.centre_w - pivot_w(state, rows);
+  ContactStiffness& stiffness = stiffness_of(scratch, region.hand);
+  add_spring(stiffness, friction.along_N_per_m, axes.along, cross(arm, axes.along));
+  add_spring(stiffness, friction.across_N_per_m, axes.across, cross(arm, axes.across));
 }
 
 void rub_tips(const Model& model, State& state, Scratch& scratch) PALPATE_RT {

@@ -74,11 +74,13 @@ struct RegionLoad {
   ContactStiffness stiffness;  // about the pivot
 };
 // Writes rows[].force_N. Laws::row(r, k, shift) gives a RowLoad; Laws::softening(r, shift) how much less stiff every
-// row is because the surface under all of them yields. Bound: the number of rows.
+// row is because the surface under all of them yields; Laws::kTellsTangent: the tangent is the method's own, and
+// `stiffness` stays zero. Bound: the number of rows.
 template <class Laws>
 RegionLoad region_load(const Laws& laws, std::int32_t r, const RegionRows& rows, Real shift_m,
                        Vec3 pivot_w) PALPATE_RT {
-  const Real softening = laws.softening(r, shift_m);
+  Real softening = 0;
+  if constexpr (!Laws::kTellsTangent) softening = laws.softening(r, shift_m);
   RegionLoad load;
   for (std::int32_t k = 0; k < rows.count; ++k) {  // bound: rows
     Contact& contact = rows[k];
@@ -94,7 +96,8 @@ RegionLoad region_load(const Laws& laws, std::int32_t r, const RegionRows& rows,
     load.force_N += contact.force_N;
     load.energy_J += row.energy_J;
     load.is_beyond = load.is_beyond || row.is_beyond;
-    add_spring(load.stiffness, softening * row.at.tangent_N_per_m, contact.normal_w, turn);
+    if constexpr (!Laws::kTellsTangent)
+      add_spring(load.stiffness, softening * row.at.tangent_N_per_m, contact.normal_w, turn);
   }
   return load;
 }
@@ -107,10 +110,15 @@ inline ContactStiffness& stiffness_of(Scratch& scratch, std::int32_t hand) PALPA
   return hand == 0 ? scratch.stiffness : scratch.other.stiffness;
 }
 
-// Normal load of one region into State: centre, normal, wrench, energy and stiffness; the stretch follows the turn of
+// Normal load of one region into State: centre, normal, wrench and energy; the stretch follows the turn of
 // the normal, while a centre that wanders over the surface (rolling) does not change it.
 void press(Scratch& scratch, Region& region, const RegionRows& rows, const RegionLoad& load,
            Real coupling_J) PALPATE_RT;
+// What it adds to its tool's stiffness, and its own along the normal.
+inline void stiffen(Scratch& scratch, const RegionLoad& load, Region& region) PALPATE_RT {
+  region.tangent_N_per_m = stiffness_along_N_per_m(load.stiffness, region.normal_w);
+  add_to(stiffness_of(scratch, region.hand), load.stiffness);
+}
 // Every region's load at the shifts in scratch.system. Laws::coupling_J(r, force, shift): energy that the yielding
 // surface holds on account of region r. Status: kDepthBeyondRange.
 template <class Laws>
@@ -120,16 +128,11 @@ void press_regions(const Laws& laws, State& state, Scratch& scratch) PALPATE_RT 
     const RegionRows rows = rows_of(scratch, r);
     const Real shift_m = scratch.system.shift_m[r];
     const RegionLoad load = region_load(laws, r, rows, shift_m, pivot_w(state, rows));
-    press(scratch, state.region[scratch.rows.slot[r]], rows, load, laws.coupling_J(r, load.force_N, shift_m));
+    Region& region = state.region[scratch.rows.slot[r]];
+    press(scratch, region, rows, load, laws.coupling_J(r, load.force_N, shift_m));
+    if constexpr (!Laws::kTellsTangent) stiffen(scratch, load, region);
   }
 }
-
-// The body's surface under a region that rubs: its motion since the last tick, and what it gives under a force along
-// the friction's stretch and across it. As it is, a body that holds still.
-struct SurfaceUnderRub {
-  Vec3 step_w;
-  Real yield_m_per_N[2] = {};
-};
 
 // What a solution took, with so many laws in each evaluation. Returns how many were evaluated.
 inline std::int32_t count_solution(const RegionSolution& result, std::int32_t n, std::int32_t laws,
@@ -139,10 +142,19 @@ inline std::int32_t count_solution(const RegionSolution& result, std::int32_t n,
   return result.evaluations * laws;
 }
 
-// Friction at the region's centre, added to its wrench and energy and to scratch.stiffness. The caller fills
-// region.depth_equivalent_m and `load`'s tangent and depth rate; motion, normal and force are taken from the region.
+// Friction at the region's centre, added to its wrench and energy. The caller fills region.depth_equivalent_m and
+// `load`'s tangent and depth rate; motion, normal and force are taken from the region. `surface_w`: how far the body's
+// surface went since the last tick.
+FrictionForce rub_region(const Model& model, const State& state, const FrictionParameters& parameters,
+                         const RegionRows& rows, FrictionLoad& load, Region& region, Vec3 surface_w = {}) PALPATE_RT;
+// The directions of a friction's two stiffnesses.
+struct TangentAxes {
+  Vec3 along, across;
+};
+TangentAxes tangent_axes(const FrictionForce& friction, Vec3 normal) PALPATE_RT;
+// Friction on a body that holds still: rub_region(), and its springs in scratch.stiffness.
 void slide(const Model& model, const State& state, Scratch& scratch, const FrictionParameters& parameters,
-           const RegionRows& rows, FrictionLoad& load, Region& region, const SurfaceUnderRub& under = {}) PALPATE_RT;
+           const RegionRows& rows, FrictionLoad& load, Region& region) PALPATE_RT;
 
 // Motion since the last tick of the tool material that is at `point` now, rotation included: exact where one piece
 // touches; the mean by force where pieces that move against one another share the region.

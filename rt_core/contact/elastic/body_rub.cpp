@@ -30,9 +30,9 @@ BodyRub begin_rub(const Region& region, Vec3 motion_w) PALPATE_RT {
 }
 
 void let_stick(const Model& model, const State& state, const ElasticRow& row, BodyRub& rub) PALPATE_RT {
+  rub.sweep_w = row.sweep_w;
   if (!rub.is_on) return;
   const std::int32_t soft = model.params.elastic_soft;
-  rub.sweep_w = row.sweep_w;
   for (std::int32_t a = 0; a < soft; ++a) rub.moved_w += state.elastic.step_rootJ[a] * rub.sweep_w[a];
   const Vec3 stretch = tangential_part(rub.stretch_w - rub.moved_w, row.foot.normal_w);
   aim_along(stretch, stretch, row.foot.normal_w, soft, rub);
@@ -54,18 +54,6 @@ bool let_slip(const FrictionParameters& law, Vec3 normal_w, Real force_N, const 
   rub.axis[1].stiffness_N_per_m = sliding / length;
   rub.axis[1].force_N = rub.axis[1].stiffness_N_per_m * dot(begun, rub.axis[1].unit_w);
   return true;
-}
-
-SurfaceUnderRub surface_under(const BodyRub& rub) PALPATE_RT {
-  SurfaceUnderRub under;
-  under.step_w = rub.moved_w;
-  for (int i = 0; i < 2; ++i) {  // bound: 2
-    // Its own spring taken out of what the surface gives: 1 / y = 1 / y0 + k. Never to less than a hundredth.
-    const RubAxis& axis = rub.axis[i];
-    const Real share = max_of(1 - axis.stiffness_N_per_m * axis.yield_m_per_N, 0.01);
-    under.yield_m_per_N[i] = axis.yield_m_per_N / share;
-  }
-  return under;
 }
 
 }  // namespace palpate

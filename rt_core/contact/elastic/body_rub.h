@@ -16,7 +16,6 @@ struct RubAxis {
   Real force_N = 0;            // f: on the body
   Real stiffness_N_per_m = 0;  // k
   Real sweep[kMaxSoftModes];   // g
-  Real yield_m_per_N = 0;      // of the surface under a force along it, by the soft modes and all springs
 };
 
 struct BodyRub {
@@ -25,7 +24,7 @@ struct BodyRub {
   Vec3 stretch_w;                 // of the spring, had the surface held still: the last tick's and what the tool moved
   Vec3 moved_w;                   // by the surface
   Real spring_N_per_m = 0;        // of the last tick
-  const Vec3* sweep_w = nullptr;  // ElasticRow::sweep_w
+  const Vec3* sweep_w = nullptr;  // ElasticRow::sweep_w; of a first touch too
   RubAxis axis[2];                // along the spring's stretch; across it
 };
 
@@ -36,8 +35,5 @@ void let_stick(const Model& model, const State& state, const ElasticRow& row, Bo
 // Those of one that slips, if it does by the law at `force_N` where the answer `step` puts it. False: it sticks.
 bool let_slip(const FrictionParameters& law, Vec3 normal_w, Real force_N, const Real* step, std::int32_t soft,
               BodyRub& rub) PALPATE_RT;
-
-// What the surface under a region did in this tick, and gives under the spring, along and across the stretch.
-SurfaceUnderRub surface_under(const BodyRub& rub) PALPATE_RT;
 
 }  // namespace palpate

@@ -21,9 +21,6 @@ using namespace elastic_layout;
 // What one more linearisation would move the surface under a tip: above it the tick says so.
 constexpr Real kElasticTolerance_m = 2e-5;
 
-// No tip's place holds more than this of its compliance to itself, whatever the rounding of a difference.
-constexpr Real kLeastLeft = 0.02;
-
 // Every tip sticks in the first; those that slip under its answer do so in the second. Decided instead by where the
 // body would go, the answer was one tick late, and ring and tube let a resting hand buzz for 35 ticks (2026-11-22).
 constexpr std::int32_t kSolvesOfFriction = 2;
@@ -39,8 +36,10 @@ RegionSolution solve_forces(const ElasticLoad& load, Scratch& scratch, Real enou
   } else {
     const TravelResult alone = solve_travel(load.region[0], load.shift_alone_m(0));
     scratch.work.tip_laws += alone.evaluations * load.region[0].count;
+    const LawPoint at = region_at(load.region[0], alone.shift_m);
     scratch.system.shift_m[0] = alone.shift_m;
-    scratch.system.force_N[0] = region_at(load.region[0], alone.shift_m).force_N;
+    scratch.system.force_N[0] = at.force_N;
+    scratch.system.root_tangent[0] = square_root(at.tangent_N_per_m);
     result.residual_m = alone.residual_m;
   }
   for (std::int32_t r = 0; r < load.n; ++r) force_N[r] = scratch.system.force_N[r];  // bound: kMaxRegions
@@ -74,38 +73,6 @@ void let_body_rest(const Model& model, State& state, Scratch& scratch) PALPATE_R
   state.elastic.swept_m = swept_m(model, work_of(scratch));
 }
 
-// A hand moves its tool while the other hand's keeps its depth, not its force: a region's compliance is then its own
-// less what the other hand's regions take of it, A_rr - A_ro A_oo^-1 A_or. A soft body between two tools sways with
-// both, and without this each hand's tangent was that of the sway: the two tools threw one another to and fro, by 0.09
-// N in every tick (2026-11-24). Adds the difference along the regions' normals. Bound: regions^3 / 6.
-void hold_other_hand(const ElasticLoad& load, State& state, Scratch& scratch, const Real* force_N,
-                     std::int32_t hand) PALPATE_RT {
-  std::int32_t others[kMaxRegions], count = 0;
-  Real compliance[kMaxRegions];
-  for (std::int32_t r = 0; r < load.n; ++r) {  // bound: kMaxRegions
-    const Region& region = state.region[scratch.rows.slot[r]];
-    if (!(region.tangent_N_per_m > 0)) return;
-    compliance[r] = 1 / region.tangent_N_per_m;
-    if (region.hand != hand) others[count++] = r;
-  }
-  Real* factor = scratch.system.factor;
-  for (std::int32_t i = 0; i < count; ++i)  // bound: regions^2
-    for (std::int32_t j = 0; j < count; ++j)
-      factor[i * count + j] = i == j ? compliance[others[i]] : load.curvature(force_N, others[i], others[j]);
-  if (count == 0 || !cholesky_factor(factor, count)) return;
-  for (std::int32_t r = 0; r < load.n; ++r) {  // bound: kMaxRegions
-    Region& region = state.region[scratch.rows.slot[r]];
-    if (region.hand != hand) continue;
-    Real across[kMaxRegions], answer[kMaxRegions];
-    for (std::int32_t i = 0; i < count; ++i) across[i] = answer[i] = load.curvature(force_N, r, others[i]);
-    cholesky_solve(factor, answer, count);
-    const Real left = max_of(compliance[r] - dot(across, answer, count), kLeastLeft * compliance[r]);
-    const Vec3 arm = region.centre_w - tool_of(state, hand).position_m;
-    add_spring(stiffness_of(scratch, hand), 1 / left - region.tangent_N_per_m, region.normal_w,
-               cross(arm, region.normal_w));
-  }
-}
-
 template <class Count>
 void solve_pressed(const Model& model, State& state, Scratch& scratch, Count soft) PALPATE_RT {
   const std::int32_t regions = scratch.rows.regions;
@@ -134,15 +101,14 @@ void solve_pressed(const Model& model, State& state, Scratch& scratch, Count sof
   if (!(left_m <= kElasticTolerance_m)) scratch.status |= Status::kNotConverged;
   if (work_of(scratch).energy.is_outside) scratch.status |= Status::kDepthBeyondRange;
   scratch.residual_m = max_of(scratch.residual_m, left_m);
-  body.yield_to_rubs();
   state.elastic.swept_m = swept_m(model, work_of(scratch));
   scratch.energy_J += body.energy_J() + body.linear_energy_J(force_N);
   body.pull_aside(force_N);
   press_regions(load, state, scratch);
-  if (has_two_tools(model))
-    for (const std::int32_t hand : {0, 1}) hold_other_hand(load, state, scratch, force_N, hand);  // bound: 2
-  for (std::int32_t r = 0; r < regions; ++r)                                                      // bound: kMaxRegions
-    work_of(scratch).place_N_per_m[r] = load.place_N_per_m(r, scratch.system.shift_m[r]);
+  for (std::int32_t r = 0; r < regions; ++r)  // bound: kMaxRegions
+    state.region[scratch.rows.slot[r]].tangent_N_per_m =
+        load.place_N_per_m(r, force_N[r], scratch.system.root_tangent[r]);
+  body.tell_tangent(force_N);
 }
 
 void solve(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
@@ -152,16 +118,80 @@ void solve(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   with_mode_count(model.params.elastic_soft, [&](auto soft) PALPATE_RT { solve_pressed(model, state, scratch, soft); });
 }
 
-// Friction with the stiffness of the place alone, against the surface as the soft modes moved it.
-void rub(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
-  const FrictionParameters parameters = friction_parameters(model.params);
-  for (std::int32_t r = 0; r < scratch.rows.regions; ++r) {  // bound: kMaxRegions
-    Region& region = state.region[scratch.rows.slot[r]];
-    region.depth_equivalent_m = region.depth_max_m;
-    FrictionLoad load;
-    load.tangent_N_per_m = work_of(scratch).place_N_per_m[r];
-    slide(model, state, scratch, parameters, rows_of(scratch, r), load, region, surface_under(work_of(scratch).rub[r]));
+// Friction with the stiffness of the place alone, against the surface as the soft modes moved it; then the tangent of
+// all springs.
+template <class Count, class Size>
+class Rubbing {
+ public:
+  Rubbing(const Model& model, State& state, Scratch& scratch, Count soft, Size size) PALPATE_RT
+      : model_(model),
+        state_(state),
+        scratch_(scratch),
+        work_(work_of(scratch)),
+        soft_(soft),
+        size_(size) {}
+
+  void account() PALPATE_RT {
+    const FrictionParameters law = friction_parameters(model_.params);
+    for (std::int32_t r = 0; r < scratch_.rows.regions; ++r) rub(law, r);  // bound: kMaxRegions
+    work_.tangent.eliminate(size_, soft_);
+    for (std::int32_t r = 0; r < scratch_.rows.regions; ++r) yield_reversal(r);  // bound: kMaxRegions
+    scratch_.stiffness = work_.tangent.from(soft_);
+    if (has_two_tools(model_)) scratch_.other.stiffness = work_.tangent.from(soft_ + ToolTangent::kTwist);
   }
+
+ private:
+  Region& region(std::int32_t r) const PALPATE_RT { return state_.region[scratch_.rows.slot[r]]; }
+
+  void rub(const FrictionParameters& law, std::int32_t r) PALPATE_RT {
+    Region& here = region(r);
+    here.depth_equivalent_m = here.depth_max_m;
+    FrictionLoad load;
+    load.tangent_N_per_m = here.tangent_N_per_m;
+    const FrictionForce friction =
+        rub_region(model_, state_, law, rows_of(scratch_, r), load, here, work_.rub[r].moved_w);
+    const TangentAxes axes = tangent_axes(friction, here.normal_w);
+    add(r, friction.along_N_per_m, axes.along);
+    add(r, friction.across_N_per_m, axes.across);
+  }
+  void add(std::int32_t r, Real stiffness_N_per_m, Vec3 axis) PALPATE_RT {
+    if (!(stiffness_N_per_m > 0)) return;
+    ToolTangent::Spring spring;
+    aim_along(r, axis, spring);
+    work_.tangent.add(size_, stiffness_N_per_m, spring);
+  }
+  void aim_along(std::int32_t r, Vec3 axis, ToolTangent::Spring& spring) const PALPATE_RT {
+    const Region& here = region(r);
+    const Vec3* sweep_w = work_.rub[r].sweep_w;
+    aim(
+        size_, soft_, soft_ + here.hand * ToolTangent::kTwist, axis,
+        here.centre_w - tool_of(state_, here.hand).position_m,
+        [&](std::int32_t a) PALPATE_RT { return dot(axis, sweep_w[a]); }, spring);
+  }
+  // What slips turns back on a spring in series with what the modes give under it.
+  void yield_reversal(std::int32_t r) PALPATE_RT {
+    Real& stiffness = region(r).reversal_N_per_m;
+    if (!(stiffness > 0)) return;
+    ToolTangent::Spring back;
+    aim_along(r, unit_or(region(r).stretch_w, {}), back);
+    stiffness /= 1.0 + stiffness * work_.tangent.yield_m_per_N(soft_, back);
+  }
+
+  const Model& model_;
+  State& state_;
+  Scratch& scratch_;
+  ElasticWork& work_;
+  const Count soft_;
+  const Size size_;
+};
+
+void rub(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
+  if (scratch.rows.regions > 0)
+    with_mode_count(model.params.elastic_soft, [&](auto soft) PALPATE_RT {
+      with_tangent_size(soft, has_two_tools(model) ? 2 : 1, [&](auto size) PALPATE_RT {
+        Rubbing<decltype(soft), decltype(size)>(model, state, scratch, soft, size).account();
+      });
+    });
   sum_up(model, state, scratch);
 }
 

@@ -39,7 +39,7 @@ struct PlaceForce {
 };
 
 struct ElasticLoad : TipLaws {
-  static constexpr bool kPullsAside = true;
+  static constexpr bool kPullsAside = true, kTellsTangent = true;  // tool_tangent.h
   Tip tip[kMaxPieces];
   const ElasticRow* placed[kMaxPieces];
   PlacedLaw law[kMaxPieces];
@@ -53,14 +53,10 @@ struct ElasticLoad : TipLaws {
   std::int32_t at(std::int32_t r, std::int32_t k) const PALPATE_RT {
     return static_cast<std::int32_t>(region[r].tip - tip) + k;
   }
-  Real softening(std::int32_t r, Real shift_m) const PALPATE_RT {
-    const LawPoint sum = load(r, shift_m);
-    return 1.0 / (1.0 + far_slope_m_per_N(region[r].far, sum.force_N) * sum.tangent_N_per_m);
-  }
-  // Normal stiffness under region r as if the soft modes held still.
-  Real place_N_per_m(std::int32_t r, Real shift_m) const PALPATE_RT {
-    const LawPoint sum = load(r, shift_m);
-    return sum.tangent_N_per_m / (1.0 + far_slope_m_per_N(own[r], sum.force_N) * sum.tangent_N_per_m);
+  // Normal stiffness under region r as if the soft modes held still; of the laws' tangent there the root.
+  Real place_N_per_m(std::int32_t r, Real force_N, Real root_tangent) const PALPATE_RT {
+    const Real tangent = root_tangent * root_tangent;
+    return tangent / (1.0 + far_slope_m_per_N(own[r], force_N) * tangent);
   }
   // The force along the surface that the stored energy asks for where c, c1 and the curvature change along it.
   RowLoad row(std::int32_t r, std::int32_t k, Real shift_m) const PALPATE_RT {

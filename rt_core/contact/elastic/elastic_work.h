@@ -2,6 +2,7 @@
 #pragma once
 
 #include "rt_core/contact/elastic/body_rub.h"
+#include "rt_core/contact/elastic/tool_tangent.h"
 
 namespace palpate {
 
@@ -12,7 +13,7 @@ struct ElasticWork {
   Real y_begun[elastic_layout::kMaxTerms];  // as the tick found it
   Real reach_m[elastic_layout::kMaxTerms];  // largest displacement of each shape; written when the Scratch is made
   BodyRub rub[kMaxRegions];                 // by region of the tick
-  Real place_N_per_m[kMaxRegions];          // normal stiffness of the place alone, as if the soft modes held still
+  ToolTangent tangent;                      // of the normals' springs, then of all
 };
 
 // In the block of a Scratch made for the method.

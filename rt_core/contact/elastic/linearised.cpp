@@ -40,14 +40,36 @@ bool factor_shifted(const Real* h, Real shift, Count n, Real* factor) PALPATE_RT
   return true;
 }
 
-// As stiff as it has to be for that; the linear body where nothing helps. The linear stiffness is 1.
+// As stiff as it has to be for that: returns by how much; the linear body, and kHuge, where nothing helps. The linear
+// stiffness is 1.
 template <class Count>
-void factor_stiffened(const Real* h, Count n, Real* factor) PALPATE_RT {
+Real factor_stiffened(const Real* h, Count n, Real* factor) PALPATE_RT {
   for (const Real shift : {0.0, 0.1, 0.5, 2.0, 8.0}) {  // bound: 5
-    if (factor_shifted(h, shift, n, factor)) return;
+    if (factor_shifted(h, shift, n, factor)) return shift;
   }
   for (std::int32_t i = 0; i < n; ++i)  // bound: soft^2
     for (std::int32_t j = 0; j <= i; ++j) factor[i * n + j] = i == j ? 1.0 : 0.0;
+  return kHuge;
+}
+
+// Whether it surely is so by its diagonal.
+template <class Count>
+bool is_stiff(const Real* h, Count n) PALPATE_RT {
+  for (std::int32_t i = 0; i < n; ++i) {  // bound: soft^2
+    Real left = h[i * n + i];
+    for (std::int32_t j = 0; j < n; ++j) left -= j == i ? 0.0 : abs_of(h[i * n + j]);
+    if (!(left >= kLeastStiffness)) return false;
+  }
+  return true;
+}
+template <class Count>
+void stiffen(Real* h, Count n) PALPATE_RT {
+  Real factor[kMaxSoftModes * kMaxSoftModes];
+  const Real stiffer = factor_stiffened(h, n, factor);
+  for (std::int32_t a = 0; a < n; ++a) {  // bound: soft^2
+    for (std::int32_t b = 0; b < a && stiffer >= kHuge; ++b) h[a * n + b] = 0;
+    h[a * n + a] = stiffer < kHuge ? h[a * n + a] + stiffer : 1.0;
+  }
 }
 
 // Of the whole H: what the forces of a region add by the turn of its pull.
@@ -264,13 +286,20 @@ bool Linearised<Count>::slips(const Real* force_N) PALPATE_RT {
   return some;
 }
 
+// H of the body and of the pulls' turn.
+template <class Count>
+void Linearised<Count>::turned(const Real* force_N, Real* h) const PALPATE_RT {
+  for (std::int32_t i = 0; i < n_ * n_; ++i) h[i] = work_.energy.curvature[i];  // bound: soft^2
+  for (std::int32_t r = 0; r < regions(); ++r)
+    add_turn(force_N[r], leading_[r]->turn, n_, h);  // bound: kMaxRegions pairs
+}
+
 template <class Count>
 void Linearised<Count>::factorise(const Real* force_N) PALPATE_RT {
-  Real h[kMaxSoftModes * kMaxSoftModes] = {};
-  for (std::int32_t i = 0; i < n_ * n_; ++i) h[i] = work_.energy.curvature[i];  // bound: soft^2
+  Real h[kMaxSoftModes * kMaxSoftModes];
+  turned(force_N, h);
   for (std::int32_t a = 0; a < n_; ++a) free_step_[a] = -work_.energy.slope[a] - place_rootJ_[a];
-  for (std::int32_t r = 0; r < regions(); ++r) {  // bound: kMaxRegions pairs
-    add_turn(force_N[r], leading_[r]->turn, n_, h);
+  for (std::int32_t r = 0; r < regions(); ++r) {  // bound: kMaxRegions soft^2
     if (!work_.rub[r].is_on) continue;
     for (const RubAxis& axis : work_.rub[r].axis) add_rub(axis, n_, h, free_step_);  // bound: 2
   }
@@ -390,15 +419,66 @@ void Linearised<Count>::sweep(Real share, const Real* delta, std::int32_t r) PAL
   for (const RubAxis& axis : rub.axis) rub.moved_w += (share * dot(axis.sweep, delta, n_)) * axis.unit_w;  // bound: 2
 }
 
+// H as stiff as it has to be without friction: a tangent below zero would not be one to step by.
 template <class Count>
-void Linearised<Count>::yield_to_rubs() PALPATE_RT {
-  for (std::int32_t r = 0; r < regions(); ++r) {  // bound: kMaxRegions soft^2
-    if (!work_.rub[r].is_on) continue;
-    for (RubAxis& axis : work_.rub[r].axis) {
-      Real moved[kMaxSoftModes];
-      answer(factor_, axis.sweep, n_, moved);
-      axis.yield_m_per_N = dot(axis.sweep, moved, n_);
+void Linearised<Count>::tell_tangent(const Real* force_N) const PALPATE_RT {
+  Real h[kMaxSoftModes * kMaxSoftModes];
+  turned(force_N, h);
+  if (!is_stiff(h, n_)) stiffen(h, n_);
+  with_tangent_size(n_, has_two_tools(model_) ? 2 : 1, [&](auto size) PALPATE_RT {
+    work_.tangent.begin(size, n_, h);
+    if (regions() > 1) return tell_pairs(size, force_N);
+    ToolTangent::Spring spring;
+    aim_normal(size, 0, spring);
+    work_.tangent.add(size, state_.region[scratch_.rows.slot[0]].tangent_N_per_m, spring);
+  });
+}
+
+template <class Count>
+template <class Size>
+void Linearised<Count>::aim_normal(Size size, std::int32_t r, ToolTangent::Spring& out) const PALPATE_RT {
+  const Region& region = state_.region[scratch_.rows.slot[r]];
+  const Real* pull = leading_[r]->pull;
+  aim(
+      size, n_, n_ + region.hand * ToolTangent::kTwist, region.normal_w,
+      region.centre_w - tool_of(state_, region.hand).position_m, [&](std::int32_t a) PALPATE_RT { return pull[a]; },
+      out);
+}
+
+// Places that lean on one another beyond the soft modes: with g the roots of their laws' tangents and C what they give,
+// g (I + g C g)^-1 g = Y^T Y of as many springs, Y = L^-1 g.
+template <class Count>
+template <class Size>
+void Linearised<Count>::tell_pairs(Size size, const Real* force_N) const PALPATE_RT {
+  const std::int32_t n = regions();
+  Real g[kMaxRegions], force[kMaxRegions], slope[kMaxRegions], bend[kMaxRegions];
+  for (std::int32_t r = 0; r < n; ++r) {  // bound: kMaxRegions
+    g[r] = scratch_.system.root_tangent[r];
+    force[r] = force_N[r];
+  }
+  end_lanes(n, g);
+  end_lanes(n, force);
+  load_.pair.slopes(n, force, slope, bend);
+  FactorLanes system;
+  for (std::int32_t j = 0; j < n; ++j) {  // bound: kMaxRegions^2 soft / 8
+    for (std::int32_t b = j / kRegionLanes * kRegionLanes; b < n; b += kRegionLanes) {
+      Double4 c = load_.pair.bends(force, j, b);
+      for (std::int32_t a = 0; a < n_; ++a) c -= splat4(leading_[j]->pull[a]) * load4(moved_[a] + b);
+      store(system.column[j] + b, splat4(g[j]) * c * load4(g + b));
     }
+    system.column[j][j] = 1.0 + g[j] * (far_slope_m_per_N(load_.own[j], force[j]) + bend[j]) * g[j];
+  }
+  if (!system.factor(n)) return;
+  ToolTangent::Spring spring[kMaxRegions];
+  for (std::int32_t k = 0; k < n; ++k) {  // bound: kMaxRegions^2 kMost / 8
+    Real* to = spring[k].slope;
+    aim_normal(size, k, spring[k]);
+    for (std::int32_t b = 0; b < size; b += 4) {
+      Double4 left = splat4(g[k]) * load4(to + b);
+      for (std::int32_t j = 0; j < k; ++j) left -= splat4(system.column[j][k]) * load4(spring[j].slope + b);
+      store(to + b, splat4(system.inverse[k]) * left);
+    }
+    work_.tangent.add(size, 1.0, spring[k]);
   }
 }
 

@@ -48,8 +48,8 @@ class Linearised {
   void pull_aside(const Real* force_N) PALPATE_RT {
     if (regions() > 1) pairs_.pull_aside(regions(), force_N, load_.pair_aside);
   }
-  // After the step: what the surface gives under every friction.
-  void yield_to_rubs() PALPATE_RT;
+  // How the normal forces found change with tool and modes. After press_regions().
+  void tell_tangent(const Real* force_N) const PALPATE_RT;
   Real energy_J() const PALPATE_RT { return energy_J_; }
   Real linear_energy_J(const Real* force_N) const PALPATE_RT;
 
@@ -58,7 +58,12 @@ class Linearised {
   void gather() PALPATE_RT;
   Real place_ahead(const Real* force_N, std::int32_t r, PlaceForce& place) const PALPATE_RT;
   void add_places(const Real* force_N) PALPATE_RT;
+  void turned(const Real* force_N, Real* h) const PALPATE_RT;
   void factorise(const Real* force_N) PALPATE_RT;
+  template <class Size>
+  void aim_normal(Size size, std::int32_t r, ToolTangent::Spring& out) const PALPATE_RT;
+  template <class Size>
+  void tell_pairs(Size size, const Real* force_N) const PALPATE_RT;
   Real find_step(const Real* force_N, Real* delta) const PALPATE_RT;
   void sweep(Real share, const Real* delta, std::int32_t r) PALPATE_RT;
   Real left_m(const Real* force_N, Real share, const Real* delta) PALPATE_RT;

@@ -16,6 +16,7 @@ struct PointLaws {
   // 0.1 um, a few mN on the stiffest objects a haptic device can render.
   static constexpr Real kTolerance_m = 1e-7;
   static constexpr bool kPullsAside = false;
+  static constexpr bool kTellsTangent = false;
 
   CubicLaw law;
   const RegionRows* region;

@@ -51,6 +51,7 @@ Vec3 printed_aside(const Model& model, const Tip& tip, const SurfaceFoot& foot, 
 // the normal force passes through the foot.) The loader refuses more tool points than pieces for these laws.
 struct TipLoad : TipLaws {
   static constexpr bool kPullsAside = true;
+  static constexpr bool kTellsTangent = false;
   Tip tip[kMaxPieces];
   const SurfaceFoot* foot[kMaxPieces];
   const Model* model;
