@@ -3,8 +3,6 @@
 // Usage: valgrind --tool=callgrind --collect-atstart=no ... adversary_work IMAGE TICKS COUNTED [SEED]
 #include <valgrind/callgrind.h>
 
-#include <algorithm>
-#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -14,6 +12,7 @@
 #include "rt_core/stage_cost.h"
 #include "rt_core/tick.h"
 #include "sim_host/tick_memory.h"
+#include "tests/bench/dearest_ticks.h"
 #include "tests/support/image_file.h"
 
 namespace palpate::test {
@@ -37,13 +36,9 @@ void print(int tick, const Work& work) {
   std::printf("\n");
 }
 
-// The dearest ticks of each stage, and of all together.
+// The dearest ticks of each stage and of all together, and some between.
 std::vector<bool> choose(const Model& model, std::uint64_t seed, int ticks, int counted) {
-  struct Dear {
-    double cost;
-    int tick;
-  };
-  std::array<std::vector<Dear>, kStageCount + 1> dear;
+  TickPrices prices;
   const auto state = make_state(model);
   const auto scratch = make_scratch(model);
   reset(*state);
@@ -54,17 +49,10 @@ std::vector<bool> choose(const Model& model, std::uint64_t seed, int ticks, int 
     const Input input = adversary.next(output, forgets);
     if (forgets) reset(*state);
     tick(model, *state, *scratch, input, output);
-    for (int i = 0; i < kStageCount; ++i)
-      dear[static_cast<std::size_t>(i)].push_back({counted_instructions(scratch->work, static_cast<Stage>(i)), t});
-    dear[kStageCount].push_back({counted_instructions(scratch->work), t});
+    prices.add(scratch->work);
   }
   std::vector<bool> chosen(static_cast<std::size_t>(ticks), false);
-  for (auto& of_stage : dear) {
-    std::ranges::sort(
-        of_stage, [](const Dear& a, const Dear& b) { return a.cost != b.cost ? a.cost > b.cost : a.tick < b.tick; });
-    for (int k = 0; k < std::min(counted / (kStageCount + 1), ticks); ++k)
-      chosen[static_cast<std::size_t>(of_stage[static_cast<std::size_t>(k)].tick)] = true;
-  }
+  prices.choose_dearest(static_cast<std::size_t>(counted / (kStageCount + 1)), chosen);
   for (int k = 1; k < counted; ++k)
     chosen[static_cast<std::size_t>(static_cast<std::int64_t>(k) * ticks / counted)] = true;
   return chosen;

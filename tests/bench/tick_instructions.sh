@@ -7,6 +7,7 @@
 #   tick_instructions.sh meshes PROGRAM PALPATE SCENE.toml
 #   tick_instructions.sh nodal NODAL_PROGRAM
 #   tick_instructions.sh overlays PROGRAM PALPATE SCENE_DIR
+# Of the scripted hand's ticks in a scene the dearest and a sample are counted; all with PALPATE_COUNT_ALL=1.
 set -euo pipefail
 usage="usage: tick_instructions.sh scene PROGRAM IMAGE_DIR SCENE.toml | paths PROGRAM IMAGE_DIR SCENE_DIR |"
 usage+=" meshes PROGRAM PALPATE SCENE.toml |"
@@ -39,8 +40,8 @@ mesh_ratio_percent=130
 
 # count ARGUMENTS: prints the stage table and sets worst, mean.
 count() {
-  valgrind --tool=callgrind --quiet --collect-atstart=no --combine-dumps=yes --compress-strings=no --compress-pos=no \
-    --callgrind-out-file="$work/counts" "$program" "$@" >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
+  valgrind --tool=callgrind --quiet --instr-atstart="$from_start" --collect-atstart=no --combine-dumps=yes --compress-strings=no \
+    --compress-pos=no --callgrind-out-file="$work/counts" "$program" "$@" >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
   awk -v functions="$stages" -f "$here/worst_tick.awk" "$work/counts" >"$work/table" || { cat "$work/table"; exit 1; }
   grep -v '^summary ' "$work/table"
   read -r _ worst mean ticks in_contact < <(grep '^summary ' "$work/table")
@@ -62,7 +63,7 @@ judge() {
   echo "worst tick $worst of $1 instructions: $verdict"
 }
 
-status=0 least_contact=2
+status=0 least_contact=2 from_start=no all=${PALPATE_COUNT_ALL:+all}
 if [ "$mode" = paths ]; then
   images=${3:?$usage} scenes=${4:?$usage} least_contact=3
   for scene in $path_scenes; do
@@ -75,7 +76,7 @@ elif [ "$mode" = scene ]; then
   images=${3:?$usage} file=${4:?$usage}
   scene=$(basename "$file" .toml) budget=$(budget_of "$file")
   echo "== $scene"
-  count "$images/$scene.pal"
+  count "$images/$scene.pal" $all
   within_bounds || status=1
   judge "$budget"
 elif [ "$mode" = meshes ]; then
@@ -86,7 +87,7 @@ elif [ "$mode" = meshes ]; then
     sed -E "s/^triangles *=.*/triangles = $triangles/" "$scene" >"$work/scene.toml"
     "$palpate" bake "$work/scene.toml" -o "$work/scene.pal" >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
     echo "== $triangles triangles"
-    count "$work/scene.pal"
+    count "$work/scene.pal" all
     [ "$least_worst" -ne 0 ] && [ "$least_worst" -le "$worst" ] || least_worst=$worst
     [ "$least_mean" -ne 0 ] && [ "$least_mean" -le "$mean" ] || least_mean=$mean
     [ "$most_worst" -ge "$worst" ] || most_worst=$worst
@@ -96,6 +97,7 @@ elif [ "$mode" = meshes ]; then
   [ "$ratio_worst" -le "$mesh_ratio_percent" ] && [ "$ratio_mean" -le "$mesh_ratio_percent" ] || status=1
   echo "largest over smallest: worst tick $ratio_worst %, mean in contact $ratio_mean % (at most $mesh_ratio_percent %)"
 elif [ "$mode" = nodal ]; then
+  from_start=yes
   for part in slide rock; do
     echo "== $part"
     count "$part"
@@ -111,7 +113,7 @@ elif [ "$mode" = overlays ]; then
         echo "== $scene, $(basename "$tool" .toml), $material"
         "$palpate" bake "$scenes/$scene.toml" --with "$tool" --with "$scenes/materials/$material.toml" \
           -o "$work/scene.pal" >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
-        count "$work/scene.pal" >"$work/stages"
+        count "$work/scene.pal" $all >"$work/stages"
         tail -n 1 "$work/stages"
         [ "$most" -ge "$worst" ] || most=$worst
       done

@@ -1,12 +1,12 @@
 # Reads a combined callgrind file with one part per tick (see tick_instructions.cpp) and prints, per stage, the
-# instructions in the worst tick, the most in any tick, and the mean over ticks in contact; then one line
-# "summary WORST MEAN_IN_CONTACT TICKS TICKS_IN_CONTACT" for the script. `functions`, given with -v: those of the stages,
+# instructions in the worst tick, the most in any tick, and the mean over ticks in contact, for which ticks that were
+# chosen do not count; then one line "summary WORST MEAN_IN_CONTACT TICKS TICKS_IN_CONTACT" for the script. `functions`, given with -v: those of the stages,
 # in order. With -v each=1 first a line "each TICK STAGE INSTRUCTIONS" for every tick and stage.
 function finish(    stage) {
   if (!open_part) return
-  ticks++
+  if (!chosen) ticks++
   if (each) for (stage in cost) print "each", number, stage, cost[stage]
-  if (contacts > 0) { in_contact++; contact_sum += total }
+  if (contacts > 0 && !chosen) { in_contact++; contact_sum += total }
   if (total > worst) {
     worst = total; worst_label = label
     for (stage in cost) worst_cost[stage] = cost[stage]
@@ -14,7 +14,7 @@ function finish(    stage) {
   for (stage in cost) {
     if (!(stage in most)) others[stage] = 1
     if (cost[stage] > most[stage]) most[stage] = cost[stage]
-    if (contacts > 0) sum[stage] += cost[stage]
+    if (contacts > 0 && !chosen) sum[stage] += cost[stage]
   }
 }
 # A method's steps have names of their own where methods share them.
@@ -26,6 +26,7 @@ function name_of(text) {
 /^part: / { finish(); open_part = 0; total = 0; self = 0; in_tick = 0; split("", cost) }
 /^desc: Trigger: Client Request: tick / {
   open_part = 1; number = $6; label = $0; sub(/^.*Request: /, "", label); contacts = $8
+  chosen = $NF == "chosen"
 }
 # The stage contact is counted in its parts.
 /^fn=/ { in_tick = ($0 ~ /^fn=palpate::(tick|contact)\(/); callee = "" }

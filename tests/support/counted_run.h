@@ -11,7 +11,7 @@
 
 namespace palpate::test {
 
-// Calls opened(model) once, then begins() right before each tick and ends(i, output) right after it.
+// Calls opened(model) once, then begins(i) right before each tick and ends(i, output, its work) right after it.
 template <class Opened, class Begins, class Ends>
 void play_counted(const char* path, Opened opened, Begins begins, Ends ends) {
   const ImageFile image(path);
@@ -24,14 +24,15 @@ void play_counted(const char* path, Opened opened, Begins begins, Ends ends) {
   ScriptedHand hand(model);
   for (int i = 0; i < kScriptTicks; ++i) {
     const Input input = hand.next(output);
-    begins();
+    begins(i);
     tick(model, *state, *scratch, input, output);
-    ends(i, output);
+    ends(i, output, scratch->work);
   }
 }
 
 // The main function of a program that takes one image: 2 and why where it cannot be played.
-inline int main_of_image(const char* program, int argc, char** argv, void (*play)(const char* path)) {
+template <class Play>
+int main_of_image(const char* program, int argc, char** argv, Play play) {
   if (argc != 2) {
     std::fprintf(stderr, "usage: %s IMAGE\n", program);
     return 2;
