@@ -56,7 +56,7 @@ std::string machine_text(const MachineIdentity& m) {
 
 }  // namespace
 
-std::string certificate_text(const Certificate& c) {
+std::string certificate_text(const HostCertificate& c) {
   const RunSummary& s = c.run.summary;
   std::string text = fmt::format("Palpate latency certificate: {}\n", verdict_name(c.verdict));
   for (const std::string& reason : c.reasons) text += "  " + reason + "\n";
@@ -88,7 +88,7 @@ std::string certificate_text(const Certificate& c) {
   return text + "\n" + worst_ticks_text(s.worst, kWorstTicksKept);
 }
 
-std::string certificate_json(const Certificate& c) {
+std::string certificate_json(const HostCertificate& c) {
   const RunSummary& s = c.run.summary;
   Json root;
   root["file"] = "palpate latency certificate";

@@ -88,8 +88,8 @@ RunOptions run_options(const CertifyOptions& options, const TemporaryFolder& fol
 
 }  // namespace
 
-Certificate certify(const CertifyOptions& options) {
-  Certificate certificate;
+HostCertificate certify(const CertifyOptions& options) {
+  HostCertificate certificate;
   certificate.options = options;
   DoctorSources sources = this_machine();
   sources.cpu = options.cpu;
@@ -114,7 +114,7 @@ Certificate certify(const CertifyOptions& options) {
   return certificate;
 }
 
-void judge(Certificate& certificate) {
+void judge(HostCertificate& certificate) {
   const RunResult& run = certificate.run;
   const RunSummary& s = run.summary;
   const CertifyLimits& limits = certificate.options.limits;

@@ -34,7 +34,7 @@ struct CertifyOptions {
 
 enum class CertifyVerdict { kPass, kFail, kIncomplete };
 
-struct Certificate {
+struct HostCertificate {
   CertifyVerdict verdict = CertifyVerdict::kFail;
   std::vector<std::string> reasons;  // what exceeded which limit
   MachineIdentity machine;
@@ -45,12 +45,12 @@ struct Certificate {
 };
 
 // Runs it. SIGINT and SIGTERM end it early and keep what was measured. Throws std::runtime_error when it cannot start.
-Certificate certify(const CertifyOptions& options);
+HostCertificate certify(const CertifyOptions& options);
 // Verdict and reasons from the other members: any limit exceeded fails; an early end without that is incomplete.
-void judge(Certificate& certificate);
+void judge(HostCertificate& certificate);
 
-std::string certificate_text(const Certificate& certificate);
-std::string certificate_json(const Certificate& certificate);
+std::string certificate_text(const HostCertificate& certificate);
+std::string certificate_json(const HostCertificate& certificate);
 // "palpate-latency-HOST-20261121T040145Z".
 std::string certificate_name(const std::string& host, std::int64_t seconds_since_1970);
 

@@ -114,7 +114,7 @@ int run_certify(const LatencyOptions& options, Json& json) {
   certify_options.limits.wake_us = options.limit_us;
   certify_options.progress = print_certify_progress;
   if (!certify_options.host_load) fmt::print(stderr, "no load is made here: start the load you expect now\n");
-  const auto certificate = std::make_unique<Certificate>(certify(certify_options));
+  const auto certificate = std::make_unique<HostCertificate>(certify(certify_options));
   const std::string text = certificate_text(*certificate);
   fmt::print("{}", text);
   write_text(certificate->options.out + ".txt", text);

@@ -25,15 +25,15 @@ TickRecord tick_of(std::uint64_t number, std::int32_t wake_ns) {
   return record;
 }
 
-std::unique_ptr<Certificate> good() {
-  auto certificate = std::make_unique<Certificate>();
+std::unique_ptr<HostCertificate> good() {
+  auto certificate = std::make_unique<HostCertificate>();
   certificate->options.duration_s = 10;
   certificate->run.elapsed_s = 10.02;
   for (std::uint64_t i = 0; i < 10'000; ++i) add(certificate->run.summary, tick_of(i, i == 777 ? 90'000 : 8'000));
   return certificate;
 }
 
-CertifyVerdict verdict_after(const std::function<void(Certificate&)>& change, const std::string& reason) {
+CertifyVerdict verdict_after(const std::function<void(HostCertificate&)>& change, const std::string& reason) {
   const auto certificate = good();
   change(*certificate);
   judge(*certificate);
@@ -60,27 +60,27 @@ TEST(Certify, DurationsAreReadStrictly) {
 
 TEST(Certify, EveryLimitFailsByItself) {
   const auto fail = CertifyVerdict::kFail;
-  EXPECT_EQ(verdict_after([](Certificate&) {}, ""), CertifyVerdict::kPass);
-  EXPECT_EQ(verdict_after([](Certificate& c) { c.run.summary.missed_ticks = 1; }, "1 deadlines missed"), fail);
-  EXPECT_EQ(verdict_after([](Certificate& c) { add(c.run.summary, tick_of(10'000, 600'000)); },
+  EXPECT_EQ(verdict_after([](HostCertificate&) {}, ""), CertifyVerdict::kPass);
+  EXPECT_EQ(verdict_after([](HostCertificate& c) { c.run.summary.missed_ticks = 1; }, "1 deadlines missed"), fail);
+  EXPECT_EQ(verdict_after([](HostCertificate& c) { add(c.run.summary, tick_of(10'000, 600'000)); },
                           "longest tick 620.0 us, 500.0 us allowed (tick 10000)"),
             fail);
-  EXPECT_EQ(verdict_after([](Certificate& c) { c.options.limits.wake_us = 89; },
+  EXPECT_EQ(verdict_after([](HostCertificate& c) { c.options.limits.wake_us = 89; },
                           "latest wake-up 90.0 us, 89 us allowed (tick 777)"),
             fail);
-  EXPECT_EQ(verdict_after([](Certificate& c) { c.options.limits.wake_us = 90; }, ""), CertifyVerdict::kPass);
-  EXPECT_EQ(verdict_after([](Certificate& c) { c.run.summary.fault = Fault::kOverrun; }, "Overrun"), fail);
-  EXPECT_EQ(verdict_after([](Certificate& c) { c.run.lost = 3; }, "3 ticks could not be measured"), fail);
-  EXPECT_EQ(verdict_after([](Certificate& c) { c.run.summary.device_force_max_N = 0.1; }, "not zero"), fail);
-  EXPECT_EQ(verdict_after([](Certificate& c) { c.run.controller_exit = 137; }, "exit code 137"), fail);
-  EXPECT_EQ(verdict_after([](Certificate& c) { c.run.summary = {}; }, "no ticks"), fail);
+  EXPECT_EQ(verdict_after([](HostCertificate& c) { c.options.limits.wake_us = 90; }, ""), CertifyVerdict::kPass);
+  EXPECT_EQ(verdict_after([](HostCertificate& c) { c.run.summary.fault = Fault::kOverrun; }, "Overrun"), fail);
+  EXPECT_EQ(verdict_after([](HostCertificate& c) { c.run.lost = 3; }, "3 ticks could not be measured"), fail);
+  EXPECT_EQ(verdict_after([](HostCertificate& c) { c.run.summary.device_force_max_N = 0.1; }, "not zero"), fail);
+  EXPECT_EQ(verdict_after([](HostCertificate& c) { c.run.controller_exit = 137; }, "exit code 137"), fail);
+  EXPECT_EQ(verdict_after([](HostCertificate& c) { c.run.summary = {}; }, "no ticks"), fail);
 }
 
 TEST(Certify, AnEarlyEndIsIncompleteUnlessItFailedAlready) {
-  EXPECT_EQ(verdict_after([](Certificate& c) { c.run.elapsed_s = 4; }, ""), CertifyVerdict::kIncomplete);
-  EXPECT_EQ(verdict_after([](Certificate& c) { c.run.interrupted = true; }, ""), CertifyVerdict::kIncomplete);
+  EXPECT_EQ(verdict_after([](HostCertificate& c) { c.run.elapsed_s = 4; }, ""), CertifyVerdict::kIncomplete);
+  EXPECT_EQ(verdict_after([](HostCertificate& c) { c.run.interrupted = true; }, ""), CertifyVerdict::kIncomplete);
   EXPECT_EQ(verdict_after(
-                [](Certificate& c) {
+                [](HostCertificate& c) {
                   c.run.interrupted = true;
                   c.run.summary.missed_ticks = 2;
                 },
@@ -180,7 +180,7 @@ TEST_F(CertifyRun, RunsTheRealLoopWithoutForceUnderLoad) {
     calls += 1;
     EXPECT_EQ(state.duration_s, 2.5);
   };
-  const auto certificate = std::make_unique<Certificate>(certify(options_));
+  const auto certificate = std::make_unique<HostCertificate>(certify(options_));
   EXPECT_GT(certificate->run.summary.ticks, 0u);
   EXPECT_EQ(certificate->run.summary.device_force_max_N, 0.0);
   EXPECT_FALSE(certificate->run.interrupted);
@@ -197,7 +197,7 @@ TEST_F(CertifyRun, InterruptKeepsWhatWasMeasured) {
   options_.progress = [&](const LiveState& state) {
     if (state.all->ticks > 100 && !interrupt.joinable()) interrupt = std::thread([] { kill(getpid(), SIGINT); });
   };
-  const auto certificate = std::make_unique<Certificate>(certify(options_));
+  const auto certificate = std::make_unique<HostCertificate>(certify(options_));
   if (interrupt.joinable()) interrupt.join();
   EXPECT_GT(certificate->run.summary.ticks, 100u);
   EXPECT_TRUE(certificate->run.interrupted || certificate->run.faulted());
