@@ -45,26 +45,45 @@ std::string error_of(const std::string& more) {
   return test::refusal_by([&] { compile_scene(small(more)); });
 }
 
+// Elastic bodies of more elements than the others': a test of their own, which --fast and sanitizers leave out.
+bool is_dear(const std::string& path) {
+  return path.ends_with("/hollow_cylinder.toml") || path.ends_with("/heart_compass.toml") ||
+         path.ends_with("/half_shell.toml");
+}
+
+void expect_bakes_opens_and_fits(const std::string& path) {
+  SceneDesc scene = load_scene(path);
+  // The build bakes them as they are; elements twice as long take 20 of 62 s.
+  if (scene.contact.backend == Backend::kElastic) scene.fem.edge_m *= 2;
+  const CompileResult baked = compile_scene(scene);
+  const OpenedImage image(baked.bytes);
+  EXPECT_EQ(image.result().error, ImageError::kNone) << path << ": " << image.result().field;
+  EXPECT_EQ(std::filesystem::path(path).stem().string(), image.model().name);
+  EXPECT_EQ(baked.report.warnings, weak_keys(scene)) << path;
+  const bool skeleton = scene.contact.backend == Backend::kResponse && scene.skeleton.law != SkeletonLaw::kNone;
+  EXPECT_EQ(baked.report.fixed_anchors >= 1, skeleton) << path;
+  // At 800 instructions each, inside the worst tick's budget: 60,000 for a scene, 250,000 for a hand.
+  EXPECT_LE(baked.report.tool_points, scene.articulation == Articulation::kHand ? 60 : 30) << path;
+  EXPECT_GE(scene.path.point.size(), 2u) << path;
+  EXPECT_EQ(baked.report.image_bytes, baked.bytes.size());
+  EXPECT_THAT(report_text(baked.report), HasSubstr("anchors")) << path;
+}
+
 TEST(Compile, ShippedScenesBakeOpenAndFit) {
   const std::vector<std::string> scenes = shipped_scenes();
   ASSERT_GE(scenes.size(), 3u);
-  for (const std::string& path : scenes) {
-    SceneDesc scene = load_scene(path);
-    // The build bakes them as they are; elements twice as long take 20 of 62 s.
-    if (scene.contact.backend == Backend::kElastic) scene.fem.edge_m *= 2;
-    const CompileResult baked = compile_scene(scene);
-    const OpenedImage image(baked.bytes);
-    EXPECT_EQ(image.result().error, ImageError::kNone) << path << ": " << image.result().field;
-    EXPECT_EQ(std::filesystem::path(path).stem().string(), image.model().name);
-    EXPECT_EQ(baked.report.warnings, weak_keys(scene)) << path;
-    const bool skeleton = scene.contact.backend == Backend::kResponse && scene.skeleton.law != SkeletonLaw::kNone;
-    EXPECT_EQ(baked.report.fixed_anchors >= 1, skeleton) << path;
-    // At 800 instructions each, inside the worst tick's budget: 60,000 for a scene, 250,000 for a hand.
-    EXPECT_LE(baked.report.tool_points, scene.articulation == Articulation::kHand ? 60 : 30) << path;
-    EXPECT_GE(scene.path.point.size(), 2u) << path;
-    EXPECT_EQ(baked.report.image_bytes, baked.bytes.size());
-    EXPECT_THAT(report_text(baked.report), HasSubstr("anchors")) << path;
+  for (const std::string& path : scenes)
+    if (!is_dear(path)) expect_bakes_opens_and_fits(path);
+}
+
+TEST(Compile, DearShippedScenesBakeOpenAndFit) {
+  int baked = 0;
+  for (const std::string& path : shipped_scenes()) {
+    if (!is_dear(path)) continue;
+    expect_bakes_opens_and_fits(path);
+    ++baked;
   }
+  EXPECT_EQ(baked, 3);
 }
 
 TEST(Compile, SameSceneSameBytesWhereverItLies) {
