@@ -15,13 +15,16 @@ for name in "$@"; do
   [ -f "$here/fuzz_$name.cpp" ] || { echo "no target '$name'" >&2; exit 2; }
   targets+=("fuzz_$name")
 done
-cmake --preset fuzz >/dev/null && cmake --build build/fuzz --target "${targets[@]}" || exit 2
+jobs=${PALPATE_JOBS:-$(nproc)}
+cmake --preset fuzz >/dev/null && cmake --build build/fuzz -j "$jobs" --target "${targets[@]}" || exit 2
 findings=$root/build/fuzz/findings
 mkdir -p "$findings"
-status=0
-for name in "$@"; do
-  work=$(mktemp -d)
-  log=$work/log
+said=$(mktemp -d)
+trap 'rm -rf "$said"' EXIT
+
+fuzz() { # NAME: says what came of it; fails if something was found
+  local name=$1 work=$said/$1.work log=$said/$1.log code runs edges
+  mkdir "$work"
   # 20 seconds over one input is a hang; 2 GiB is a leak.
   "$root/build/fuzz/tests/fuzz/fuzz_$name" -max_total_time="$seconds" -timeout=20 -rss_limit_mb=2048 -verbosity=1 \
     -artifact_prefix="$findings/$name-" -print_final_stats=1 "$work" "$here/corpus/$name" >"$log" 2>&1
@@ -31,11 +34,21 @@ for name in "$@"; do
   if [ $code -eq 0 ]; then
     echo "$name: nothing found in ${runs:-?} runs, $seconds s, ${edges:-?} edges"
   else
-    status=1
     echo "$name: FOUND something (exit $code):"
     grep -E 'ERROR|SUMMARY|runtime error|abort' "$log" | head -n 5
     cp "$log" "$findings/$name.log"
+    return 1
   fi
-  rm -r "$work"
+}
+
+# As many at a time as there are processors; what they say comes in order.
+status=0
+pids=()
+for name in "$@"; do
+  [ "${#pids[@]}" -lt "$jobs" ] || { wait "${pids[0]}" || status=1; pids=("${pids[@]:1}"); }
+  fuzz "$name" >"$said/$name" &
+  pids+=($!)
 done
+for pid in "${pids[@]}"; do wait "$pid" || status=1; done
+for name in "$@"; do cat "$said/$name"; done
 exit $status
