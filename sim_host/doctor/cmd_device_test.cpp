@@ -39,7 +39,7 @@ std::vector<DoctorItem> move_by_hand(AxisDevice& device, const DeviceProfile& pr
   return rows;
 }
 
-struct Options {
+struct DeviceTestOptions {
   std::string device, profile;
   bool move = false, push = false, json = false;
 };
@@ -51,7 +51,8 @@ double fitting_period_s(const ArmProfile& arm) {
 }
 
 // Drives are found, identified and set up as before a run, and none is enabled.
-int run_drives_test(const DeviceAddress& address, const DeviceProfile& profile, const Options& options, Json& json) {
+int run_drives_test(const DeviceAddress& address, const DeviceProfile& profile, const DeviceTestOptions& options,
+                    Json& json) {
   const ArmProfile& arm = *profile.arm;
   const double period_s = fitting_period_s(arm);
   std::string error;
@@ -84,7 +85,7 @@ int run_drives_test(const DeviceAddress& address, const DeviceProfile& profile, 
   return failed == 0 ? kExitOk : kExitFailed;
 }
 
-int run_device_test(const Options& options, Json& json) {
+int run_device_test(const DeviceTestOptions& options, Json& json) {
   std::string line, error;
   const std::optional<DeviceAddress> address = parse_device_address(options.device, line, error);
   if (!address) throw std::runtime_error(error);
@@ -128,7 +129,7 @@ int run_device_test(const Options& options, Json& json) {
 }  // namespace
 
 void add_device_test_command(CLI::App& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<DeviceTestOptions>();
   CLI::App* command = app.add_subcommand(
       "device-test", "Grade a device's firmware by the wire protocol's rules, with zero force throughout");
   command

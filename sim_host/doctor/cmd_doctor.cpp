@@ -15,14 +15,14 @@ namespace {
 
 constexpr const char* kFind = "find";
 
-struct Options {
+struct DoctorOptions {
   std::string device = "loopback", profile, identify;
   int cpu = -1;
   int priority = 80;
   bool json = false, ask = false;
 };
 
-int measure(const Options& options, Json& json) {
+int measure(const DoctorOptions& options, Json& json) {
   if (options.device != "loopback" || options.profile.empty())
     throw CLI::ValidationError("--identify",
                                "moves the simulated device alone: leave out --device, and say with "
@@ -63,7 +63,7 @@ int tell(const std::vector<DoctorItem>& items, Json& json) {
   return failed;
 }
 
-int run_doctor(const Options& options, Json& json) {
+int run_doctor(const DoctorOptions& options, Json& json) {
   const bool find = options.device == kFind;
   if (options.ask && !find) throw CLI::ValidationError("--ask", "goes with --device without an address");
   if (find) {
@@ -81,7 +81,7 @@ int run_doctor(const Options& options, Json& json) {
 }  // namespace
 
 void add_doctor_command(CLI::App& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<DoctorOptions>();
   CLI::App* command = app.add_subcommand("doctor", "Check this machine and the device's bus for hard real time");
   command
       ->add_option("--device", options->device,

@@ -68,14 +68,14 @@ PressDrive drive_of(const PressOptions& options, const SceneModel& scene) {
 }
 
 // Rewrites one line of a terminal; silent when the output is not a terminal.
-class Progress {
+class PressProgress {
  public:
-  explicit Progress(std::size_t total) : total_(total), shown_(isatty(STDERR_FILENO) != 0 && total > 5000) {}
-  ~Progress() {
+  explicit PressProgress(std::size_t total) : total_(total), shown_(isatty(STDERR_FILENO) != 0 && total > 5000) {}
+  ~PressProgress() {
     if (shown_) fmt::print(stderr, "\r\033[K");
   }
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
+  PressProgress(const PressProgress&) = delete;
+  PressProgress& operator=(const PressProgress&) = delete;
   void at(std::size_t done) const {
     if (shown_ && done % 1000 == 0)
       fmt::print(stderr, "\r{:3.0f} % of {} poses", 100.0 * static_cast<double>(done) / static_cast<double>(total_),
@@ -223,7 +223,7 @@ int run_press(const PressOptions& options, Json& json) {
                "see /proc/sys/kernel/perf_event_paranoid); that column stays empty\n");
   }
   Collected all;
-  const Progress progress(poses.size());
+  const PressProgress progress(poses.size());
   const StatePtr state = make_state(model);
   const bool wants_anchors = !options.anchors.empty() || !options.anchor_plot.empty();
   press(model, poses, drive_of(options, scene), *state, &counter,

@@ -40,7 +40,7 @@ struct ReportCommand {
   bool solve = false, again = false, quick = false, json = false;
 };
 
-void write_file(const std::string& path, const std::string& text, bool told = true) {
+void write_page(const std::string& path, const std::string& text, bool told = true) {
   std::ofstream file(path);
   file << text;
   if (!file.flush()) throw std::runtime_error(path + ": cannot write");
@@ -161,7 +161,7 @@ class Reporter {
     ModelRunOptions options;
     options.count = !command_.quick;
     const ModelRun made = run_model(variant, scene, p, report.reference ? &*report.reference : nullptr, options);
-    write_file(path, run_json(made), false);
+    write_page(path, run_json(made), false);
     fmt::print("{}\n", told(made));
     return made;
   }
@@ -206,13 +206,13 @@ int run_report(const ReportCommand& command, Json& json) {
   std::vector<CaseReport> cases;
   for (const std::string& scene : scenes) cases.push_back(reporter.report(scene));
   const ReportStamp stamp{today(), kBuildId, machine_text()};
-  write_file(command.out + "/report.html", report_html(cases, stamp));
-  write_file(command.out + "/report.csv", report_csv(cases));
+  write_page(command.out + "/report.html", report_html(cases, stamp));
+  write_page(command.out + "/report.csv", report_csv(cases));
   const std::string figures = report_json(cases, stamp);
   json["folder"] = command.out;
   json.update(Json::parse(figures));
-  write_file(command.out + "/report.json", figures);
-  if (!command.markdown.empty()) write_file(command.markdown, report_markdown(cases, stamp));
+  write_page(command.out + "/report.json", figures);
+  if (!command.markdown.empty()) write_page(command.markdown, report_markdown(cases, stamp));
   if (!command.picture.empty()) {
     pareto_plot(cases, "Every model on every case: error against cost").save(command.picture);
     fmt::print("wrote   {}\n", command.picture);
