@@ -1,6 +1,7 @@
 // Plays the adversary in one baked scene for callgrind and counts the ticks that its work makes dear: what they counted
 // of themselves is printed beside, stage by stage, and adversary_work.sh holds one against the other.
-// Usage: valgrind --tool=callgrind --collect-atstart=no ... adversary_work IMAGE TICKS COUNTED [SEED]
+// Usage: valgrind --tool=callgrind --instr-atstart=no --collect-atstart=no ... adversary_work IMAGE TICKS COUNTED
+// [SEED]
 #include <valgrind/callgrind.h>
 
 #include <cstdio>
@@ -69,6 +70,7 @@ void play(const char* path, int ticks, int counted, std::uint64_t seed) {
   Output output;
   for (int i = 0; i < kStageCount; ++i)
     std::printf("bound %s %.0f\n", kStageFunctions[i], model.stage_cost[static_cast<std::size_t>(i)].instructions);
+  CALLGRIND_START_INSTRUMENTATION;
   for (int t = 0; t < ticks; ++t) {
     bool forgets = false;
     const Input input = adversary.next(output, forgets);

@@ -15,7 +15,7 @@ most_percent=175
 status=0 scenes=0
 for image in "$images"/*.pal; do
   scenes=$((scenes + 1))
-  valgrind --tool=callgrind --quiet --collect-atstart=no --combine-dumps=yes --compress-strings=no --compress-pos=no \
+  valgrind --tool=callgrind --quiet --instr-atstart=no --collect-atstart=no --combine-dumps=yes --compress-strings=no --compress-pos=no \
     --callgrind-out-file="$work/counts" "$program" "$image" "$ticks" "$counted" "$seed" >"$work/log" 2>&1 ||
     { cat "$work/log"; exit 1; }
   awk -v each=1 -f "$here/worst_tick.awk" "$work/counts" >"$work/table" || { cat "$work/table"; exit 1; }

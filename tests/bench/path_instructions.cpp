@@ -1,6 +1,6 @@
 // Plays a scene's own path for callgrind, the one that `palpate run` and the laboratory follow: simulated hand and
 // device, wire, control loop, ticks counted alone like those of tick_instructions.cpp.
-// Usage: valgrind --tool=callgrind --collect-atstart=no ... path_instructions IMAGE SCENE.toml
+// Usage: valgrind --tool=callgrind --instr-atstart=no --collect-atstart=no ... path_instructions IMAGE SCENE.toml
 #include <valgrind/callgrind.h>
 
 #include <atomic>

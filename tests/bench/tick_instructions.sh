@@ -87,7 +87,7 @@ elif [ "$mode" = meshes ]; then
     sed -E "s/^triangles *=.*/triangles = $triangles/" "$scene" >"$work/scene.toml"
     "$palpate" bake "$work/scene.toml" -o "$work/scene.pal" >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
     echo "== $triangles triangles"
-    count "$work/scene.pal" all
+    count "$work/scene.pal" $all
     [ "$least_worst" -ne 0 ] && [ "$least_worst" -le "$worst" ] || least_worst=$worst
     [ "$least_mean" -ne 0 ] && [ "$least_mean" -le "$mean" ] || least_mean=$mean
     [ "$most_worst" -ge "$worst" ] || most_worst=$worst
