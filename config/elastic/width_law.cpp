@@ -217,7 +217,7 @@ class ClosedForm {
     flat_.radius_m = ball.radius_m;
     flat_.modulus_Pa = ball.modulus_Pa;
     flat_.paraboloid = ball.paraboloid;
-    // rt_core/contact/elastic/linearised.cpp, curvature_factor.
+    // rt_core/contact/elastic/placed_law.cpp, curvature_factor.
     const double scale = 1 / std::sqrt(std::clamp(1 + ball.body_curvature_1pm * ball.radius_m, 0.25, 4.0));
     scale_ = scale;
     m_ = scale * hertz_factor(ball);

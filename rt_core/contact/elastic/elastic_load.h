@@ -1,8 +1,8 @@
 // The tips in contact with an elastic body, with their own far fields and the body's, and what accounting asks of them.
 #pragma once
 
-#include "rt_core/contact/elastic/elastic_row.h"
 #include "rt_core/contact/elastic/pair_lanes.h"
+#include "rt_core/contact/elastic/placed_law.h"
 #include "rt_core/contact/region_load.h"
 #include "rt_core/contact/tips/travel.h"
 
@@ -15,14 +15,6 @@ struct FarChange {
   Real per_c0_N2, per_c1_N3;
 };
 FarChange far_change(const FarField& far, Real force_N) PALPATE_RT;
-
-// What a place does to a tip's law there, and how that changes along the surface: c of the place where it is negative
-// and beta of it (config/elastic/width_law.h), its curvature, and its modulus.
-struct PlacedLaw {
-  Real scale = 1, scale_by_curvature = 0, scale_by_c = 0, scale_by_modulus = 0;  // of the tip's law
-  PlaceTerms terms, by_c, by_beta, by_scale;
-};
-PlacedLaw placed_law(const TipLaw& law, const ElasticRow& row) PALPATE_RT;
 
 // What the energy stored under a tip gains, at a held travel, as the place's numbers fall: c, c1, curvature, beta; and
 // the modulus.
