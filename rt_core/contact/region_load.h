@@ -61,6 +61,9 @@ struct RowLoad {
   Vec3 lever_w;            // point of attack
   Vec3 aside_w;            // force along the surface that its energy asks for
   bool is_beyond = false;  // of the law's stated range
+  // Of a line: against turning the tool about this unit vector.
+  Real lean_Nm_per_rad = 0;
+  Vec3 lean_w{};
 };
 
 // Sum over the rows of a region.
@@ -71,11 +74,12 @@ struct RegionLoad {
   Real force_N = 0;            // sum f_i: what the coupling of regions is conjugate to
   Real energy_J = 0;           // of the local laws
   bool is_beyond = false;      // some row
+  bool leans = false;          // too; `stiffness` has it
   ContactStiffness stiffness;  // about the pivot
 };
 // Writes rows[].force_N. Laws::row(r, k, shift) gives a RowLoad; Laws::softening(r, shift) how much less stiff every
 // row is because the surface under all of them yields; Laws::kTellsTangent: the tangent is the method's own, and
-// `stiffness` stays zero. Bound: the number of rows.
+// `stiffness` is against leaning alone. Bound: the number of rows.
 template <class Laws>
 RegionLoad region_load(const Laws& laws, std::int32_t r, const RegionRows& rows, Real shift_m,
                        Vec3 pivot_w) PALPATE_RT {
@@ -92,6 +96,10 @@ RegionLoad region_load(const Laws& laws, std::int32_t r, const RegionRows& rows,
     if constexpr (Laws::kPullsAside) {
       load.aside_w += row.aside_w;
       load.torque_w += cross(arm, row.aside_w);
+      if (row.lean_Nm_per_rad > 0) {
+        add_spring(load.stiffness, row.lean_Nm_per_rad, {}, row.lean_w);
+        load.leans = true;
+      }
     }
     load.force_N += contact.force_N;
     load.energy_J += row.energy_J;
@@ -114,11 +122,6 @@ inline ContactStiffness& stiffness_of(Scratch& scratch, std::int32_t hand) PALPA
 // the normal, while a centre that wanders over the surface (rolling) does not change it.
 void press(Scratch& scratch, Region& region, const RegionRows& rows, const RegionLoad& load,
            Real coupling_J) PALPATE_RT;
-// What it adds to its tool's stiffness, and its own along the normal.
-inline void stiffen(Scratch& scratch, const RegionLoad& load, Region& region) PALPATE_RT {
-  region.tangent_N_per_m = stiffness_along_N_per_m(load.stiffness, region.normal_w);
-  add_to(stiffness_of(scratch, region.hand), load.stiffness);
-}
 // Every region's load at the shifts in scratch.system. Laws::coupling_J(r, force, shift): energy that the yielding
 // surface holds on account of region r. Status: kDepthBeyondRange.
 template <class Laws>
@@ -130,7 +133,9 @@ void press_regions(const Laws& laws, State& state, Scratch& scratch) PALPATE_RT 
     const RegionLoad load = region_load(laws, r, rows, shift_m, pivot_w(state, rows));
     Region& region = state.region[scratch.rows.slot[r]];
     press(scratch, region, rows, load, laws.coupling_J(r, load.force_N, shift_m));
-    if constexpr (!Laws::kTellsTangent) stiffen(scratch, load, region);
+    if constexpr (!Laws::kTellsTangent)
+      region.tangent_N_per_m = stiffness_along_N_per_m(load.stiffness, region.normal_w);
+    if (!Laws::kTellsTangent || load.leans) add_to(stiffness_of(scratch, region.hand), load.stiffness);
   }
 }
 

@@ -44,7 +44,7 @@ std::vector<TouchingTip> touching_tips(const Model& model, const State& state, A
     round.come_near(point.closest_w);
     TouchingTip tip;
     tip.region = point.region;
-    carried.place(round, point.triangle, point.closest_w, kHuge, tip.row);
+    carried.place(round, point.triangle, point.closest_w, kHuge, root_box(model), tip.row);
     if (tip.row.foot.triangle >= 0) tips.push_back(tip);
   }
   return tips;
@@ -93,10 +93,12 @@ TipDent dent_of(const TouchingTip& tip, double depth_m) {
   dent.across_m = dent.along_m = std::sqrt(depth_m * radius / body);
   const Vec3 axis = tangential_part(row.tip.half_axis_w, row.foot.normal_w);
   dent.along = unit_or(axis, unit_or(cross(dent.inward, axis_off(dent.inward)), {1, 0, 0}));
-  if (row.tip.is_ball() || !(row.tip.sideness() > 0)) return dent;
-  const double longest = kLongest * dent.across_m;
-  const double bent = row.along_1_per_m > 0 ? std::sqrt(depth_m / row.along_1_per_m) : longest;
-  dent.along_m += row.tip.sideness() * (std::clamp(bent, dent.across_m, longest) - dent.across_m);
+  if (row.tip.is_ball()) return dent;
+  // As far as it is straight from where its force acts, and the body bends away.
+  const double straight = dent.across_m + (1 - std::abs(row.tip.along)) * norm(row.tip.half_axis_w);
+  const double longest = std::min(straight, kLongest * dent.across_m);
+  dent.along_m = std::clamp(row.line.along_1_per_m > 0 ? std::sqrt(depth_m / row.line.along_1_per_m) : longest,
+                            dent.across_m, longest);
   return dent;
 }
 

@@ -359,7 +359,7 @@ TEST(MahvashHayward2002, TipInSeriesWithTheBody) {
               {ellipsoid, 2, 39.69125808317054, 29.32211898225644},
               {ellipsoid, 8, 295.2654187311297, 51.29541261514281}};
   for (const auto& row : rows) {
-    const Tip tip{row.tip.local(), {}, false, 1e-3 * row.depth_mm};
+    const Tip tip{row.tip.local(), {}, TipKind::kPower, 1e-3 * row.depth_mm};
     const TipRegion region{&tip, 1, {row.tip.law.c0_m_per_N, row.tip.law.c1_m_per_N2, row.tip.law.force_max_N}};
     const LawPoint load = region_at(region, solve_travel(region).shift_m);
     expect_worked(load.force_N, row.force_N);
@@ -371,7 +371,7 @@ TEST(MahvashHayward2002, TipInSeriesWithTheBody) {
 // Two springs of 2 N/mm that lean on one another to second order, and the curvature of their energy, mm/N.
 TEST(MahvashHayward2002, TwoTipsToSecondOrder) {
   const BakedTip spring({TipProfile::kFlat, 1e-3, 0}, 1e6, 0.01);
-  const Tip tip[2] = {{spring.local(), {}, false, 2e-3}, {spring.local(), {}, false, 1e-3}};
+  const Tip tip[2] = {{spring.local(), {}, TipKind::kPower, 2e-3}, {spring.local(), {}, TipKind::kPower, 1e-3}};
   const TipRegion region[2] = {{&tip[0], 1, {}}, {&tip[1], 1, {}}};
   const Real c[4] = {0, 1e-4, 1e-4, 0}, h[4] = {0, 5e-5, 2e-5, 0};
   const TipLaws laws{region, {c, h}, 2};

@@ -39,7 +39,7 @@ double series_error(const SceneDesc& scene, std::span<const Row> rows) {
   const TipLaw& law = image.tip_law[0];
   double worst = 0;
   for (const Row& row : rows) {
-    const Tip tip{{&law, law.first_factor < 0 ? nullptr : &image.factor[0]}, {}, false, 1e-3 * row.depth_mm};
+    const Tip tip{{&law, law.first_factor < 0 ? nullptr : &image.factor[0]}, {}, TipKind::kPower, 1e-3 * row.depth_mm};
     const TipRegion region{&tip, 1, {law.c0_m_per_N, law.c1_m_per_N2, law.force_max_N}};
     const double force = region_at(region, solve_travel(region).shift_m).force_N;
     worst = std::max(worst, std::abs(force / row.force_N - 1));

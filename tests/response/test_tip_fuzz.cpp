@@ -41,7 +41,7 @@ struct Point {
   double force_N, tangent_N_per_m, energy_J;
 };
 Point at(const TipLaw& law, const LocalLaw& local, double depth_m) {
-  const Tip tip{local, {}, false, depth_m};
+  const Tip tip{local, {}, TipKind::kPower, depth_m};
   const TipRegion region{&tip, 1, {law.c0_m_per_N, law.c1_m_per_N2, law.force_max_N}};
   const double e = depth_m - solve_travel(region).shift_m;
   const LawPoint point = local_at(local, e);

@@ -20,7 +20,7 @@ struct BakedTip {
   TipLaw law;
   explicit BakedTip(const TipDesc& desc) : law(make_tip_law(desc, factor)) {}
   LocalLaw local() const { return {&law, law.first_factor < 0 ? nullptr : &factor[0]}; }
-  Tip tip(double depth_m) const { return {local(), {}, false, depth_m}; }
+  Tip tip(double depth_m) const { return {local(), {}, TipKind::kPower, depth_m}; }
   TipRegion region(const Tip& tip) const { return {&tip, 1, {law.c0_m_per_N, law.c1_m_per_N2, law.force_max_N}}; }
   double force(double depth_m) const { return local_at(local(), depth_m).force_N; }
 };

@@ -27,7 +27,7 @@ class RunTimeLaw {
     return inverse_of([this](double depth) { return local_at(local(), depth).force_N; }, law_.depth_max_m);
   }
   double force_N(double travel_m) const {
-    const Tip tip{local(), {}, false, travel_m};
+    const Tip tip{local(), {}, TipKind::kPower, travel_m};
     const TipRegion region{&tip, 1, {law_.c0_m_per_N, law_.c1_m_per_N2, law_.force_max_N}};
     return region_at(region, solve_travel(region).shift_m).force_N;
   }

@@ -1,6 +1,7 @@
 #include <type_traits>
 
 #include "rt_core/contact/elastic/carried_edge.h"
+#include "rt_core/contact/elastic/line_place.h"
 #include "rt_core/contact/elastic/place_numbers.h"
 #include "rt_core/surface/closest_point.h"
 
@@ -75,11 +76,13 @@ Real travel_slope(const CornerTurns& turns, ElasticRow& row, const CarriedTriang
 }
 
 // The same equation differentiated: sum w_i (dV_i - t dU_i) moves the foot along the material as the centre going the
-// other way does. Along the axis of a capsule's side the place goes with the material.
+// other way does. Along a capsule's axis the place goes with the material as far as the line follows it.
 void slide_slopes(const CornerTurns& turns, const ElasticRow& row, const CarriedTriangle& t, Real below,
                   CornerSlope (&slide)[2]) PALPATE_RT {
   const Vec3 axis = row.tip.half_axis_w;
-  const Real square = squared_norm(axis), held = square > 0 ? row.tip.sideness() / square : 0.0;
+  const Real square = squared_norm(axis);
+  const Real follows = row.arm_m * row.line.along_1_per_m / (1 + row.line.along_1_per_m * row.tip.margin_m);
+  const Real held = square > 0 ? min_of(follows, 1.0) / square : 0.0;
   for (int i = 0; i < 2; ++i) {  // bound: 2 x 3
     const Vec3 any = row.foot.gradient_per_m[i + 1], to = any - (held * dot(any, axis)) * axis;
     for (int k = 0; k < 3; ++k) {
@@ -171,40 +174,69 @@ void show_modes(const Model& model, Count soft, const Real* y, const FootSlopes&
   }
 }
 
+// How the normal displacement of each shape slopes along the surface as the centre moves.
+template <class Count>
+void show_slopes(Count soft, const ElasticRow& row, const Double4 (&corner)[3][kMaxSoftModes], Vec3* slope) PALPATE_RT {
+  const Vec3 n = row.foot.normal_w;
+  for (std::int32_t a = 0; a < soft; ++a) {  // bound: 3 soft
+    slope[a] = {};
+    for (int k = 0; k < 3; ++k) {
+      const Double4& u = corner[k][a];
+      slope[a] += (n.x * u[0] + n.y * u[1] + n.z * u[2]) * row.foot.gradient_per_m[k];
+    }
+  }
+}
+
 // What the foot's slide adds to the travel's second derivative. The travel is the tip's radius less the distance f from
 // its centre to the nearest place s, whose derivatives in amplitudes and place are, at distance d over curvature k,
 //   f_a = -n.u_a,   f_ab = t_a.t_b / d - n.u_ab,   f_as = t_a / d - g_a,   f_ss = 1 / d + k,
 // with t_a the tangential part of u_a and g_a the slope of n.u_a along the surface, 1 + k d times its slope G_a as the
 // centre moves; and f_ab - f_as f_sb / f_ss is that of the nearest. Without it H lacked F d g_a.g_b, by which a body is
 // held upright under a ball: one of 60 mm on a block of 20 threw it from side to side every tick (2026-11-23).
-// The centre of a capsule's side slides too, so that along its axis f_ss is the body's curvature alone and t_a does
-// nothing; where that is flat the touch goes to the capsule's end.
 template <class Count>
 void turn_with_foot(Count soft, ElasticRow& row, const Double4 (&corner)[3][kMaxSoftModes]) PALPATE_RT {
   const Vec3 n = row.foot.normal_w;
-  const Real half = norm(row.tip.half_axis_w), side = row.tip.sideness(), on_side = max_of(row.along_1_per_m, 0.0);
-  const Vec3 axis = half > 0 ? (side / half) * tangential_part(row.tip.half_axis_w, n) : Vec3{};
-  const Real d = max_of(row.foot.height_m, 0.0),
-             mean = row.curvature_1_per_m + side * (row.curvature_1_per_m - on_side);
-  const Real bend = max_of(1 + mean * d, 0.5), curvature = bend > 1 ? mean / bend : 0.0, bent = 1 + on_side * d;
-  const Real slide = half * bent * bent / (1 + on_side * half);
+  const Real d = max_of(row.foot.height_m, 0.0), mean = row.curvature_1_per_m;
+  const Real bend = max_of(1 + mean * d, 0.5), curvature = bend > 1 ? mean / bend : 0.0;
   Vec3 along[kMaxSoftModes], slope[kMaxSoftModes];
-  Real on_axis[kMaxSoftModes];
-  for (std::int32_t a = 0; a < soft; ++a) {  // bound: 3 soft
+  show_slopes(soft, row, corner, slope);
+  for (std::int32_t a = 0; a < soft; ++a) along[a] = tangential_part(row.sweep_w[a], n);  // bound: soft
+  std::int32_t pair = 0;
+  for (std::int32_t a = 0; a < soft; ++a) {  // bound: pairs
+    for (std::int32_t b = a; b < soft; ++b, ++pair)
+      row.turn[pair] += d * bend * dot(slope[a], slope[b]) - dot(along[a], slope[b]) - dot(slope[a], along[b]) -
+                        curvature * dot(along[a], along[b]);
+  }
+}
+
+// The same under a capsule, whose pull goes along by `step_m` to where its force acts. Across its axis as a ball. Along
+// it the line resists what leans the surface, G_a + k t_a / (1 + k d), by LineLaw::Lean::arm_m: a rod that touches with
+// no end slides to where it is deepest, and t_a does nothing. With the pull where the last tick's force acted, jaws
+// pressed 1 mm into a block set it swinging about its height (2026-11-26).
+template <class Count>
+void turn_with_line(Count soft, Real step_m, ElasticRow& row, const Double4 (&corner)[3][kMaxSoftModes]) PALPATE_RT {
+  const Vec3 n = row.foot.normal_w, axis = unit_or(tangential_part(row.tip.half_axis_w, n), {});
+  const Real d = max_of(row.foot.height_m, 0.0), across = row.line.across_1_per_m;
+  const Real bend = max_of(1 + across * d, 0.5), curvature = bend > 1 ? across / bend : 0.0;
+  const Real bent = 1 + row.line.along_1_per_m * d, on_axis = row.line.along_1_per_m / bent, arm = row.arm_m;
+  const Real by_slope = d * bent + arm, by_both = arm * on_axis - 1, by_way = on_axis * by_both;
+  Vec3 along[kMaxSoftModes], slope[kMaxSoftModes];
+  Real way[kMaxSoftModes], lean[kMaxSoftModes];
+  show_slopes(soft, row, corner, slope);
+  for (std::int32_t a = 0; a < soft; ++a) {  // bound: soft
     along[a] = tangential_part(row.sweep_w[a], n);
-    for (int k = 0; k < 3; ++k) {
-      const Double4& u = corner[k][a];
-      slope[a] += (n.x * u[0] + n.y * u[1] + n.z * u[2]) * row.foot.gradient_per_m[k];
-    }
-    on_axis[a] = dot(slope[a], axis);
-    slope[a] -= on_axis[a] * axis;
-    along[a] -= dot(along[a], axis) * axis;
+    way[a] = dot(along[a], axis);
+    lean[a] = dot(slope[a], axis);
+    along[a] -= way[a] * axis;
+    slope[a] -= lean[a] * axis;
+    row.pull[a] += step_m * lean[a];
   }
   std::int32_t pair = 0;
   for (std::int32_t a = 0; a < soft; ++a) {  // bound: pairs
     for (std::int32_t b = a; b < soft; ++b, ++pair)
       row.turn[pair] += d * bend * dot(slope[a], slope[b]) - dot(along[a], slope[b]) - dot(slope[a], along[b]) -
-                        curvature * dot(along[a], along[b]) + slide * on_axis[a] * on_axis[b];
+                        curvature * dot(along[a], along[b]) + by_slope * lean[a] * lean[b] +
+                        by_both * (lean[a] * way[b] + way[a] * lean[b]) + by_way * way[a] * way[b];
   }
 }
 
@@ -229,44 +261,29 @@ void turn_on_edge(Count soft, const EdgePlace& on, const Double4 (&corner)[3][kM
     for (std::int32_t b = a; b < soft; ++b, ++pair) row.turn[pair] -= bend * dot(across[a], across[b]);
 }
 
-// One Newton step along a capsule's axis to where its height is least; `rise` and how the normal turns as the centre
-// moves are the height's slope and curvature. On a flat or hollow place it stays. At most half the half axis.
-void slide_along(const foot::Corners& corners, ElasticRow& row) PALPATE_RT {
-  const Vec3 axis = row.tip.half_axis_w, n = row.foot.normal_w;
+// How the height bends along a capsule's axis, at height t above a surface of curvature k by k / (1 + k t); none below
+// zero.
+Real height_bend(const foot::Corners& corners, const ElasticRow& row) PALPATE_RT {
+  const Vec3 n = row.foot.normal_w, axis = row.tip.half_axis_w;
   Vec3 mixed;
   for (int k = 0; k < 3; ++k) mixed += row.foot.weight[k] * corners.u[k];  // bound: 3
-  Real curvature = 0;
+  Real turned = 0;
   for (int k = 0; k < 3; ++k)  // bound: 3
-    curvature +=
-        dot(row.foot.gradient_per_m[k], axis) * (dot(corners.u[k], axis) - dot(corners.u[k], n) * dot(n, axis));
-  curvature /= norm(mixed);
-  // At height t above a surface of curvature k the height bends by k / (1 + k t).
-  const Real slope = dot(row.rise, axis), before = row.tip.along, bend = curvature / squared_norm(axis);
-  row.along_1_per_m = bend / max_of(1.0 - bend * row.foot.height_m, 0.1);
-  if (!(curvature > 1e-3 * norm(axis))) return;  // a radius of a thousand half axes
-  row.tip.along = clamp_to(before + clamp_to(-slope / curvature, -0.5, 0.5), -1.0, 1.0);
-  const Real step = row.tip.along - before;
-  row.travel_m -= step * (slope + 0.5 * step * curvature);
+    turned += dot(row.foot.gradient_per_m[k], axis) * (dot(corners.u[k], axis) - dot(corners.u[k], n) * dot(n, axis));
+  return max_of(turned / (norm(mixed) * squared_norm(axis)), 0.0);
 }
 
 }  // namespace
-
-Real RoundTip::sideness() const PALPATE_RT {
-  const Real length = norm(half_axis_w), from_end = (1.0 - abs_of(along)) * length;
-  const Real share = margin_m > 0 ? clamp_to(from_end / margin_m, 0.0, 1.0) : 0.0;
-  return share * share * (3 - 2 * share);
-}
 
 Vec3 CarriedSurface::displacement(std::int32_t vertex) const PALPATE_RT {
   const Vec3 rest = model.vertex_m[static_cast<std::size_t>(vertex)];
   return carry(model, y, vertex).position_w - rest;
 }
 
-void CarriedSurface::place(const RoundTip& tip, std::int32_t triangle, Vec3 near_w, Real nearer_m, ElasticRow& row,
-                           bool has_force) const PALPATE_RT {
+void CarriedSurface::place(const RoundTip& tip, std::int32_t triangle, Vec3 near_w, Real nearer_m, const Box& box,
+                           ElasticRow& row, Real force_N) const PALPATE_RT {
   CarriedTriangle last{model, y, shown, -1, {}, {}};
   row.tip = tip;
-  row.along_1_per_m = 0;
   const Vec3 centre_w = row.placed_w = tip.centre_w();
   last.move_to(triangle);
   last.walk_below(near_w);
@@ -285,18 +302,22 @@ void CarriedSurface::place(const RoundTip& tip, std::int32_t triangle, Vec3 near
     *shown += 2 * terms(model.params.elastic_soft);
     return;
   }
-  row.has_slide = has_force && (found || on.edge >= 0);
+  row.has_slide = force_N > 0 && (found || on.edge >= 0);
   FootSlopes slopes;
+  Real step_m = 0;
   if (found) {
     const Vec3* n = model.corner_normal[static_cast<std::size_t>(row.foot.triangle)].normal;
     const CornerTurns turns = {{last.vertex[0], n[0]}, {last.vertex[1], n[1]}, {last.vertex[2], n[2]}};
     const Real below = travel_slope(turns, row, last, slopes.travel);
+    show_place_numbers(model, row);
+    if (!tip.is_ball()) step_m = stand_on_line(model, box, height_bend(last.corners, row), force_N, row);
     if (row.has_slide) slide_slopes(turns, row, last, below, slopes.slide);
   } else {
+    show_place_numbers(model, row);
     row.rise = row.foot.normal_w;
     slopes.travel = facet_slope(row);
+    if (!tip.is_ball()) stand_on_line(model, box, 0, force_N, row);
   }
-  show_place_numbers(model, row);
   with_mode_count(model.params.elastic_soft, [&](auto n) PALPATE_RT {
     Double4 corner[3][kMaxSoftModes];
     if (found && row.has_slide)
@@ -305,8 +326,10 @@ void CarriedSurface::place(const RoundTip& tip, std::int32_t triangle, Vec3 near
       show_modes<false>(model, n, y, slopes, row, corner);
     if (on.edge >= 0) turn_on_edge(n, on, corner, row);
     if (!found) return;
-    if (!tip.is_ball()) slide_along(last.corners, row);
-    turn_with_foot(n, row, corner);
+    if (tip.is_ball())
+      turn_with_foot(n, row, corner);
+    else
+      turn_with_line(n, step_m, row, corner);
   });
   *shown += (found ? 8 : 6) * terms(model.params.elastic_soft) + (found && !tip.is_ball() ? kSlideWork : 0);
 }

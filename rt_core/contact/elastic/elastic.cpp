@@ -136,8 +136,8 @@ class Rubbing {
     for (std::int32_t r = 0; r < scratch_.rows.regions; ++r) rub(law, r);  // bound: kMaxRegions
     work_.tangent.eliminate(size_, soft_);
     for (std::int32_t r = 0; r < scratch_.rows.regions; ++r) yield_reversal(r);  // bound: kMaxRegions
-    scratch_.stiffness = work_.tangent.from(soft_);
-    if (has_two_tools(model_)) scratch_.other.stiffness = work_.tangent.from(soft_ + ToolTangent::kTwist);
+    add_to(scratch_.stiffness, work_.tangent.from(soft_));
+    if (has_two_tools(model_)) add_to(scratch_.other.stiffness, work_.tangent.from(soft_ + ToolTangent::kTwist));
   }
 
  private:

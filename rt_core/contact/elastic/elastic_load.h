@@ -64,13 +64,24 @@ struct ElasticLoad : TipLaws {
     // Where the second order goes on by its tangent, and off the smooth surface, no press of the bake has been.
     const bool is_beyond =
         e > tip[i].local.tip->depth_max_m || f > own[r].force_max_N || stands.foot.state != FootState::kFound;
-    return {point, energy, stands.tip.centre_w(), share * aside, is_beyond};
+    RowLoad out{point, energy, stands.tip.centre_w(), share * aside, is_beyond};
+    if (law[i].is_line) lean(i, e, out);
+    return out;
+  }
+  // The force of a capsule that leans acts beside where the tick had it stand.
+  void lean(std::int32_t i, Real e, RowLoad& out) const PALPATE_RT {
+    const LineLaw::Lean line = law[i].line.lean_at(e);
+    const Vec3 axis = unit_or(placed[i]->tip.half_axis_w, {});
+    out.lever_w += line.to_pressure_m * axis;
+    out.lean_Nm_per_rad = line.arm_m * out.at.force_N;
+    out.lean_w = unit_or(cross(axis, placed[i]->foot.normal_w), {});
   }
   // How the energy of the far field and, the other way, that of the tip's law change with the place's numbers.
   PlaceForce place_force(std::int32_t r, std::int32_t i, Real e, Real energy_J, Real force_N) const PALPATE_RT {
     const ElasticRow& stands = *placed[i];
     const PlacedLaw& here = law[i];
-    const PlaceEnergies place = place_energies(tip[i].local.tip->depth_max_m, e);
+    const PlaceEnergies place =
+        here.is_line ? line_energies(here.line, e) : place_energies(tip[i].local.tip->depth_max_m, e);
     const Real alone = (energy_J - place.J(here.terms)) / here.scale;
     const Real by_scale = alone + place.J(here.by_scale);
     PlaceForce out{};

@@ -2,7 +2,9 @@
 #pragma once
 
 #include "rt_core/contact/elastic/soft_energy.h"
+#include "rt_core/contact/tips/line_law.h"
 #include "rt_core/state.h"
+#include "rt_core/surface/body_box.h"
 #include "rt_core/surface/smooth_foot.h"
 
 namespace palpate {
@@ -12,27 +14,31 @@ namespace palpate {
 // on from there; how far the surface is at least stays true.
 inline constexpr std::int32_t kMaxTipSearched = 32;
 
+// Of the deepest depth: where a line's law is told as a power of the depth.
+inline constexpr Real kTold = 0.25;
+
 // A rounded tip: a ball, or a capsule whose side touches where it is nearest.
 struct RoundTip {
   Vec3 middle_w;
   Vec3 half_axis_w;  // zero: a ball
   Real margin_m = 0;
-  Real along = 0;  // where on the axis it touches, -1 to 1
+  Real modulus_Pa = 0, depth_max_m = 0;  // of a capsule's law: E*
+  Real along = 0;                        // where on the axis it touches, -1 to 1
 
   Vec3 centre_w() const PALPATE_RT { return middle_w + along * half_axis_w; }
   bool is_ball() const PALPATE_RT { return !(squared_norm(half_axis_w) > 0); }
   void come_near(Vec3 w) PALPATE_RT {
     if (!is_ball()) along = clamp_to(dot(w - middle_w, half_axis_w) / squared_norm(half_axis_w), -1.0, 1.0);
   }
-  // 0 at an end, which is a ball, to 1 a margin away from it: a cylinder.
-  Real sideness() const PALPATE_RT;
 };
 
 struct ElasticRow {
   SmoothFoot foot;                       // on the carried surface
   RoundTip tip;                          // where the next tick takes it
   Vec3 placed_w;                         // its centre here
-  Real along_1_per_m;                    // curvature of the body along a capsule's axis
+  LineLaw::Shape line;                   // of a capsule, where the next tick takes it
+  Real arm_m;                            // and LineLaw::Lean there
+  LineLaw::Point told;                   // at the depth kTold, whatever leans
   Real travel_m;                         // how far the carried surface and the tip overlap; < 0 apart
   Real pull[kMaxSoftModes];              // d travel / d p
   Real turn[elastic_layout::kMaxPairs];  // d2 travel / d p2, with the foot's slide
@@ -67,8 +73,8 @@ struct CarriedSurface {
   // (carried_edge.h); below the focal surface on the facet nearest to the centre as it was before the body moved, with
   // foot.triangle -1 where the tick's share of surface work is used up. A tip that is still apart when the surface
   // comes `nearer_m` towards it gets its foot and travel alone, and one without a force in the last tick no slide.
-  void place(const RoundTip& tip, std::int32_t triangle, Vec3 near_w, Real nearer_m, ElasticRow& row,
-             bool has_force = false) const PALPATE_RT;
+  void place(const RoundTip& tip, std::int32_t triangle, Vec3 near_w, Real nearer_m, const Box& box, ElasticRow& row,
+             Real force_N = 0) const PALPATE_RT;
 
  private:
   bool place_on_facet(Vec3 centre_w, std::int32_t triangle, ElasticRow& row) const PALPATE_RT;

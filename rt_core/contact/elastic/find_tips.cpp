@@ -66,14 +66,14 @@ class Finder {
     ElasticRow& row = work_.row[piece_of(index)];
     if (touched) tip.come_near(point.closest_w);
     const bool followed = touched && has_stayed(point, tip);
-    const bool has_force = point.region >= 0 && state_.region[point.region].normal_force_N > 0;
+    const Real force_N = point.region >= 0 ? state_.region[point.region].normal_force_N : 0.0;
     if (followed) {
-      surface_.place(tip, point.triangle, point.closest_w, nearer_m_, row, has_force);
+      surface_.place(tip, point.triangle, point.closest_w, nearer_m_, box_, row, force_N);
       // Lifted off: looked for from the next tick on.
       if (row.foot.triangle >= 0) return free_depth(row) > 0 ? keep(index, row) : let_lift(point, row, 0);
     }
     if (!search(tip, point, touched && !followed ? -1 : point.triangle)) return;
-    surface_.place(tip, point.triangle, point.closest_w, nearer_m_, row, has_force);
+    surface_.place(tip, point.triangle, point.closest_w, nearer_m_, box_, row, force_N);
     if (row.foot.triangle < 0) {
       hold(point);
       return;
@@ -210,6 +210,11 @@ RoundTip round_tip(const Model& model, std::int32_t index, const Pose& carrier) 
   if (piece.shape == PieceShape::kCapsule && point.position_tool_m == piece.pose_tool.position_m)
     tip.half_axis_w =
         rotate(carrier.orientation, rotate(piece.pose_tool.orientation, Vec3{0, 0, piece.half_extent_m[2]}));
+  if (!tip.is_ball()) {
+    const TipLaw& law = model.tip_law[static_cast<std::size_t>(point.piece)];
+    tip.modulus_Pa = 0.75 * law.coefficient / square_root(tip.margin_m);
+    tip.depth_max_m = law.depth_max_m;
+  }
   return tip;
 }
 

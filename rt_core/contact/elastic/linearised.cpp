@@ -435,9 +435,10 @@ void Linearised<Count>::add_tip(Contact& contact, std::int32_t at) PALPATE_RT {
   Tip& tip = load_.tip[at];
   tip = Tip{};
   tip.local = local_law(model_, contact.piece);
-  load_.law[at] = placed_law(*tip.local.tip, row);
+  place_law(*tip.local.tip, row, load_.law[at]);
   tip.scale = load_.law[at].scale;
   tip.place = &load_.law[at].terms;
+  if (load_.law[at].is_line) tip.become(load_.law[at].line);
   load_.placed[at] = &row;
   contact.position_w = row.foot.foot_w;
   contact.normal_w = row.foot.normal_w;
@@ -468,6 +469,7 @@ void Linearised<Count>::couple() PALPATE_RT {
 }
 
 template class Linearised<TwoModes>;
+template class Linearised<ThreeModes>;
 template class Linearised<FourModes>;
 template class Linearised<std::int32_t>;
 

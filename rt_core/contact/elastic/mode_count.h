@@ -9,14 +9,16 @@
 
 namespace palpate {
 
-using TwoModes = std::integral_constant<std::int32_t, 2>;   // of many finger parts on one body: none ships
-using FourModes = std::integral_constant<std::int32_t, 4>;  // every shipped scene's
+using TwoModes = std::integral_constant<std::int32_t, 2>;    // of many finger parts on one body: none ships
+using ThreeModes = std::integral_constant<std::int32_t, 3>;  // of a block that bends two ways and turns
+using FourModes = std::integral_constant<std::int32_t, 4>;   // every other shipped scene's
 
-// use(TwoModes), use(FourModes) or use(soft).
+// use(TwoModes), use(FourModes), use(ThreeModes) or use(soft).
 template <class Use>
 void with_mode_count(std::int32_t soft, const Use& use) PALPATE_RT {
   if (soft == TwoModes::value) return use(TwoModes{});
   if (soft == FourModes::value) return use(FourModes{});
+  if (soft == ThreeModes::value) return use(ThreeModes{});
   use(soft);
 }
 

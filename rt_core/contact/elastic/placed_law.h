@@ -11,7 +11,10 @@ namespace palpate {
 struct PlacedLaw {
   Real scale = 1, scale_by_curvature = 0, scale_by_c = 0, scale_by_modulus = 0;  // of the tip's law
   PlaceTerms terms, by_c, by_beta, by_scale;
+  // Of a capsule, instead of the tip's law.
+  bool is_line = false;
+  LineLaw line;
 };
-PlacedLaw placed_law(const TipLaw& law, const ElasticRow& row) PALPATE_RT;
+void place_law(const TipLaw& law, const ElasticRow& row, PlacedLaw& out) PALPATE_RT;
 
 }  // namespace palpate

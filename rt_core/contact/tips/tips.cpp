@@ -18,7 +18,7 @@ void find_rows(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
 }
 
 bool beyond_range(const Tip& tip, Real e) PALPATE_RT {
-  if (!tip.tabulated) return e > tip.local.tip->depth_max_m;
+  if (tip.kind != TipKind::kTable) return e > tip.local.tip->depth_max_m;
   const Real last = tip.table.knot[tip.table.knots - 1];
   return e > (tip.table.root ? last * last : last);
 }
@@ -66,8 +66,8 @@ struct TipLoad : TipLaws {
     const Tip& one = region[r].tip[k];
     const SurfaceFoot& stands = *foot[region[r].tip + k - tip];
     const Real e = one.depth_m - shift_m;
-    return {tip_at(one, e), tip_energy_J(one, e), stands.centre_w, one.tabulated ? aside(r, k, one, stands, e) : Vec3{},
-            beyond_range(one, e)};
+    return {tip_at(one, e), tip_energy_J(one, e), stands.centre_w,
+            one.kind == TipKind::kTable ? aside(r, k, one, stands, e) : Vec3{}, beyond_range(one, e)};
   }
   Vec3 aside(std::int32_t r, std::int32_t k, const Tip& one, const SurfaceFoot& stands, Real e) const PALPATE_RT {
     if (model->params.table_interpolation == TableInterpolation::kEnergy) return sideways_force(one, stands, e);
@@ -87,8 +87,8 @@ FarField far_field_of(const Model& model, const RegionRows& rows) PALPATE_RT {
 Tip make_tip(const Model& model, const SurfaceFoot& foot, const Contact& contact) PALPATE_RT {
   Tip tip;
   tip.depth_m = contact.depth_m;
-  tip.tabulated = model.params.response_law != ResponseLaw::kTip;
-  if (tip.tabulated) {
+  tip.kind = model.params.response_law != ResponseLaw::kTip ? TipKind::kTable : TipKind::kPower;
+  if (tip.kind == TipKind::kTable) {
     tip.table = table_law(model, contact.piece, foot.triangle, foot.weight);
   } else {
     tip.local = local_law(model, contact.piece);

@@ -1,5 +1,7 @@
 #include "rt_core/contact/tips/travel.h"
 
+#include "rt_core/math.h"
+
 namespace palpate {
 
 namespace {
@@ -20,8 +22,29 @@ Real h_of(const TipCoupling& coupling, std::int32_t i, std::int32_t j, std::int3
 
 }  // namespace
 
+namespace {
+
+// Slopes of line_energies in the line's force; its stiffness' slope is that of a power of the depth.
+LawPoint line_at(const Tip& tip, Real e_m) PALPATE_RT {
+  const LineLaw::Point& line = tip.line->at(e_m);
+  const PlaceTerms& add = *tip.place;
+  const Real f = line.force_N, k = line.tangent_N_per_m, root = math::cbrt(f), depth = e_m - tip.line->touches_at_m();
+  if (!(f > 0 && depth > 0)) return {};
+  const Real a = root * add.between_N_per_m25, b = root * root * add.third_N_per_m3;
+  const Real by = f * (add.second_N_per_m2 + 7.0 / 3 * a + 8.0 / 3 * b);
+  const Real by2 = add.second_N_per_m2 + 28.0 / 9 * a + 40.0 / 9 * b;
+  return {f + by * k, k * (1 + by2 * k + by * (k / f - 1.0 / depth))};
+}
+
+}  // namespace
+
+PlaceEnergies line_energies(const LineLaw& line, Real e_m) PALPATE_RT {
+  const Real f = line.at(e_m).force_N, root = math::cbrt(f), square = f * f;
+  return {{0.5 * square, square * root, square * root * root, 0}};
+}
+
 LawPoint tip_at(const Tip& tip, Real e_m) PALPATE_RT {
-  if (tip.tabulated) return table_at(tip.table, e_m);
+  if (tip.kind != TipKind::kPower) return tip.kind == TipKind::kTable ? table_at(tip.table, e_m) : line_at(tip, e_m);
   const LawPoint point = local_at(tip.local, e_m);
   if (tip.place == nullptr) return {tip.scale * point.force_N, tip.scale * point.tangent_N_per_m};
   const LawPoint place = place_at(*tip.place, tip.local.tip->depth_max_m, e_m);
@@ -29,7 +52,8 @@ LawPoint tip_at(const Tip& tip, Real e_m) PALPATE_RT {
 }
 
 Real tip_energy_J(const Tip& tip, Real e_m) PALPATE_RT {
-  if (!tip.tabulated) {
+  if (tip.kind == TipKind::kLine) return tip.line->at(e_m).energy_J + line_energies(*tip.line, e_m).J(*tip.place);
+  if (tip.kind != TipKind::kTable) {
     const Real energy = tip.scale * local_energy_J(tip.local, e_m);
     return tip.place == nullptr ? energy : energy + place_energy_J(*tip.place, tip.local.tip->depth_max_m, e_m);
   }

@@ -4,6 +4,7 @@
 
 #include <span>
 
+#include "rt_core/contact/tips/line_law.h"
 #include "rt_core/contact/tips/tip_law.h"
 #include "rt_core/limits.h"
 
@@ -12,16 +13,27 @@ namespace palpate {
 // Above this a solve counts as not converged: a nanometre, 50 uN on the stiffest tip law here (50 kN/m).
 inline constexpr Real kTravelTolerance_m = 1e-9;
 
+enum class TipKind : std::uint8_t { kPower, kTable, kLine };
+
 // One tip in contact: its law and how deep it is.
 struct Tip {
   LocalLaw local;
   TableLaw table;
-  bool tabulated = false;
+  TipKind kind = TipKind::kPower;
   Real depth_m = 0;                   // travel
-  Real scale = 1;                     // of the local law: a curved body's place is softer or stiffer
-  const PlaceTerms* place = nullptr;  // beside the scaled law
+  Real scale = 1;                     // of the power law: a curved body's place is softer or stiffer
+  const PlaceTerms* place = nullptr;  // beside the scaled law, or the line's
+  const LineLaw* line = nullptr;
+  void become(const LineLaw& law) PALPATE_RT {
+    line = &law;
+    kind = TipKind::kLine;
+  }
 };
 
+// What a place adds to a line's energy, by its force f and the terms of Tip::place: second f^2 / 2 + between f^(7/3) +
+// third f^(8/3). A power of the depth would not do: as the tip leans it stands elsewhere, and the depth is that of
+// there.
+PlaceEnergies line_energies(const LineLaw& line, Real e_m) PALPATE_RT;
 LawPoint tip_at(const Tip& tip, Real e_m) PALPATE_RT;
 // The stored energy at an indentation.
 Real tip_energy_J(const Tip& tip, Real e_m) PALPATE_RT;

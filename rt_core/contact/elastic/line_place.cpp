@@ -1,0 +1,92 @@
+#include "rt_core/contact/elastic/line_place.h"
+
+#include "rt_core/math.h"
+
+namespace palpate {
+
+namespace {
+
+// Of a capsule's radius: how deep it is at least to tell where its force acts, and how stiff it is against leaning.
+constexpr Real kLeastDepth = 1e-3, kLeastArmDepth = 1e-2;
+constexpr Real kMostBend = 0.9;   // of 1 / R, of the height's bend along the axis
+constexpr Real kMostSlide = 0.5;  // of the half axis, in one step
+constexpr Real kSkewed = 1e-3;    // an axis that leaves a side of the body's box slower than so does not
+// Beyond the body an end is that of the body: steeper than round by so much for every radius that is cut off.
+constexpr Real kSteeper = 10, kSteepest = 10;
+
+// How far the body goes on from the foot, towards either end. A body ends where its box about the rest shape does,
+// moved as the foot is; across the axis a round one leaves its box sooner, by a radius at most.
+struct Reach {
+  Real left_m = kHuge, right_m = kHuge;
+};
+void limit(Real axis, Real foot_m, Real lower_m, Real upper_m, Real radius_m, Reach& reach) PALPATE_RT {
+  const Real along = abs_of(axis);
+  if (!(along > kSkewed)) return;
+  const Real room = radius_m * (1 - along * along), inverse = 1.0 / along;
+  const Real up = (max_of(upper_m - foot_m, 0.0) + room) * inverse,
+             down = (max_of(foot_m - lower_m, 0.0) + room) * inverse;
+  reach.right_m = min_of(reach.right_m, axis > 0 ? up : down);
+  reach.left_m = min_of(reach.left_m, axis > 0 ? down : up);
+}
+Reach reach_of(const Model& model, const Box& box, Vec3 axis, const ElasticRow& row) PALPATE_RT {
+  const Triangle& triangle = model.triangle[static_cast<std::size_t>(row.foot.triangle)];
+  Vec3 rest;
+  for (int k = 0; k < 3; ++k)  // bound: 3
+    rest += row.foot.weight[k] * model.vertex_m[static_cast<std::size_t>(triangle.vertex[k])];
+  const Real radius = row.tip.margin_m;
+  Reach reach;
+  limit(axis.x, rest.x, box.lower.x, box.upper.x, radius, reach);
+  limit(axis.y, rest.y, box.lower.y, box.upper.y, radius, reach);
+  limit(axis.z, rest.z, box.lower.z, box.upper.z, radius, reach);
+  return reach;
+}
+
+// `end`: of the line where it is cut.
+Real cut(Real reach_m, Real radius_m, Real& side_m) PALPATE_RT {
+  const Real over = max_of(side_m - reach_m, 0.0);
+  side_m -= over;
+  return min_of(1 + kSteeper * over / radius_m, kSteepest);
+}
+
+// How deep the line is under the force that it had, from where it is told, by the law's power there, 1 to 1.5. What the
+// place and the body give is not of the dent: with the travel less c F jaws over a block's edge, where the other jaw
+// takes most of that back, swung from end to end (2026-11-26).
+Real dent_m(const LineLaw::Point& told, Real depth_m, Real force_N) PALPATE_RT {
+  const Real ratio = clamp_to(force_N / told.force_N, 1e-3, 1e3), root = math::cbrt(ratio * ratio);
+  const Real share = clamp_to(2 * (told.tangent_N_per_m * depth_m / told.force_N - 1), 0.0, 1.0);
+  return depth_m * (ratio + share * (root - ratio));
+}
+
+}  // namespace
+
+Real stand_on_line(const Model& model, const Box& box, Real bend_1_per_m, Real force_N, ElasticRow& row) PALPATE_RT {
+  const Real half = norm(row.tip.half_axis_w), radius = row.tip.margin_m, before = row.tip.along;
+  const Vec3 axis = (1.0 / half) * row.tip.half_axis_w;
+  const Real bend = min_of(bend_1_per_m, kMostBend / radius), lean = -dot(row.rise, axis);
+  const Real along = bend / (1.0 - bend * clamp_to(row.foot.height_m, 0.0, radius));
+  const Reach reach = reach_of(model, box, axis, row);
+  LineLaw::Shape& line = row.line;
+  line = {radius, (1 + before) * half, (1 - before) * half, 1, 1, lean, along, 2 * row.curvature_1_per_m - along,
+          false};
+  // The line stands beside the foot where it leans.
+  line.left_end = cut(reach.left_m - radius * lean, radius, line.left_m);
+  line.right_end = cut(reach.right_m + radius * lean, radius, line.right_m);
+  line.right_m = max_of(line.right_m, -line.left_m);
+  const LineLaw law(line, row.tip.modulus_Pa * row.modulus, kHuge);
+  const Real told_m = kTold * row.tip.depth_max_m;
+  row.told = law.at(told_m + law.touches_at_m());
+  const bool had = force_N > 0 && row.told.force_N > 0;
+  const Real deep =
+      max_of(had ? dent_m(row.told, told_m, force_N) : row.travel_m - law.touches_at_m(), kLeastDepth * radius);
+  const LineLaw::Lean stands = law.lean_at(law.touches_at_m() + deep);
+  row.arm_m = stands.arm_m * min_of(deep / (kLeastArmDepth * radius), 1.0);
+  row.tip.along = clamp_to(before + clamp_to(stands.to_pressure_m / half, -kMostSlide, kMostSlide), -1.0, 1.0);
+  const Real step = (row.tip.along - before) * half;
+  row.travel_m += step * (lean - 0.5 * step * bend);
+  line.lean = lean - bend * step;
+  line.left_m += step;
+  line.right_m -= step;
+  return step;
+}
+
+}  // namespace palpate

@@ -1,0 +1,81 @@
+// The normal law of a capsule's side on a half space: from a ball and Hertz' ellipse to a line with rounded ends.
+#pragma once
+
+#include "rt_core/contact/cubic_law.h"
+#include "rt_core/lanes.h"
+
+namespace palpate {
+
+// How deep the tool's lowest line lies in the surface, x along the axis from where the tip stands:
+//   d(x) = e - lowered + lean x - k x^2 / 2 on the straight part, and less c (x - end)^2 / 2R beyond either end,
+// c = 1 of a round one, and more where the body ends before it.
+// With J = int d^2 / 2, I = int d, l = int 1 over where d > 0, the energy stored is
+//   E* C(L) (1 - X) J,   L = (1 + k_c R) I^5 / J^3 over a ball's,   X = 0.179 (J / I) / (R sqrt L),
+// k_c the body's curvature across. L is Hertz' ratio of curvatures where no end is touched, and C what his integrals
+// (1882) have it to be, sqrt 2 C = L^(-1/4) (1 + b z + c z^2) / (1 + a z), z = L^(1/4) + L^(-1/4) - 2: within 0.1 %
+// for 1 <= L <= 1e4. X is a circle instead of a parabola. Forces, moment and stiffness are its slopes. Nothing is
+// fitted to boundary elements, beside which the force is at most 2.1 % off for straight halves of 0 to 4 radii,
+// curvatures along to 0.25 / R and depths of 0.02 to 0.3 R, leaning 7 % (2026-11-26, tests/elastic/test_line_law.cpp).
+// The axis's own lean lowers the line towards the surface's tangent: lowered = (1 + k R) R lean^2 / 2, and d leans by
+// (1 + k R) of it, so that one that leans far is the ball at its end, wherever it stands.
+class LineLaw {
+ public:
+  struct Shape {
+    Real radius_m, left_m, right_m;      // straight so far on either side of where the tip stands
+    Real left_end, right_end;            // c
+    Real lean;                           // slope of the depth along the axis
+    Real along_1_per_m, across_1_per_m;  // of the body; along not below zero
+    bool is_circle;                      // otherwise a parabola
+  };
+  struct Point {
+    Real force_N, tangent_N_per_m, energy_J;
+    Real energy_by_across_Jm;  // J m: by k_c
+  };
+  struct Lean {
+    Real to_pressure_m = 0;  // along the axis, from where the tip stands to where the force acts
+    Real arm_m = 0;          // moment per lean and force about there, e held; C held, too
+  };
+  LineLaw() = default;  // of no shape yet
+  // `modulus_Pa`: E*.
+  LineLaw(const Shape& shape, Real modulus_Pa, Real depth_max_m) PALPATE_RT;
+  // e: of a ball about the axis where the tip stands; beyond depth_max by the tangent. The last one is kept: a tick
+  // asks for five of its sixteen twice and more.
+  const Point& at(Real e_m) const PALPATE_RT {
+    if (!(e_m == kept_at_m_)) keep(e_m);
+    return kept_;
+  }
+  Lean lean_at(Real e_m) const PALPATE_RT;
+  // e at which the deepest place of the line touches.
+  Real touches_at_m() const PALPATE_RT { return radius_m_ * touches_at_; }
+
+ private:
+  // Where the line is in the surface: lanes of the caps beyond the left and the right end, and the straight part.
+  struct Spans {
+    Double4 from, to;                  // caps: outwards from the end; straight: from where the tip stands
+    Double4 depth;                     // at 0 there
+    Real square, first, length, ends;  // 2 J, I, l, dl/de
+  };
+  // Logarithms' slopes: of C by L's, and its second; X.
+  struct Logs {
+    Real energy;        // E / E* R^3
+    Real falls, bends;  // -d ln C / d ln L, and its slope
+    Real circle, left;  // X, 1 / (1 - X)
+  };
+  void keep(Real e_m) const PALPATE_RT;
+  bool measure(Real e) const PALPATE_RT;  // false: nothing touches
+  Spans spans_at(Real e) const PALPATE_RT;
+  Logs logs_of(const Spans& spans) const PALPATE_RT;
+
+  // Lengths in radii. Four numbers: left end, right end, and the straight part's left and right side.
+  Real radius_m_, depth_max_, modulus_Pa_;
+  Real left_, right_, tilt_, along_, rise_, across_, circle_;
+  Real lowered_, touches_at_;
+  Double4 beyond_, slope_, bend_, inverse_bend_;
+  Double4 rises_, falls_;  // of the depth along a cap and the straight part: slope and half of the bend
+  mutable Real kept_at_m_, measured_at_;
+  mutable Point kept_;
+  mutable Spans spans_;
+  mutable Logs logs_;
+};
+
+}  // namespace palpate
