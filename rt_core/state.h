@@ -182,7 +182,9 @@ struct ArticulationState : ArticulationFields {
 
 // Outputs of the last ticks, six numbers each: force, torque.
 using ForceHistory = double[6 * kForceHistory];
-using BrakeHistory = double[3 * kForceHistory];
+// What a device that evaluates the local model was told: force, point, stiffness (xx, yy, zz, yz, xz, xy).
+inline constexpr std::int32_t kToldNumbers = 12;
+using ToldHistory = double[kToldNumbers * kForceHistory];
 
 #define PALPATE_SAFETY_STATE(X)                                                                          \
   X(Mode, mode, Mode::kIdle, "of the mode machine")                                                      \
@@ -193,7 +195,7 @@ using BrakeHistory = double[3 * kForceHistory];
   X(Pose, tool_corrected_w, {}, "tool after the coupling's corrector: where the next prediction starts") \
   X(Wrench, last_good_w, {}, "last finite, clamped wrench before the gain")                              \
   X(Wrench, last_device_w, {}, "last output")                                                            \
-  X(ForceHistory, sent, {}, "last outputs, newest first; a local device's force: what is to come of it") \
+  X(ForceHistory, sent, {}, "last outputs, newest first")                                                \
   X(Vec3, stretch_slow_m, {}, "the coupling's stretch, smoothed: its damping takes the rate from it")    \
   X(double, stored_J, 0, "held by coupling and object at the last tick")                                 \
   X(double, object_J, 0, "the object's part of it")                                                      \
@@ -203,7 +205,8 @@ using BrakeHistory = double[3 * kForceHistory];
   X(Vec3, last_step_N, {}, "and its change then")                                                        \
   X(double, swings, 0, "ticks in which it changed back, lately")                                         \
   X(double, unpaid_J, 0, "while the coupling's end stands apart: held, and not given by the hand")       \
-  X(BrakeHistory, braked, {}, "of a local device: brakes in the last outputs, newest first")             \
+  X(ToldHistory, told, {}, "to a local device in the last outputs, newest first")                        \
+  X(Vec3, rendered_N, {}, "by a local device at the last sample, as it was told")                        \
   X(Vec3, ring_N, {}, "what rings since a touch, along the normal there")                                \
   X(Vec3, ring_before_N, {}, "and at the tick before")                                                   \
   X(std::int32_t, ring_ticks, 0, "until it has ended, and the next touch rings")                         \

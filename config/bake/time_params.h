@@ -60,7 +60,8 @@ inline void set_times(const SceneDesc& scene, ModelParams& p) {
   const DeviceDesc& d = scene.device;
   p.local_period_s = d.local_Hz > 0 ? 1 / d.local_Hz : 0;
   const Smoothing smoothing = smoothing_of(d, p.coupling_N_per_m, p.coupling_Nm_per_rad);
-  p.encoder_step_m = smoothing.position ? d.encoder_step_m : 0;
+  // A device with a loop of its own smooths by itself, always.
+  p.encoder_step_m = smoothing.position || d.local_Hz > 0 ? d.encoder_step_m : 0;
   p.encoder_step_rad = smoothing.angle ? d.encoder_step_rad : 0;
   const double late_s = d.local_Hz > 0 ? 0.5 * p.local_period_s : 0.5 * d.period_s + d.delay_s;
   p.coupling_Ns_per_m = is_auto(d.coupling_Ns_per_m) ? p.coupling_N_per_m * late_s : d.coupling_Ns_per_m;

@@ -113,7 +113,8 @@ void DevicePlant::evaluate_local(double elapsed_s) noexcept {
   if ((due_.flags & CommandFlag::kEnable) == 0) return;
   const bool stale = age_s_ > due_.local.valid_s;  // or none
   if (!stale) evaluated_m_ = observed_m_;
-  const LocalLoop loop{period_s, options_.force_max_N, 1e3 * options_.local_slope_share_per_ms * options_.force_max_N};
+  const LocalLoop loop{period_s, options_.force_max_N, 1e3 * options_.local_slope_share_per_ms * options_.force_max_N,
+                       options_.encoder_m};
   const LocalWay way = stale ? LocalWay{evaluated_m_, evaluated_m_} : LocalWay{before_m, observed_m_};
   const Vec3 wanted_N = local_force_N(due_.force_N, due_.local, way.to_m), last_N = motor_.force_N;
   saturated_ = saturated_ || squared_norm(wanted_N) > options_.force_max_N * options_.force_max_N;

@@ -11,6 +11,12 @@ namespace {
 // allowance 29 to 86 % of its directions were dropped at 100 to 5,000 N/m (2026-11-24), and the force held.
 constexpr double kRounding_N_per_m = 1.5 * wire::kStiffnessStep_N_per_m;
 
+// Of the stiffness: the largest eigenvalue is at most the Frobenius norm, and equal to it for the one stiff direction
+// of a contact.
+double size_of(const LocalModel& model) noexcept {
+  return square_root(squared_norm(model.along_N_per_m) + 2 * squared_norm(model.across_N_per_m));
+}
+
 // No principal minor of K + small I is below zero.
 bool is_semi_definite(Vec3 d, Vec3 o, double small) noexcept {
   const double x = d.x + small, y = d.y + small, z = d.z + small;
@@ -26,8 +32,7 @@ LocalModel bounded_model(const LocalModel& model, double most_N_per_m) noexcept 
   const bool is_number = is_finite(model.point_m) && is_finite(d) && is_finite(o);
   if (!is_number || !(model.valid_s > 0 && model.valid_s <= kLocalValid_s)) return {};
   if (!is_semi_definite(d, o, 1e-6 * max_of(d.x + d.y + d.z, 0) + kRounding_N_per_m)) return {};
-  // The largest eigenvalue is at most the Frobenius norm, and equal to it for the one stiff direction of a contact.
-  const double size = square_root(squared_norm(d) + 2 * squared_norm(o));
+  const double size = size_of(model);
   const double scale = size > most_N_per_m ? most_N_per_m / size : 1;
   LocalModel bounded = model;
   bounded.along_N_per_m = scale * d;
@@ -58,6 +63,16 @@ Vec3 moved_force_N(const LocalLoop& loop, Vec3 force_N, const LocalModel& model,
          shortened(local_force_N(force_N, model, way.from_m), loop.force_max_N);
 }
 
+namespace {
+
+double slope_N_per_s(const LocalLoop& loop, const LocalModel& model) noexcept {
+  const double per_share = 1e3 * loop.force_max_N;
+  return per_share * local_slope_share_per_ms(loop.slope_N_per_s / per_share, size_of(model), loop.encoder_step_m,
+                                              loop.force_max_N);
+}
+
+}  // namespace
+
 Vec3 next_force_N(const LocalLoop& loop, Vec3 rendered_N, Vec3 force_N, const LocalModel& model,
                   const LocalWay& way) noexcept {
   const Vec3 wanted_N = shortened(local_force_N(force_N, model, way.to_m), loop.force_max_N);
@@ -65,7 +80,7 @@ Vec3 next_force_N(const LocalLoop& loop, Vec3 rendered_N, Vec3 force_N, const Lo
   const double farthest_m = kLocalFastest_m_per_s * loop.period_s;
   const bool jumped = squared_norm(way.to_m - way.from_m) > farthest_m * farthest_m;
   const Vec3 moved_N = jumped ? rendered_N : rendered_N + moved_force_N(loop, force_N, model, way);
-  const Vec3 next_N = moved_N + shortened(wanted_N - moved_N, loop.slope_N_per_s * loop.period_s);
+  const Vec3 next_N = moved_N + shortened(wanted_N - moved_N, slope_N_per_s(loop, model) * loop.period_s);
   const Vec3 sense = unit_or(force_N, {});
   const double least_N = min_of(0, dot(rendered_N, sense)), along_N = dot(next_N, sense);
   return shortened(next_N + max_of(0, least_N - along_N) * sense, loop.force_max_N);

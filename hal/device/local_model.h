@@ -42,7 +42,8 @@ Vec3 local_force_N(Vec3 force_N, const LocalModel& model, Vec3 position_m) noexc
 struct LocalLoop {
   double period_s = 1e-4;
   double force_max_N = 0;
-  double slope_N_per_s = 0;  // of what is not the handle's motion; 0: any
+  double slope_N_per_s = 0;  // of what is not the handle's motion, where the encoder is fine; 0: any
+  double encoder_step_m = 0;
 };
 
 // The handle's way in one period.

@@ -22,6 +22,8 @@ static const float kForceStep_N = 1e-3f, kTorqueStep_Nm = 1e-4f, kStiffnessStep_
 static const int32_t kValidMost = 50;            /* of 0.1 ms */
 static const float kSlopePerSecond = 100.0f;     /* of the limit: a tenth in a millisecond */
 static const float kLocalSlopePerSecond = 90.0f; /* of a node with the local model: with its encoder's steps no more */
+static const float kEncoderPerSecond = 1.3e3f;   /* steps that a smoothed encoder may be off by, a millisecond */
+static const float kFineEncoderPerSecond = 8.0f; /* what steps may make beside that slope */
 static const float kFarthestPerSecond = 2e7f;    /* 2 m/s in steps of the position: no hand that explores */
 static const double kRounding_N_per_m = 0.015;   /* three entries of a row are off by half a step each */
 
@@ -109,7 +111,7 @@ bool hn_init(struct hn_node* node, const struct hn_config* config) {
   *node = (struct hn_node){.config = *config, .enabled = true, .let_go = true};
   const bool is_right = config->number >= 1 && config->number <= 15 && config->control_Hz >= 1000 &&
                         config->control_Hz <= 20000 && config->force_max_N > 0 && config->torque_max_Nm >= 0 &&
-                        config->stiffness_max_N_per_m >= 0;
+                        config->stiffness_max_N_per_m >= 0 && config->encoder_step_m >= 0;
   if (!is_right) node->config = (struct hn_config){.number = 0, .control_Hz = 1000};
   return is_right;
 }
@@ -169,9 +171,16 @@ static void approach(float rendered[3], const float wanted[3], float slope) {
   for (int i = 0; i < 3; ++i) rendered[i] += change[i];
 }
 
-/* Of a step of control. */
-static float force_slope(const struct hn_config* config) {
-  const float share = config->stiffness_max_N_per_m > 0 ? kLocalSlopePerSecond : kSlopePerSecond;
+/* Of a step of control; under a model a coarse encoder through its stiffness leaves less. */
+static float force_slope(const struct hn_config* config, const struct hn_command* model) {
+  float share = config->stiffness_max_N_per_m > 0 ? kLocalSlopePerSecond : kSlopePerSecond;
+  if (model) {
+    const float *d = model->along_N_per_m, *o = model->across_N_per_m;
+    const float stiffness = __builtin_sqrtf(dot(d, d) + 2 * dot(o, o));
+    const float steps = kEncoderPerSecond * stiffness * config->encoder_step_m / config->force_max_N;
+    const float less = steps > kFineEncoderPerSecond ? steps - kFineEncoderPerSecond : 0;
+    share -= less < 0.5f * share ? less : 0.5f * share;
+  }
   return share * config->force_max_N / (float)config->control_Hz;
 }
 static float torque_slope(const struct hn_config* config) {
@@ -201,7 +210,7 @@ static void render_force(struct hn_node* node, const int32_t position[3], bool g
   node->is_cut = shorten(wanted, most) || node->is_cut;
   const float against = dot(rendered, sense), square = dot(sense, sense);
   if (goes_on) add_way(node, position, wanted, rendered);
-  approach(rendered, wanted, force_slope(&node->config));
+  approach(rendered, wanted, force_slope(&node->config, goes_on ? &node->command : 0));
   const float over = (against < 0 ? against : 0) - dot(rendered, sense);
   if (square > 0 && over > 0)
     for (int i = 0; i < 3; ++i) rendered[i] += over / square * sense[i];
@@ -233,7 +242,7 @@ void hn_control(struct hn_node* node, const int32_t position[3], struct hn_motor
     render_force(node, position, goes_on);
     if (config->torque_max_Nm > 0) render_torque(node);
   } else {
-    approach(node->motors.force_N, kNone, force_slope(config));
+    approach(node->motors.force_N, kNone, force_slope(config, 0));
     approach(node->motors.torque_Nm, kNone, torque_slope(config));
   }
   for (int i = 0; i < 3; ++i) node->position[i] = position[i];

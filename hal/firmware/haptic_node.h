@@ -29,6 +29,7 @@ struct hn_config {
   float force_max_N;           /* above 0 */
   float torque_max_Nm;         /* 0: no motors for it */
   float stiffness_max_N_per_m; /* that the device keeps at control_Hz; 0: no local model is offered */
+  float encoder_step_m;        /* of the handle; 0 or more. Only a local model asks for it */
 };
 
 /* Positions in 0.1 um, device frame; orientation in 2^-15, w x y z, handle to device frame. */

@@ -1,6 +1,8 @@
 #include "rt_core/safety/hand_energy.h"
 
 #include "rt_core/decay.h"
+#include "rt_core/safety/device_shadow.h"
+#include "rt_core/safety/late_outputs.h"
 #include "rt_core/safety/local_device.h"
 #include "rt_core/safety/seat.h"
 
@@ -42,70 +44,12 @@ void add_brake(Vec3 brake_N, Vec3& force_N) PALPATE_RT {
   force_N += brake_N;
 }
 
-Vec3 at(const double* of) PALPATE_RT { return {of[0], of[1], of[2]}; }
-
-// The delay in ticks: `a` was sent its whole ones ago, `b` a tick before, and for `part` of this tick it still acted.
-struct Late {
-  const double *a, *b;
-  double part;
-  // Of the three numbers from `first` on.
-  Vec3 mean(std::int32_t first) const PALPATE_RT { return (1 - part) * at(a + first) + part * at(b + first); }
-};
-Late late_of(const Model& model, const double* newest, std::int32_t numbers) PALPATE_RT {
-  const double late = clamp_to(model.params.delay_s / model.params.period_s, 0, kForceHistory - 1.001);
-  const auto whole = static_cast<std::int32_t>(late);
-  const double* a = newest + numbers * whole;
-  return {a, a + numbers, late - whole};
-}
-
-// `now` before what a history of so many numbers a tick has.
-void remember(const double* now, std::int32_t numbers, double* history) PALPATE_RT {
-  for (std::int32_t i = numbers * kForceHistory - 1; i >= numbers; --i) history[i] = history[i - numbers];  // bound: it
-  for (std::int32_t i = 0; i < numbers; ++i) history[i] = now[i];
-}
-
-// What was sent the delay ago.
-Wrench under_way(const Model& model, const SafetyState& safety) PALPATE_RT {
-  const Late late = late_of(model, safety.sent, 6);
-  return {late.mean(0), late.mean(3)};
-}
-
 bool is_local(const Model& model) PALPATE_RT { return model.params.local_period_s > 0; }
 
-// Its outputs are remembered as what is left of them to come.
-Vec3 last_lag_N(const SafetyState& safety) PALPATE_RT { return at(safety.sent); }
-
-// What a device that evaluates the local model has not come to yet of `now_N`, after `last_N`: all of it until it has
-// been told of the contact, tau after it; from then on its slope takes from that, for the handle's own way acts at
-// once. A hand that comes in pays so much less than it is met with when it goes out: K (v tau)^2 / 2 and, with 3 ms on
-// 3 N/mm, as much again while the slope makes up for it (a tap of 0.3 m/s gave the hand 2.8 mJ where that was not
-// counted, 2026-11-25). A delay that ends within a tick leaves it the rest of that tick to follow (counted as the
-// whole, a firm hand was given 0.33 mJ at 0.7 ms on 4 N/mm, and none at 1 ms; 2026-11-25).
-Vec3 lag_N(const Model& model, const SafetyState& safety, Vec3 last_N, Vec3 now_N) PALPATE_RT {
-  if (squared_norm(last_N) == 0) return now_N;
-  const Vec3 lag = last_lag_N(safety);
-  if (squared_norm(lag) == 0) return {};
-  const auto [a, b, part] = late_of(model, safety.sent, 6);
-  if (squared_norm(at(a)) == 0) return now_N;
-  const bool told_before = squared_norm(at(b)) != 0;
-  const double share = told_before ? 1 : 1 - part;  // of this tick, in which it was told
-  const ModelParams& p = model.params;
-  const double made_up_N = share * 1e3 * kLocalSlopeShare_per_ms * p.period_s * p.force_max_N;
-  const Vec3 left = lag + (1 - share) * (now_N - last_N);
-  return max_of(0, 1 - made_up_N / max_of(norm(left), kNothing)) * left;
-}
-
-// What acted on the handle between the last two samples: an output takes the delay to arrive; but a device that
-// evaluates the local model pushes with what the last tick said at the beginning and with `now_N` at the end, each less
-// what it has not come to. It obeys a brake the delay later: counted at once, as what acts already, brakes that a
-// contact's end cuts off were taken for paid (2026-11-25: 0.27 mJ to a light hand, 3 ms, b 0.25 N s/m).
-Wrench acted(const Model& model, const SafetyState& safety, Vec3 now_N) PALPATE_RT {
-  const Wrench held = under_way(model, safety);
-  if (!is_local(model)) return held;
-  const Vec3 last_N = safety.last_device_w.force_N;
-  const Vec3 before_N = last_N - last_lag_N(safety), after_N = now_N - lag_N(model, safety, last_N, now_N);
-  const Vec3 brake_N = late_of(model, safety.braked, 3).mean(0);
-  return {0.5 * (before_N - at(safety.braked) + after_N) + brake_N, held.torque_Nm};
+// What acted on the handle between the last two samples: an output takes the delay to arrive.
+Wrench acted(const Model& model, State& state) PALPATE_RT {
+  const Late late = late_of(model.params, state.safety.sent, 6);
+  return {is_local(model) ? shadow_device(model, state) : late.mean(0), late.mean(3)};
 }
 
 // Energy of a spring whose force stays at `most` from there on.
@@ -126,7 +70,7 @@ double joint_work_J(const State& state, const Scratch& scratch) PALPATE_RT {
 }
 
 bool nothing_sent(const SafetyState& safety) PALPATE_RT {
-  if (squared_norm(safety.last_device_w.force_N) != 0) return false;
+  if (squared_norm(safety.last_device_w.force_N) != 0 || squared_norm(safety.rendered_N) != 0) return false;
   for (const double value : safety.sent) {  // bound: 6 kForceHistory
     if (value != 0) return false;
   }
@@ -175,7 +119,7 @@ void drain_energy(const Model& model, State& state, Scratch& scratch, const Inpu
       scratch.energy_J + spring_J(norm(stretch.translation_m), p.coupling_N_per_m, p.force_max_N) +
       spring_J(norm(stretch.rotation_rad), p.coupling_Nm_per_rad, p.torque_max_Nm > 0 ? p.torque_max_Nm : kHuge);
   const Twist way = twist_between(state.device_previous_w, state.device_w);
-  const Wrench on_handle = acted(model, safety, force_N);
+  const Wrench on_handle = acted(model, state);
   const bool counts = safety.mode == Mode::kForce && safety.ramp >= 1 && input.stale_ticks == 0 &&
                       input.overrun_ticks == 0 && (scratch.status & Status::kInputRejected) == 0 &&
                       state.live.moves == 0 && state.late.moves == 0;
@@ -188,15 +132,10 @@ void drain_energy(const Model& model, State& state, Scratch& scratch, const Inpu
   safety.object_w = scratch.contact_wrench_w;
   safety.surplus_J = counts && is_finite(made_J) ? max_of(-kCreditShare * most_J, safety.surplus_J + made_J) : 0.0;
   if (squared_norm(force_N) == 0 && nothing_sent(safety)) safety.surplus_J = 0;
-  const Vec3 unbraked_N = force_N;
   brake_surplus(model, state, scratch, way.translation_m, force_N);
-  if (!is_local(model)) return;
-  const Vec3 brake_N = force_N - unbraked_N;
-  const double now[3] = {brake_N.x, brake_N.y, brake_N.z};
-  remember(now, 3, safety.braked);
 }
 
-bool is_unstable(const Model& model, SafetyState& safety, Vec3 force_N) PALPATE_RT {
+bool is_unstable(const Model& model, SafetyState& safety, Vec3 force_N, double hand_m_per_s) PALPATE_RT {
   const ModelParams& p = model.params;
   const Vec3 step = force_N - safety.last_coupling_N;
   const double least = max_of(kSwingLeast_N, kSwingShare * p.force_max_N);
@@ -205,16 +144,18 @@ bool is_unstable(const Model& model, SafetyState& safety, Vec3 force_N) PALPATE_
   safety.swings = settled(kSwingKept * safety.swings + (back ? 1 : 0));
   safety.last_step_N = step;
   safety.last_coupling_N = force_N;
-  const double held_J = 0.5 * p.force_max_N * p.force_max_N / p.coupling_N_per_m;
+  const double slope_J =
+      is_local(model) ? hand_m_per_s * p.force_max_N / (2e3 * kLocalSlopeShare_per_ms) : 0.0;  // v F^2 / (2 slope)
+  const double held_J = 0.5 * p.force_max_N * p.force_max_N / p.coupling_N_per_m + slope_J;
   const double most_J = max_of(kKick_J, max_of(held_J, kStoredShare * safety.stored_J));
   return safety.swings > kSwingsMost || safety.surplus_J > most_J;
 }
 
-void remember_output(const Model& model, SafetyState& safety, Vec3 last_N) PALPATE_RT {
+void remember_output(const Model& model, SafetyState& safety, const LocalFelt& told) PALPATE_RT {
   const Wrench& w = safety.last_device_w;
-  const Vec3 force_N = is_local(model) ? lag_N(model, safety, last_N, w.force_N) : w.force_N;
-  const double now[6] = {force_N.x, force_N.y, force_N.z, w.torque_Nm.x, w.torque_Nm.y, w.torque_Nm.z};
+  const double now[6] = {w.force_N.x, w.force_N.y, w.force_N.z, w.torque_Nm.x, w.torque_Nm.y, w.torque_Nm.z};
   remember(now, 6, safety.sent);
+  if (is_local(model)) remember_told(safety, told);
 }
 
 }  // namespace palpate

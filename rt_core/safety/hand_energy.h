@@ -27,11 +27,13 @@ void drain_energy(const Model& model, State& state, Scratch& scratch, const Inpu
                   Vec3& force_N) PALPATE_RT;
 
 // True when the coupling's force has changed its sense of change in most of the last ticks, or when the surplus is more
-// than the coupling holds at the largest force, and than 0.3 of all that is stored: Fault::kUnstable.
-bool is_unstable(const Model& model, SafetyState& safety, Vec3 force_N) PALPATE_RT;
+// than the coupling holds at the largest force, and than 0.3 of all that is stored: Fault::kUnstable. A device that
+// evaluates the local model lets go of the largest force by its slope, which gives a hand that leaves at
+// `hand_m_per_s` so much more.
+bool is_unstable(const Model& model, SafetyState& safety, Vec3 force_N, double hand_m_per_s) PALPATE_RT;
 
-// The output of this tick, after `last_N`, into the history of those that may still be under way; of a device that
-// evaluates the local model what it has not come to of them.
-void remember_output(const Model& model, SafetyState& safety, Vec3 last_N) PALPATE_RT;
+// The output of this tick into the history of those that may still be under way, with what a device that evaluates the
+// local model is `told` besides.
+void remember_output(const Model& model, SafetyState& safety, const LocalFelt& told) PALPATE_RT;
 
 }  // namespace palpate

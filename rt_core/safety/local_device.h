@@ -1,5 +1,5 @@
 // What a device that evaluates the local model does by itself (docs/wire_protocol.md), as far as the controller's
-// account must know of it; hal/device/local_model.h is the device.
+// account must know of it (device_shadow.h); hal/device/local_model.h is the device.
 #pragma once
 
 #include "rt_core/base.h"
@@ -9,6 +9,19 @@ namespace palpate {
 // What commands change of its force in a millisecond, as a share of its limit. Below a tenth by what an encoder's step
 // of 30 um, smoothed to half of it, makes of 4.3 N/mm on 8.5 N: 0.8 %, measured 0.6 (2026-11-25).
 inline constexpr Real kLocalSlopeShare_per_ms = 0.09;
+inline constexpr Real kFineEncoderShare = 0.008;
+
+// Where steps of its encoder through the stiffness it is told make more than that, the slope is less by so much: what
+// commands and they change together stays below a tenth. Smoothed within half a step of what was told, the handle's
+// place is off by at most a step either way, so by two in a millisecond; 1.23 of them is the most that 180 jumps of the
+// encoder made. With the slope of a fine encoder, ones of 50 to 100 um stepped by 10.1 to 11.2 % (2026-11-26). It is
+// never less than a half.
+inline constexpr Real kEncoderSteps_per_ms = 1.3;
+inline Real local_slope_share_per_ms(Real share, Real stiffness_N_per_m, Real encoder_step_m,
+                                     Real force_max_N) PALPATE_RT {
+  const Real steps = kEncoderSteps_per_ms * stiffness_N_per_m * encoder_step_m / force_max_N;
+  return max_of(0.5 * share, min_of(share, share + kFineEncoderShare - steps));
+}
 
 // A hand that explores stays below 1 m/s; what goes twice as fast is an encoder that jumped, and makes no force but by
 // the slope. In a period of 0.1 ms that is 0.2 mm: what a shorter jump makes is 10 % of 8.5 N on 4.3 N/mm.

@@ -115,7 +115,7 @@ Asked judge(const Model& model, State& state, Scratch& scratch, const Input& inp
 
   std::uint32_t faults = 0;
   if (input.drive == Drive::kDevice && is_finite_wrench(wrench)) {
-    if (is_unstable(model, safety, wrench.force_N)) faults |= Fault::kUnstable;
+    if (is_unstable(model, safety, wrench.force_N, norm(state.hand_velocity_m_per_s))) faults |= Fault::kUnstable;
     add_coupling_damping(model, safety, wrench.force_N);
     ring(model, state, scratch, wrench.force_N);
     drain_energy(model, state, scratch, input, given_J, wrench.force_N);
@@ -149,6 +149,19 @@ void find_mode(const Model& model, State& state, Scratch& scratch, const Input& 
   if (safety.ramp < 1 && safety.mode != Mode::kIdle) scratch.status |= Status::kRamping;
 }
 
+// How that answers the handle's motion, for a device that evaluates it.
+LocalFelt told_with_output(const Model& model, const State& state, const Scratch& scratch,
+                           const FeltStiffness& felt) PALPATE_RT {
+  const SafetyState& safety = state.safety;
+  const LocalFelt told = local_felt(model, state, felt);
+  // Nobody knows where the handle is whose sample was refused: the force alone, not a spring from there.
+  if ((scratch.status & Status::kInputRejected) != 0) return {{}, told.point_w_m};
+  // Without a force there is no sense that it may not turn round against: a spring would pull.
+  constexpr double kWireStep_N = 1e-3;
+  if (squared_norm(safety.last_device_w.force_N) < kWireStep_N * kWireStep_N) return {{}, told.point_w_m};
+  return {safety.ramp * told.felt, told.point_w_m};
+}
+
 // What one hand's device is sent, into state.safety.last_device_w; and how that answers the handle's motion.
 LocalFelt put_out(const Model& model, State& state, Scratch& scratch, const Input& input,
                   const FeltStiffness& felt) PALPATE_RT {
@@ -159,21 +172,15 @@ LocalFelt put_out(const Model& model, State& state, Scratch& scratch, const Inpu
     return {{}, state.device_w.position_m};
   }
   const bool local = model.params.local_period_s > 0;
-  const Vec3 last_N = safety.last_device_w.force_N;
   if (local) {
     const FeltStiffness before = safety.ramp * share_below_limit(model, state, felt, -1, 0) * felt;
     safety.last_device_w = followed(state, before, model.params.period_s, safety.last_device_w);
   }
   safety.last_device_w = rate_limited(model, within_limits(model, safety.last_device_w), scaled, scratch);
-  remember_output(model, safety, last_N);
-  if (!local) return {{}, state.device_w.position_m};
-  const LocalFelt told = local_felt(model, state, felt);
-  // Nobody knows where the handle is whose sample was refused: the force alone, not a spring from there.
-  if ((scratch.status & Status::kInputRejected) != 0) return {{}, told.point_w_m};
-  // Without a force there is no sense that it may not turn round against: a spring would pull.
-  constexpr double kWireStep_N = 1e-3;
-  if (squared_norm(safety.last_device_w.force_N) < kWireStep_N * kWireStep_N) return {{}, told.point_w_m};
-  return {safety.ramp * told.felt, told.point_w_m};
+  const LocalFelt told =
+      local ? told_with_output(model, state, scratch, felt) : LocalFelt{{}, state.device_w.position_m};
+  remember_output(model, safety, told);
+  return told;
 }
 
 void put_out_second(const Model& model, State& state, Scratch& scratch, const Input& input, const FeltStiffness& felt,

@@ -16,7 +16,7 @@ namespace palpate {
 namespace {
 
 constexpr int kNode = 3;
-constexpr hn_config kConfig{kNode, 10000, 8.5f, 0.2f, 3000.0f};
+constexpr hn_config kConfig{kNode, 10000, 8.5f, 0.2f, 3000.0f, 5e-5f};
 
 Vec3 vector_of(const float (&v)[3]) {
   return {static_cast<Real>(v[0]), static_cast<Real>(v[1]), static_cast<Real>(v[2])};
@@ -122,7 +122,7 @@ TEST_F(HapticNode, EvaluatesTheLocalModelAsTheSimulatedDeviceDoes) {
 // the limit. 1e-5 N is what single precision makes of 30 N in a dozen sums.
 TEST_F(HapticNode, ComesToAForceAsTheSimulatedDeviceDoes) {
   constexpr double kMax_N = 8.5;
-  const LocalLoop loop{1e-4, kMax_N, 1e3 * kLocalSlopeShare_per_ms * kMax_N};
+  const LocalLoop loop{1e-4, kMax_N, 1e3 * kLocalSlopeShare_per_ms * kMax_N, 5e-5};
   std::mt19937_64 draw(5);
   std::normal_distribution<double> part;
   arm();
@@ -252,8 +252,9 @@ TEST_F(HapticNode, RefusesWhatIsNoCommandOfItsOwn) {
 }
 
 TEST(HapticNodeSettings, OutOfRangeRenderNothing) {
-  const hn_config wrong[] = {{0, 10000, 8, 0, 0}, {16, 10000, 8, 0, 0}, {1, 999, 8, 0, 0},   {1, 20001, 8, 0, 0},
-                             {1, 10000, 0, 0, 0}, {1, 10000, 8, -1, 0}, {1, 10000, 8, 0, -1}};
+  const hn_config wrong[] = {{0, 10000, 8, 0, 0, 0},  {16, 10000, 8, 0, 0, 0}, {1, 999, 8, 0, 0, 0},
+                             {1, 20001, 8, 0, 0, 0},  {1, 10000, 0, 0, 0, 0},  {1, 10000, 8, -1, 0, 0},
+                             {1, 10000, 8, 0, -1, 0}, {1, 10000, 8, 0, 0, -1}};
   for (const hn_config& config : wrong) {
     hn_node node;
     EXPECT_FALSE(hn_init(&node, &config));

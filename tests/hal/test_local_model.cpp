@@ -5,11 +5,16 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <utility>
+#include <vector>
 
 #include "hal/bus/codec.h"
 #include "hal/bus/device_bus.h"
 #include "hal/device/device_sim.h"
 #include "hal/device/kinematics.h"
+#include "rt_core/safety/device_shadow.h"
+#include "tests/support/roomy.h"
+#include "tests/support/tiny_image.h"
 
 namespace palpate {
 namespace {
@@ -205,6 +210,71 @@ TEST(LocalModel, WhatIsLeftOverDoesNotPull) {
   }
   force_N = next_force_N(kLoop, {-1, 0, 0}, {2, 0, 0}, wall(4000), {{0.02, 0, 0}, {0.0201, 0, 0}});
   EXPECT_NEAR(force_N.x, -0.91, 1e-12);
+}
+
+// The controller's shadow of a device (rt_core/safety/device_shadow.h) against that device's own law, ten steps a tick:
+// a hand that taps an object which stiffens, braked in every other tick on its way out, told after any delay. A step's
+// own force, held for 0.1 ms on 0.5 m/s and 4 N/mm, is 0.1 N off the mean of it.
+TEST(DeviceShadow, RendersWhatTheDeviceDoes) {
+  constexpr double kTicks = 50, kDeep_m = 4e-3;
+  for (const double delay_s : {0.0, 3e-4, 1e-3, 2.7e-3}) {
+    Model model;
+    model.params = test::tiny_params();
+    ModelParams& p = model.params;
+    p.local_period_s = 1e-4;
+    p.encoder_step_m = 5e-5;
+    p.delay_s = delay_s;
+    const StatePtr state = test::roomy_state();
+    SafetyState& safety = state->safety;
+    const LocalLoop loop{1e-4, p.force_max_N, 1e3 * kLocalSlopeShare_per_ms * p.force_max_N, 5e-5};
+    const auto place = [&](double ticks) { return Vec3{-kDeep_m * std::sin(2 * kPi * ticks / kTicks), 0, 0}; };
+    std::vector<std::pair<Vec3, LocalModel>> told;
+    Vec3 rendered_N, at_m = place(0);
+    double worst_N = 0, work_J = 0, shadow_J = 0, given_J = 0;
+    for (int n = 0; n < 200; ++n) {
+      const double in_m = std::max(0.0, -place(n).x), stiffness = in_m > 0 ? 800 + 4e5 * in_m : 0;
+      const double brake_N = n % 50 > 15 && n % 2 == 0 ? 0.8 : 0;
+      const Vec3 force_N{std::max(0.0, 800 * in_m + 2e5 * in_m * in_m - brake_N), 0, 0};
+      told.push_back({force_N, {place(n), {stiffness, 0, 0}, {}, kLocalValid_s}});
+      safety.last_device_w.force_N = force_N;
+      remember_told(safety, {{{stiffness, 0, 0}, {}}, place(n)});
+      Vec3 mean_N;
+      for (int i = 0; i < 10; ++i) {
+        const auto command = static_cast<int>(std::floor(n + 0.1 * i - 1e3 * delay_s + 1e-6));
+        const auto [now_N, local] =
+            command < 0 ? std::pair{Vec3{}, LocalModel{}} : told[static_cast<std::size_t>(command)];
+        const Vec3 to_m = place(n + 0.1 * i);
+        rendered_N = next_force_N(loop, rendered_N, now_N, local, {at_m, to_m});
+        at_m = to_m;
+        mean_N += 0.1 * rendered_N;
+      }
+      state->device_previous_w.position_m = place(n);
+      state->device_w.position_m = place(n + 1);
+      const Vec3 shadow_N = shadow_device(model, *state), way_m = place(n + 1) - place(n);
+      worst_N = std::max(worst_N, norm(shadow_N - mean_N));
+      work_J += dot(mean_N, way_m);
+      shadow_J += dot(shadow_N, way_m);
+      given_J += std::max(0.0, dot(mean_N, way_m));
+    }
+    EXPECT_LT(worst_N, 0.1) << delay_s;
+    EXPECT_GT(given_J, 0.02) << delay_s;  // in four taps
+    // In the ticks in which a force begins, turns or ends 0.04 mJ each: 1.5 % of what a tap gives back.
+    EXPECT_NEAR(shadow_J, work_J, 0.02 * given_J) << delay_s;
+  }
+}
+
+// Coarse steps through a stiff spring leave less of the slope, a fine encoder's all of it, and never less than a half.
+TEST(LocalModel, ACoarseEncoderLeavesLessOfTheSlope) {
+  const auto step_N = [](double encoder_m, double stiffness) {
+    LocalLoop loop = kLoop;
+    loop.slope_N_per_s = 90 * loop.force_max_N;
+    loop.encoder_step_m = encoder_m;
+    return next_force_N(loop, {}, {2, 0, 0}, wall(stiffness), {{0.01, 0, 0}, {0.01, 0, 0}}).x;
+  };
+  EXPECT_NEAR(step_N(0, 2000), 9e-3 * 8.5, 1e-12);
+  EXPECT_NEAR(step_N(2e-5, 1500), 9e-3 * 8.5, 1e-12);
+  EXPECT_NEAR(step_N(1e-4, 2000), 0.1 * (0.098 * 8.5 - 1.3 * 0.2), 1e-12);  // a millisecond's: 1.3 steps of 0.2 N less
+  EXPECT_NEAR(step_N(1e-3, 2000), 0.5 * 9e-3 * 8.5, 1e-12);
 }
 
 // Largest change of the force in a millisecond under commands that mean harm, on a handle that friction holds still

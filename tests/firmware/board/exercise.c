@@ -57,8 +57,12 @@ __attribute__((noinline)) void measured_step(struct hn_node* node, uint32_t iden
 
 uint32_t exercise(int steps) {
   static struct hn_node node;
-  const struct hn_config config = {
-      .number = 1, .control_Hz = 10000, .force_max_N = 8.5f, .torque_max_Nm = 0.2f, .stiffness_max_N_per_m = 2000.0f};
+  const struct hn_config config = {.number = 1,
+                                   .control_Hz = 10000,
+                                   .force_max_N = 8.5f,
+                                   .torque_max_Nm = 0.2f,
+                                   .stiffness_max_N_per_m = 2000.0f,
+                                   .encoder_step_m = 1e-4f};
   struct hn_handle handle = {.quaternion = {32767, 0, 0, 0}};
   uint32_t hash = 2166136261u;
   uint16_t number = 0;
