@@ -11,12 +11,6 @@ namespace {
 // allowance 29 to 86 % of its directions were dropped at 100 to 5,000 N/m (2026-11-24), and the force held.
 constexpr double kRounding_N_per_m = 1.5 * wire::kStiffnessStep_N_per_m;
 
-// Of the stiffness: the largest eigenvalue is at most the Frobenius norm, and equal to it for the one stiff direction
-// of a contact.
-double size_of(const LocalModel& model) noexcept {
-  return square_root(squared_norm(model.along_N_per_m) + 2 * squared_norm(model.across_N_per_m));
-}
-
 // No principal minor of K + small I is below zero.
 bool is_semi_definite(Vec3 d, Vec3 o, double small) noexcept {
   const double x = d.x + small, y = d.y + small, z = d.z + small;
@@ -32,7 +26,7 @@ LocalModel bounded_model(const LocalModel& model, double most_N_per_m) noexcept 
   const bool is_number = is_finite(model.point_m) && is_finite(d) && is_finite(o);
   if (!is_number || !(model.valid_s > 0 && model.valid_s <= kLocalValid_s)) return {};
   if (!is_semi_definite(d, o, 1e-6 * max_of(d.x + d.y + d.z, 0) + kRounding_N_per_m)) return {};
-  const double size = size_of(model);
+  const double size = stiffness_size(d, o);
   const double scale = size > most_N_per_m ? most_N_per_m / size : 1;
   LocalModel bounded = model;
   bounded.along_N_per_m = scale * d;
@@ -67,8 +61,9 @@ namespace {
 
 double slope_N_per_s(const LocalLoop& loop, const LocalModel& model) noexcept {
   const double per_share = 1e3 * loop.force_max_N;
-  return per_share * local_slope_share_per_ms(loop.slope_N_per_s / per_share, size_of(model), loop.encoder_step_m,
-                                              loop.force_max_N);
+  return per_share * local_slope_share_per_ms(loop.slope_N_per_s / per_share,
+                                              stiffness_size(model.along_N_per_m, model.across_N_per_m),
+                                              loop.encoder_step_m, loop.force_max_N);
 }
 
 }  // namespace

@@ -30,8 +30,7 @@ struct LocalModel {
 
 // A command's model is refused as a whole, {} then, when a number is none, when the stiffness is not positive
 // semi-definite (to a millionth of its trace and what the wire rounds), or when it claims to be valid for longer than
-// kLocalValid_s; a stiffness whose norm (the root of the squares of all nine entries) is above `most_N_per_m` is scaled
-// down to it.
+// kLocalValid_s; a stiffness that is above `most_N_per_m` along a line (stiffness_size) is scaled down to it.
 inline constexpr double kLocalValid_s = 5e-3;
 LocalModel bounded_model(const LocalModel& model, double most_N_per_m) noexcept;
 

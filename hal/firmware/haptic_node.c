@@ -70,6 +70,19 @@ static bool is_semi_definite(const float along[3], const float across[3]) {
   return x >= 0 && y >= 0 && z >= 0 && xy >= 0 && xz >= 0 && yz >= 0 && all >= 0;
 }
 
+static float larger(float a, float b) { return a > b ? a : b; }
+
+/* Along any line, at most: no eigenvalue is larger than the root of the squares of all nine entries, nor than the
+ * largest row of sizes. */
+static float stiffness_of(const struct hn_command* model) {
+  const float *d = model->along_N_per_m, *o = model->across_N_per_m;
+  const float x = __builtin_fabsf(o[0]), y = __builtin_fabsf(o[1]), z = __builtin_fabsf(o[2]);
+  const float row =
+      larger(__builtin_fabsf(d[0]) + z + y, larger(__builtin_fabsf(d[1]) + z + x, __builtin_fabsf(d[2]) + y + x));
+  const float root = __builtin_sqrtf(dot(d, d) + 2 * dot(o, o));
+  return row < root ? row : root;
+}
+
 /* The model of a command, within what the device keeps; none when it is not one. */
 static void take_model(const struct hn_config* config, const uint8_t* data, struct hn_command* command) {
   const int32_t valid = data[45];
@@ -80,9 +93,7 @@ static void take_model(const struct hn_config* config, const uint8_t* data, stru
     command->point[i] = get24s(data + 36 + 3 * i);
   }
   if (!is_semi_definite(command->along_N_per_m, command->across_N_per_m)) return;
-  /* The largest eigenvalue is at most the Frobenius norm. */
-  const float size = __builtin_sqrtf(dot(command->along_N_per_m, command->along_N_per_m) +
-                                     2 * dot(command->across_N_per_m, command->across_N_per_m));
+  const float size = stiffness_of(command);
   if (size > config->stiffness_max_N_per_m) {
     const float scale = config->stiffness_max_N_per_m / size;
     for (int i = 0; i < 3; ++i) {
@@ -175,9 +186,7 @@ static void approach(float rendered[3], const float wanted[3], float slope) {
 static float force_slope(const struct hn_config* config, const struct hn_command* model) {
   float share = config->stiffness_max_N_per_m > 0 ? kLocalSlopePerSecond : kSlopePerSecond;
   if (model) {
-    const float *d = model->along_N_per_m, *o = model->across_N_per_m;
-    const float stiffness = __builtin_sqrtf(dot(d, d) + 2 * dot(o, o));
-    const float steps = kEncoderPerSecond * stiffness * config->encoder_step_m / config->force_max_N;
+    const float steps = kEncoderPerSecond * stiffness_of(model) * config->encoder_step_m / config->force_max_N;
     const float less = steps > kFineEncoderPerSecond ? steps - kFineEncoderPerSecond : 0;
     share -= less < 0.5f * share ? less : 0.5f * share;
   }

@@ -27,7 +27,7 @@ Vec3 evaluated_N(const ModelParams& p, const Told& told, Vec3 at_m) PALPATE_RT {
 }
 
 Real slope_N_per_tick(const ModelParams& p, const FeltStiffness& felt) PALPATE_RT {
-  const Real stiffness = square_root(squared_norm(felt.along) + 2 * squared_norm(felt.across));
+  const Real stiffness = stiffness_size(felt.along, felt.across);
   return 1e3 * p.period_s * p.force_max_N *
          local_slope_share_per_ms(kLocalSlopeShare_per_ms, stiffness, p.encoder_step_m, p.force_max_N);
 }

@@ -2,9 +2,19 @@
 // account must know of it (device_shadow.h); hal/device/local_model.h is the device.
 #pragma once
 
-#include "rt_core/base.h"
+#include "rt_core/vec.h"
 
 namespace palpate {
+
+// The stiffest that a symmetric stiffness (xx, yy, zz; yz, xz, xy) is along any line, at most: no eigenvalue is larger
+// than the root of the squares of all nine entries, which one stiff direction comes to, nor than the largest row of
+// sizes, which three of about the same do. The first alone took a device for 1.7 times as stiff as it was told where
+// friction holds the tool, and cut that down (2026-11-26).
+inline Real stiffness_size(Vec3 along, Vec3 across) PALPATE_RT {
+  const Real x = abs_of(across.x), y = abs_of(across.y), z = abs_of(across.z);
+  const Real row = max_of(abs_of(along.x) + z + y, max_of(abs_of(along.y) + z + x, abs_of(along.z) + y + x));
+  return min_of(row, square_root(squared_norm(along) + 2 * squared_norm(across)));
+}
 
 // What commands change of its force in a millisecond, as a share of its limit. Below a tenth by what an encoder's step
 // of 30 um, smoothed to half of it, makes of 4.3 N/mm on 8.5 N: 0.8 %, measured 0.6 (2026-11-25).

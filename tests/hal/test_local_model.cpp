@@ -58,6 +58,26 @@ TEST(LocalModel, MustBePositiveSemiDefinite) {
 
 TEST(LocalModel, IsNoStifferThanTheDeviceAllows) {
   EXPECT_NEAR(bounded_model(wall(9000), 4000).along_N_per_m.x, 4000, 1e-9);
+  LocalModel held = wall(3900);  // by friction too: as stiff in each direction, and no stiffer in any
+  held.along_N_per_m = {3900, 3900, 3900};
+  EXPECT_EQ(bounded_model(held, 4000).along_N_per_m, held.along_N_per_m);
+  // Whatever it was, it pushes by no more than 4000 N/m along any line.
+  std::mt19937_64 draw(4);
+  std::normal_distribution<double> part;
+  for (int i = 0; i < 2000; ++i) {
+    LocalModel model{{}, {}, {}, 1e-3};
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 n{part(draw), part(draw), part(draw)};
+      model.along_N_per_m += 3000 * Vec3{n.x * n.x, n.y * n.y, n.z * n.z};
+      model.across_N_per_m += 3000 * Vec3{n.y * n.z, n.x * n.z, n.x * n.y};
+    }
+    const LocalModel bounded = bounded_model(model, 4000);
+    const Vec3 d = bounded.along_N_per_m, o = bounded.across_N_per_m,
+               u = unit_or({part(draw), part(draw), part(draw)}, {1, 0, 0});
+    const Vec3 push{d.x * u.x + o.z * u.y + o.y * u.z, o.z * u.x + d.y * u.y + o.x * u.z,
+                    o.y * u.x + o.x * u.y + d.z * u.z};
+    ASSERT_LE(norm(push), 4000 * (1 + 1e-12)) << i;
+  }
 }
 
 TEST(LocalModel, PushesByHookeAndNeverPullsBack) {
