@@ -325,9 +325,10 @@ class Compiler {
   }
 
   // The coupling a scene states, refused above the bound; or its share of the bound.
-  double coupling(double stated, const StiffnessBound& bound, double lowest, const char* key, const char* unit) const {
+  double coupling(double stated, double share, const StiffnessBound& bound, double lowest, const char* key,
+                  const char* unit) const {
     const std::string reason = reason_of(bound);
-    const double value = is_auto(stated) ? kCouplingShare * bound.value : stated;
+    const double value = is_auto(stated) ? share * bound.value : stated;
     if (!(value <= bound.value))
       fail(key, number_text(stated) + " " + unit + " is above what the device admits, " + number_text(bound.value) +
                     " " + unit + " = " + reason + "; lower it, or state a device with more damping or less delay");
@@ -352,11 +353,13 @@ class Compiler {
                                          d.delay_s, d.local_Hz);
     report_.rotational_bound = admissible_stiffness(d.damping_Nms_per_rad / hands, d.friction_Nm,
                                                     hands * d.encoder_step_rad, d.period_s, d.delay_s);
-    p.coupling_N_per_m = coupling(d.coupling_N_per_m, report_.bound, 1, "device.coupling_N_per_m", "N/m");
+    p.coupling_N_per_m =
+        coupling(d.coupling_N_per_m, coupling_share(d.local_Hz), report_.bound, 1, "device.coupling_N_per_m", "N/m");
     if (is_auto(d.coupling_N_per_m))
       p.coupling_N_per_m = std::min(p.coupling_N_per_m, impact_coupling_N_per_m(d.local_Hz, d.delay_s, d.force_max_N));
-    p.coupling_Nm_per_rad = std::min(
-        coupling(d.coupling_Nm_per_rad, report_.rotational_bound, 1e-6, "device.coupling_Nm_per_rad", "N m/rad"), 1e4);
+    p.coupling_Nm_per_rad = std::min(coupling(d.coupling_Nm_per_rad, coupling_share(0), report_.rotational_bound, 1e-6,
+                                              "device.coupling_Nm_per_rad", "N m/rad"),
+                                     1e4);
     report_.coupling_N_per_m = p.coupling_N_per_m;
     report_.coupling_Nm_per_rad = p.coupling_Nm_per_rad;
     report_.smoothing = smoothing_of(d, p.coupling_N_per_m, p.coupling_Nm_per_rad);

@@ -39,7 +39,4 @@ struct FrictionCoefficients {
 };
 FrictionCoefficients friction_coefficients(const FrictionDesc& friction);
 
-// Share of the bound used when a scene says "auto": the bound assumes exact device data.
-inline constexpr double kCouplingShare = 0.8;
-
 }  // namespace palpate

@@ -18,9 +18,6 @@ constexpr const char* kHead =
     "| scene | b N s/m | tau ms | coupling N/m | felt N/mm | port mJ | hand mJ | runs that swing | with a fault | runs "
     "| verdict |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
 
-// As the baker's: what is left to a device that is not quite what it was said to be.
-constexpr double kCouplingShare = 0.8;
-
 void add_run(const FeelRun& run, const std::string& where, GridCell& cell) {
   const FeelFigures& f = run.figures;
   cell.runs += 1;
@@ -53,13 +50,13 @@ Model baked_for(const Model& model, const SceneDesc& scene, double damping, doub
   p.delay_s = delay_s;
   const StiffnessBound bound =
       admissible_stiffness(damping, scene.device.friction_N, encoder_m, p.period_s, delay_s, scene.device.local_Hz);
-  p.coupling_N_per_m = std::clamp(
-      std::min(kCouplingShare * bound.value, impact_coupling_N_per_m(scene.device.local_Hz, delay_s, p.force_max_N)),
-      1.0, 1e4);
+  p.coupling_N_per_m = std::clamp(std::min(coupling_share(scene.device.local_Hz) * bound.value,
+                                           impact_coupling_N_per_m(scene.device.local_Hz, delay_s, p.force_max_N)),
+                                  1.0, 1e4);
   // Torques are held, whatever the device does by itself.
   const StiffnessBound turning = admissible_stiffness(scene.device.damping_Nms_per_rad, scene.device.friction_Nm,
                                                       scene.device.encoder_step_rad, p.period_s, delay_s);
-  p.coupling_Nm_per_rad = std::clamp(kCouplingShare * turning.value, 1e-6, 1e4);
+  p.coupling_Nm_per_rad = std::clamp(coupling_share(0) * turning.value, 1e-6, 1e4);
   SceneDesc stated = scene;
   stated.device.delay_s = delay_s;
   stated.device.encoder_step_m = encoder_m;
