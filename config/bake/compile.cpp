@@ -327,13 +327,13 @@ class Compiler {
   // The coupling a scene states, refused above the bound; or its share of the bound.
   double coupling(double stated, double share, const StiffnessBound& bound, double lowest, const char* key,
                   const char* unit) const {
-    const std::string reason = reason_of(bound);
     const double value = is_auto(stated) ? share * bound.value : stated;
     if (!(value <= bound.value))
       fail(key, number_text(stated) + " " + unit + " is above what the device admits, " + number_text(bound.value) +
-                    " " + unit + " = " + reason + "; lower it, or state a device with more damping or less delay");
+                    " " + unit + " = " + reason_of(bound) +
+                    "; lower it, or state a device with more damping or less delay");
     if (!(value >= lowest))
-      fail(key, "the device admits only " + number_text(bound.value) + " " + unit + " = " + reason +
+      fail(key, "the device admits only " + number_text(bound.value) + " " + unit + " = " + reason_of(bound) +
                     "; it cannot render this scene: check its damping, friction, encoder step and delay");
     return std::min(value, 1e6);
   }
@@ -346,8 +346,7 @@ class Compiler {
   void add_device() {
     ModelParams& p = image_.params;
     const DeviceDesc& d = scene_.device;
-    // Two handles that swing against one another: half of one's damping acts on their distance, which two encoders
-    // tell.
+    // Of two handles on one body half of one's damping acts on their distance, which two encoders tell.
     const double hands = d.holds == HeldPart::kBoth ? 2 : 1;
     report_.bound = admissible_stiffness(d.damping_Ns_per_m / hands, d.friction_N, hands * d.encoder_step_m, d.period_s,
                                          d.delay_s, d.local_Hz);
