@@ -311,9 +311,9 @@ const KeySpec kDevice[] = {
         "smooth_encoder",
         "smooth the handle within the encoder's step, at most two steps late; auto: where the device's friction "
         "holds it at rest all the same"),
-    number_or_auto<&DeviceDesc::coupling_N_per_m>(
-        "coupling_N_per_m", 1, 1e6, 1,
-        "virtual coupling; auto: 0.8 of what the device admits, min(2b / (T + 2 tau), 2 f_c / Delta)"),
+    number_or_auto<&DeviceDesc::coupling_N_per_m>("coupling_N_per_m", 1, 1e6, 1,
+                                                  "virtual coupling; auto: 0.8 (with local_kHz 0.9) of what the device "
+                                                  "admits, min(2b / (T + 2 tau), 2 f_c / Delta)"),
     number_or_auto<&DeviceDesc::coupling_Nm_per_rad>("coupling_Nm_per_rad", 1e-6, 1e4, 1,
                                                      "rotational virtual coupling; auto: by the same rule"),
     number_or_auto<&DeviceDesc::coupling_Ns_per_m>(
