@@ -19,6 +19,13 @@ bool is_semi_definite(Vec3 d, Vec3 o, double small) noexcept {
   return x >= 0 && y >= 0 && z >= 0 && xy >= 0 && xz >= 0 && yz >= 0 && all >= 0;
 }
 
+double slope_N_per_s(const LocalLoop& loop, const LocalModel& model) noexcept {
+  const double per_share = 1e3 * loop.force_max_N;
+  return per_share * local_slope_share_per_ms(loop.slope_N_per_s / per_share,
+                                              stiffness_size(model.along_N_per_m, model.across_N_per_m),
+                                              loop.encoder_step_m, loop.force_max_N);
+}
+
 }  // namespace
 
 LocalModel bounded_model(const LocalModel& model, double most_N_per_m) noexcept {
@@ -38,35 +45,13 @@ Vec3 local_force_N(Vec3 force_N, const LocalModel& model, Vec3 position_m) noexc
   const Vec3 d = model.along_N_per_m, o = model.across_N_per_m, x = position_m - model.point_m;
   const Vec3 change{d.x * x.x + o.z * x.y + o.y * x.z, o.z * x.x + d.y * x.y + o.x * x.z,
                     o.y * x.x + o.x * x.y + d.z * x.z};
-  const Vec3 force = force_N - change, sense = unit_or(force_N, {});
-  const double back = min_of(0, dot(force, sense));
-  return force - back * sense;
+  return not_turned_round(force_N - change, force_N);
 }
-
-namespace {
-
-Vec3 shortened(Vec3 v, double most) noexcept {
-  const double length = norm(v);
-  return length > most ? (most / length) * v : v;
-}
-
-}  // namespace
 
 Vec3 moved_force_N(const LocalLoop& loop, Vec3 force_N, const LocalModel& model, const LocalWay& way) noexcept {
   return shortened(local_force_N(force_N, model, way.to_m), loop.force_max_N) -
          shortened(local_force_N(force_N, model, way.from_m), loop.force_max_N);
 }
-
-namespace {
-
-double slope_N_per_s(const LocalLoop& loop, const LocalModel& model) noexcept {
-  const double per_share = 1e3 * loop.force_max_N;
-  return per_share * local_slope_share_per_ms(loop.slope_N_per_s / per_share,
-                                              stiffness_size(model.along_N_per_m, model.across_N_per_m),
-                                              loop.encoder_step_m, loop.force_max_N);
-}
-
-}  // namespace
 
 Vec3 next_force_N(const LocalLoop& loop, Vec3 rendered_N, Vec3 force_N, const LocalModel& model,
                   const LocalWay& way) noexcept {
@@ -76,9 +61,7 @@ Vec3 next_force_N(const LocalLoop& loop, Vec3 rendered_N, Vec3 force_N, const Lo
   const bool jumped = squared_norm(way.to_m - way.from_m) > farthest_m * farthest_m;
   const Vec3 moved_N = jumped ? rendered_N : rendered_N + moved_force_N(loop, force_N, model, way);
   const Vec3 next_N = moved_N + shortened(wanted_N - moved_N, slope_N_per_s(loop, model) * loop.period_s);
-  const Vec3 sense = unit_or(force_N, {});
-  const double least_N = min_of(0, dot(rendered_N, sense)), along_N = dot(next_N, sense);
-  return shortened(next_N + max_of(0, least_N - along_N) * sense, loop.force_max_N);
+  return shortened(turned_no_farther(next_N, rendered_N, force_N), loop.force_max_N);
 }
 
 }  // namespace palpate

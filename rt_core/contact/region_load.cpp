@@ -154,7 +154,8 @@ Vec3 material_motion(const Model& model, const State& state, const RegionRows& r
 }
 
 FrictionForce rub_region(const Model& model, const State& state, const FrictionParameters& parameters,
-                         const RegionRows& rows, FrictionLoad& load, Region& region, Vec3 surface_w) PALPATE_RT {
+                         const RegionRows& rows, FrictionLoad& load, Vec3 arm_w, Vec3 surface_w,
+                         Region& region) PALPATE_RT {
   load.step_w = material_motion(model, state, rows, region.centre_w) - surface_w;
   load.normal_w = region.normal_w;
   load.force_N = region.normal_force_N;
@@ -165,12 +166,11 @@ FrictionForce rub_region(const Model& model, const State& state, const FrictionP
   region.tangential_k_N_per_m = memory.stiffness_N_per_m;
   region.friction = memory.mode;
   region.reversal_N_per_m = friction.reversal_N_per_m;
-  const Vec3 arm = region.centre_w - pivot_w(state, rows);
   const Vec3 force = friction.force_w + friction.normal_gain_N * region.normal_w;
   region.normal_force_N += friction.normal_gain_N;
   region.friction_force_w = friction.force_w;
   region.wrench_w.force_N += force;
-  region.wrench_w.torque_Nm += cross(arm, force);
+  region.wrench_w.torque_Nm += cross(arm_w, force);
   region.energy_J += friction.energy_J;
   return friction;
 }
@@ -183,9 +183,9 @@ TangentAxes tangent_axes(const FrictionForce& friction, Vec3 normal) PALPATE_RT 
 
 void slide(const Model& model, const State& state, Scratch& scratch, const FrictionParameters& parameters,
            const RegionRows& rows, FrictionLoad& load, Region& region) PALPATE_RT {
-  const FrictionForce friction = rub_region(model, state, parameters, rows, load, region);
-  const TangentAxes axes = tangent_axes(friction, region.normal_w);
   const Vec3 arm = region.centre_w - pivot_w(state, rows);
+  const FrictionForce friction = rub_region(model, state, parameters, rows, load, arm, {}, region);
+  const TangentAxes axes = tangent_axes(friction, region.normal_w);
   ContactStiffness& stiffness = stiffness_of(scratch, region.hand);
   add_spring(stiffness, friction.along_N_per_m, axes.along, cross(arm, axes.along));
   add_spring(stiffness, friction.across_N_per_m, axes.across, cross(arm, axes.across));

@@ -148,10 +148,11 @@ inline std::int32_t count_solution(const RegionSolution& result, std::int32_t n,
 }
 
 // Friction at the region's centre, added to its wrench and energy. The caller fills region.depth_equivalent_m and
-// `load`'s tangent and depth rate; motion, normal and force are taken from the region. `surface_w`: how far the body's
-// surface went since the last tick.
+// `load`'s tangent and depth rate; motion, normal and force are taken from the region. `arm_w`: of its centre
+// from the tool's origin; `surface_w`: how far the body's surface went since the last tick.
 FrictionForce rub_region(const Model& model, const State& state, const FrictionParameters& parameters,
-                         const RegionRows& rows, FrictionLoad& load, Region& region, Vec3 surface_w = {}) PALPATE_RT;
+                         const RegionRows& rows, FrictionLoad& load, Vec3 arm_w, Vec3 surface_w,
+                         Region& region) PALPATE_RT;
 // The directions of a friction's two stiffnesses.
 struct TangentAxes {
   Vec3 along, across;

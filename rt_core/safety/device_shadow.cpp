@@ -15,15 +15,9 @@ struct Told {
 };
 Told told_in(const double* of) PALPATE_RT { return {vec_at(of), vec_at(of + 3), {vec_at(of + 6), vec_at(of + 9)}}; }
 
-Vec3 shortened(Vec3 v, Real most) PALPATE_RT {
-  const Real length = norm(v);
-  return length > most ? (most / length) * v : v;
-}
-
-// F - K (x - p), which does not turn round, and is cut to the limit.
+// F - K (x - p), cut to the limit.
 Vec3 evaluated_N(const ModelParams& p, const Told& told, Vec3 at_m) PALPATE_RT {
-  const Vec3 force_N = told.force_N - told.felt * (at_m - told.point_m), sense = unit_or(told.force_N, {});
-  return shortened(force_N - min_of(0, dot(force_N, sense)) * sense, p.force_max_N);
+  return shortened(not_turned_round(told.force_N - told.felt * (at_m - told.point_m), told.force_N), p.force_max_N);
 }
 
 Real slope_N_per_tick(const ModelParams& p, const FeltStiffness& felt) PALPATE_RT {
@@ -50,9 +44,8 @@ Vec3 play(const ModelParams& p, const Told& told, const Way& way, Vec3& rendered
   const Real closed = min_of(1, most_N / size_N);
   const Real closed_mean = size_N > most_N ? 0.5 * closed : 1 - 0.5 * size_N / most_N;
   const Vec3 mean_N = rendered_N + (0.5 - late) * moved_N + closed_mean * gap_N;
-  const Vec3 next_N = rendered_N + moved_N + closed * gap_N, sense = unit_or(told.force_N, {});
-  const Real least_N = min_of(0, dot(rendered_N, sense)), along_N = dot(next_N, sense);
-  rendered_N = shortened(next_N + max_of(0, least_N - along_N) * sense, p.force_max_N);
+  const Vec3 next_N = turned_no_farther(rendered_N + moved_N + closed * gap_N, rendered_N, told.force_N);
+  rendered_N = shortened(next_N, p.force_max_N);
   return way.ticks * mean_N;
 }
 

@@ -16,6 +16,23 @@ inline Real stiffness_size(Vec3 along, Vec3 across) PALPATE_RT {
   return min_of(row, square_root(squared_norm(along) + 2 * squared_norm(across)));
 }
 
+inline Vec3 shortened(Vec3 v, Real most) PALPATE_RT {
+  const Real length = norm(v);
+  return length > most ? (most / length) * v : v;
+}
+
+// What it evaluates does not turn round against the force that it was told.
+inline Vec3 not_turned_round(Vec3 force_N, Vec3 told_N) PALPATE_RT {
+  const Vec3 sense = unit_or(told_N, {});
+  return force_N - min_of(0, dot(force_N, sense)) * sense;
+}
+// Nor does what it renders next, farther than what it rendered was.
+inline Vec3 turned_no_farther(Vec3 next_N, Vec3 rendered_N, Vec3 told_N) PALPATE_RT {
+  const Vec3 sense = unit_or(told_N, {});
+  const Real least_N = min_of(0, dot(rendered_N, sense)), along_N = dot(next_N, sense);
+  return next_N + max_of(0, least_N - along_N) * sense;
+}
+
 // What commands change of its force in a millisecond, as a share of its limit. Below a tenth by what an encoder's step
 // of 30 um, smoothed to half of it, makes of 4.3 N/mm on 8.5 N: 0.8 %, measured 0.6 (2026-11-25).
 inline constexpr Real kLocalSlopeShare_per_ms = 0.09;

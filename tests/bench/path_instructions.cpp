@@ -17,17 +17,13 @@
 namespace palpate::test {
 namespace {
 
-// Of each stage and of all, as in tick_instructions.cpp.
-constexpr std::size_t kDearest = 100;
-constexpr int kSampleEvery = 40;
-
 // Plays the first time to see what ticks cost by their work, the second time to have the dearest and a sample counted.
 class CountedController {
  public:
   CountedController(const Model& model, TickPrices& prices, const std::vector<bool>* dear)
       : model_(model), prices_(prices), dear_(dear) {}
   void step(const Input& input, Output& output, const StageProbe&) {
-    const bool sampled = ticks_ % kSampleEvery == 0;
+    const bool sampled = is_sampled(ticks_);
     const bool counts = dear_ && (sampled || (*dear_)[static_cast<std::size_t>(ticks_)]);
     if (counts) CALLGRIND_TOGGLE_COLLECT;
     tick(model_, *state_, *scratch_, input, output);

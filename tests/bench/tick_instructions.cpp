@@ -13,13 +13,6 @@
 namespace palpate::test {
 namespace {
 
-// Of each stage and of all: a thousand ticks or less. Against all 8,000, which take 10 to 12 s for 2 to 4: of six
-// scenes the worst tick is the same in five and 198,634 instructions for 199,044 in a grasp by five fingers, and the
-// most of a stage is at most 2 % less; three times as many find no dearer one (2026-11-26). ./run test --long counts
-// all.
-constexpr std::size_t kDearest = 100;
-constexpr int kSampleEvery = 40;
-
 void print_bounds(const Model& model) {
 #define PALPATE_STAGE(name, function, shown, what) \
   std::printf("bound %s %.0f\n", #function, model.stage_cost[static_cast<int>(Stage::name)].instructions);
@@ -38,7 +31,7 @@ std::vector<bool> dearest(const char* path) {
 
 void play(const char* path, bool all) {
   const std::vector<bool> dear = all ? std::vector<bool>(kScriptTicks, false) : dearest(path);
-  const auto sampled = [&](int i) { return all || i % kSampleEvery == 0; };
+  const auto sampled = [&](int i) { return all || is_sampled(i); };
   const auto counts = [&](int i) { return sampled(i) || dear[static_cast<std::size_t>(i)]; };
   play_counted(
       path,

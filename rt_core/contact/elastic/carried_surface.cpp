@@ -193,19 +193,29 @@ void show_slopes(Count soft, const ElasticRow& row, const Double4 (&corner)[3][k
 // with t_a the tangential part of u_a and g_a the slope of n.u_a along the surface, 1 + k d times its slope G_a as the
 // centre moves; and f_ab - f_as f_sb / f_ss is that of the nearest. Without it H lacked F d g_a.g_b, by which a body is
 // held upright under a ball: one of 60 mm on a block of 20 threw it from side to side every tick (2026-11-23).
+struct RoundTurn {
+  Real slopes, curvature;
+  RoundTurn(Real d, Real k) PALPATE_RT {
+    const Real bend = max_of(1 + k * d, 0.5);
+    slopes = d * bend;
+    curvature = bend > 1 ? k / bend : 0.0;
+  }
+  Real turn(Vec3 along_a, Vec3 slope_a, Vec3 along_b, Vec3 slope_b) const PALPATE_RT {
+    return slopes * dot(slope_a, slope_b) - dot(along_a, slope_b) - dot(slope_a, along_b) -
+           curvature * dot(along_a, along_b);
+  }
+};
 template <class Count>
 void turn_with_foot(Count soft, ElasticRow& row, const Double4 (&corner)[3][kMaxSoftModes]) PALPATE_RT {
   const Vec3 n = row.foot.normal_w;
-  const Real d = max_of(row.foot.height_m, 0.0), mean = row.curvature_1_per_m;
-  const Real bend = max_of(1 + mean * d, 0.5), curvature = bend > 1 ? mean / bend : 0.0;
+  const RoundTurn round(max_of(row.foot.height_m, 0.0), row.curvature_1_per_m);
   Vec3 along[kMaxSoftModes], slope[kMaxSoftModes];
   show_slopes(soft, row, corner, slope);
   for (std::int32_t a = 0; a < soft; ++a) along[a] = tangential_part(row.sweep_w[a], n);  // bound: soft
   std::int32_t pair = 0;
   for (std::int32_t a = 0; a < soft; ++a) {  // bound: pairs
     for (std::int32_t b = a; b < soft; ++b, ++pair)
-      row.turn[pair] += d * bend * dot(slope[a], slope[b]) - dot(along[a], slope[b]) - dot(slope[a], along[b]) -
-                        curvature * dot(along[a], along[b]);
+      row.turn[pair] += round.turn(along[a], slope[a], along[b], slope[b]);
   }
 }
 
@@ -216,8 +226,8 @@ void turn_with_foot(Count soft, ElasticRow& row, const Double4 (&corner)[3][kMax
 template <class Count>
 void turn_with_line(Count soft, Real step_m, ElasticRow& row, const Double4 (&corner)[3][kMaxSoftModes]) PALPATE_RT {
   const Vec3 n = row.foot.normal_w, axis = unit_or(tangential_part(row.tip.half_axis_w, n), {});
-  const Real d = max_of(row.foot.height_m, 0.0), across = row.line.across_1_per_m;
-  const Real bend = max_of(1 + across * d, 0.5), curvature = bend > 1 ? across / bend : 0.0;
+  const Real d = max_of(row.foot.height_m, 0.0);
+  const RoundTurn round(d, row.line.across_1_per_m);
   const Real bent = 1 + row.line.along_1_per_m * d, on_axis = row.line.along_1_per_m / bent, arm = row.arm_m;
   const Real by_slope = d * bent + arm, by_both = arm * on_axis - 1, by_way = on_axis * by_both;
   Vec3 along[kMaxSoftModes], slope[kMaxSoftModes];
@@ -234,8 +244,7 @@ void turn_with_line(Count soft, Real step_m, ElasticRow& row, const Double4 (&co
   std::int32_t pair = 0;
   for (std::int32_t a = 0; a < soft; ++a) {  // bound: pairs
     for (std::int32_t b = a; b < soft; ++b, ++pair)
-      row.turn[pair] += d * bend * dot(slope[a], slope[b]) - dot(along[a], slope[b]) - dot(slope[a], along[b]) -
-                        curvature * dot(along[a], along[b]) + by_slope * lean[a] * lean[b] +
+      row.turn[pair] += round.turn(along[a], slope[a], along[b], slope[b]) + by_slope * lean[a] * lean[b] +
                         by_both * (lean[a] * way[b] + way[a] * lean[b]) + by_way * way[a] * way[b];
   }
 }

@@ -143,13 +143,15 @@ class Rubbing {
  private:
   Region& region(std::int32_t r) const PALPATE_RT { return state_.region[scratch_.rows.slot[r]]; }
 
+  Vec3 arm_w(const Region& of) const PALPATE_RT { return of.centre_w - tool_of(state_, of.hand).position_m; }
+
   void rub(const FrictionParameters& law, std::int32_t r) PALPATE_RT {
     Region& here = region(r);
     here.depth_equivalent_m = here.depth_max_m;
     FrictionLoad load;
     load.tangent_N_per_m = here.tangent_N_per_m;
     const FrictionForce friction =
-        rub_region(model_, state_, law, rows_of(scratch_, r), load, here, work_.rub[r].moved_w);
+        rub_region(model_, state_, law, rows_of(scratch_, r), load, arm_w(here), work_.rub[r].moved_w, here);
     const TangentAxes axes = tangent_axes(friction, here.normal_w);
     add(r, friction.along_N_per_m, axes.along);
     add(r, friction.across_N_per_m, axes.across);
@@ -164,8 +166,7 @@ class Rubbing {
     const Region& here = region(r);
     const Vec3* sweep_w = work_.rub[r].sweep_w;
     aim(
-        size_, soft_, soft_ + here.hand * ToolTangent::kTwist, axis,
-        here.centre_w - tool_of(state_, here.hand).position_m,
+        size_, soft_, soft_ + here.hand * ToolTangent::kTwist, axis, arm_w(here),
         [&](std::int32_t a) PALPATE_RT { return dot(axis, sweep_w[a]); }, spring);
   }
   // What slips turns back on a spring in series with what the modes give under it.
@@ -188,7 +189,7 @@ class Rubbing {
 void rub(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   if (scratch.rows.regions > 0)
     with_mode_count(model.params.elastic_soft, [&](auto soft) PALPATE_RT {
-      with_tangent_size(soft, has_two_tools(model) ? 2 : 1, [&](auto size) PALPATE_RT {
+      with_tangent_size(model, soft, [&](auto size) PALPATE_RT {
         Rubbing<decltype(soft), decltype(size)>(model, state, scratch, soft, size).account();
       });
     });

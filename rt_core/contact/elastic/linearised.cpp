@@ -358,7 +358,7 @@ void Linearised<Count>::tell_tangent(const Real* force_N) const PALPATE_RT {
   Real h[kMaxSoftModes * kMaxSoftModes];
   turned(force_N, h);
   if (!is_stiff(h, n_)) stiffen(h, n_);
-  with_tangent_size(n_, has_two_tools(model_) ? 2 : 1, [&](auto size) PALPATE_RT {
+  with_tangent_size(model_, n_, [&](auto size) PALPATE_RT {
     work_.tangent.begin(size, n_, h);
     if (regions() > 1) return tell_pairs(size, force_N);
     ToolTangent::Spring spring;

@@ -13,6 +13,7 @@
 #include "rt_core/contact/contact_stiffness.h"
 #include "rt_core/lanes.h"
 #include "rt_core/limits.h"
+#include "rt_core/tool/two_tools.h"
 
 namespace palpate {
 
@@ -100,9 +101,10 @@ void aim(Size size, Count soft, std::int32_t twist, Vec3 direction, Vec3 arm, co
   to[5] = turn.z;
 }
 
-// use(soft, size)
+// use(size)
 template <class Count, class Use>
-void with_tangent_size(Count soft, std::int32_t hands, const Use& use) PALPATE_RT {
+void with_tangent_size(const Model& model, Count soft, const Use& use) PALPATE_RT {
+  const std::int32_t hands = has_two_tools(model) ? 2 : 1;
   if constexpr (std::is_same_v<Count, std::int32_t>) {
     use(soft + hands * ToolTangent::kTwist);
   } else {

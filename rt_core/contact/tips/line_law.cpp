@@ -17,6 +17,16 @@ constexpr Real kPlace = 0.7745966692414834;  // of Gauss' three points, sqrt 0.6
 
 Double4 at_least(const Double4& a, Real b) PALPATE_RT { return a > b ? a : splat4(b); }
 
+// use(share, place t, depth there) at Gauss' three places of every span.
+template <class Use>
+void at_gauss_places(const Double4& half, const Double4& middle, const Double4& depth, const Double4& rises,
+                     const Double4& falls, const Use& use) PALPATE_RT {
+  for (const Real k : {-kPlace, 0.0, kPlace}) {  // bound: 3
+    const Double4 t = middle + k * half;
+    use(k == 0 ? 8.0 / 9 : 5.0 / 9, t, depth + t * (rises + t * falls));
+  }
+}
+
 }  // namespace
 
 LineLaw::LineLaw(const Shape& s, Real modulus_Pa, Real depth_max_m) PALPATE_RT {
@@ -65,11 +75,12 @@ LineLaw::Spans LineLaw::spans_at(Real e) const PALPATE_RT {
   s.depth = Double4{at_end[0], at_end[1], here, 0};
   const Double4 half = 0.5 * (s.to - s.from), middle = 0.5 * (s.to + s.from);
   Double4 first{}, square{};
-  for (const Real k : {-kPlace, 0.0, kPlace}) {  // bound: 3
-    const Double4 t = middle + k * half, d = s.depth + t * (rises_ + t * falls_), w = (k == 0 ? 8.0 / 9 : 5.0 / 9) * d;
+  const auto add = [&](Real share, const Double4&, const Double4& d) PALPATE_RT {
+    const Double4 w = share * d;
     first += w;
     square += w * d;
-  }
+  };
+  at_gauss_places(half, middle, s.depth, rises_, falls_, add);
   s.first = sum(half * first);
   s.square = sum(half * square);
   s.length = 2 * sum(half);
@@ -140,13 +151,13 @@ LineLaw::Lean LineLaw::lean_at(Real e_m) const PALPATE_RT {
   const Double4 place = {-left_, right_, 0, 0}, way = {-1, 1, 1, 0};
   const Double4 half = 0.5 * (s.to - s.from), middle = 0.5 * (s.to + s.from);
   Double4 moment{}, arm{}, square{};
-  for (const Real k : {-kPlace, 0.0, kPlace}) {  // bound: 3
-    const Double4 t = middle + k * half, d = s.depth + t * (rises_ + t * falls_), x = place + way * t;
-    const Double4 w = (k == 0 ? 8.0 / 9 : 5.0 / 9) * x;
+  const auto add = [&](Real share, const Double4& t, const Double4& d) PALPATE_RT {
+    const Double4 x = place + way * t, w = share * x;
     arm += w;
     moment += w * d;
     square += w * x;
-  }
+  };
+  at_gauss_places(half, middle, s.depth, rises_, falls_, add);
   const Real j = 0.5 * s.square, i1 = 1.0 / s.first, by_i = i1 * sum(half * arm), by_j = sum(half * moment) / j;
   const Real li = s.length * i1, lq = s.first / j, x = l.circle * l.left;
   const auto slope = [&](Real of_i, Real of_j)

@@ -20,10 +20,6 @@ Real h_of(const TipCoupling& coupling, std::int32_t i, std::int32_t j, std::int3
   return coupling.h_m_per_N2 == nullptr ? 0.0 : coupling.h_m_per_N2[i * n + j];
 }
 
-}  // namespace
-
-namespace {
-
 // Slopes of line_energies in the line's force; its stiffness' slope is that of a power of the depth.
 LawPoint line_at(const Tip& tip, Real e_m) PALPATE_RT {
   const LineLaw::Point& line = tip.line->at(e_m);
