@@ -134,6 +134,9 @@ DeviceProcess::DeviceProcess(const std::string& program, const SceneImage& scene
   if (scene.scene) {
     const std::vector<std::string> plant = plant_arguments(*scene.scene);
     arguments.insert(arguments.end(), plant.begin(), plant.end());
+  } else {  // an image says nothing of the plant but how often it is asked
+    const double period_s = ImageFile(scene.image_path).model().params.period_s;
+    arguments.insert(arguments.end(), {"--set", fmt::format("period_s={}", period_s)});
   }
   if (!profile.empty()) arguments.insert(arguments.end(), {"--profile", profile});
   if (turn_fd >= 0) {

@@ -14,7 +14,7 @@ scenes=$(cd "$root/config/scenes" && printf 'scene_%s ' *.toml | sed 's/\.toml//
 # Drives and two devices: recorded for 10 s, and for 60,000 ticks, a second more than that because the loop follows the
 # device's clock. Those of two devices are recorded in any case.
 drives='vcan_odrive vcan_cia402 vcan_moteus falcon vcan_odrive:61 vcan_cia402:61 vcan_moteus:61 falcon:61 vcan_two_hands:61 vcan_two_tools:61'
-thorough="$every scenes buses vcan_classic vcan_clock $drives usb_kit usb_unplug host_chaos viewer vcan:60 kvaser:60 usb:60 vcan_classic:600"
+thorough="$every scenes buses vcan_2khz usb_2khz vcan_classic vcan_clock $drives usb_kit usb_unplug host_chaos viewer vcan:60 kvaser:60 usb:60 vcan_classic:600"
 
 usage() {
   cat << TEXT
@@ -107,7 +107,7 @@ default_seconds() { # SCENARIO
 replay_outside() { # SCENARIO RESULT_DIR: what was computed inside must be what a real processor computes
   local scene=ellipsoid_mallet
   [ -e "$2/run.plr" ] || return
-  case $1 in scene_*) scene=${1#scene_} ;; vcan_two_hands) scene=two_hands ;; vcan_two_tools) scene=two_tools ;; falcon) scene=falcon ;; esac
+  case $1 in scene_*) scene=${1#scene_} ;; vcan_two_hands) scene=two_hands ;; vcan_two_tools) scene=two_tools ;; *_2khz) scene=mallet_2khz ;; falcon) scene=falcon ;; esac
   "$out/palpate" replay "$2/run.plr" --image "$out/scenes/$scene.pal" > "$2/replay.txt" 2>&1
   rm "$2/run.plr"
 }
@@ -269,6 +269,9 @@ bake() { # NAME SCENE [OPTION...]: a scene that is not shipped as it is
 }
 case " ${scenarios[*]} " in # the mallet in one hand, the body in the other
   *" vcan_two_hands"*) bake two_hands ellipsoid_mallet --set device.holds=both --set 'device.grip_mm=[0, 0, 0]' ;;
+esac
+case " ${scenarios[*]} " in
+  *_2khz*) bake mallet_2khz ellipsoid_mallet --set device.period_ms=0.5 ;;
 esac
 case " ${scenarios[*]} " in
   *" falcon"*) bake falcon ellipsoid_mallet --with "$root/config/devices/example-falcon.toml" ;;

@@ -1,4 +1,4 @@
-# Sourced by the scenarios. $seconds is the guest time to render.
+# Sourced by the scenarios. $seconds is the guest time to render; $period_us that of the image where it is not 1000.
 image=/lab/scenes/ellipsoid_mallet.pal
 profile=/lab/devices/sim-6dof.toml
 
@@ -19,7 +19,7 @@ raise_usb() {
 }
 
 # The kernel's own wake-up latency in this very boot, before anything else runs.
-measure_kernel() { cyclictest -m -p 90 -i 1000 -l "${1:-2000}" -q -t 1 -h 100 > /results/cyclictest.txt; }
+measure_kernel() { cyclictest -m -p 90 -i "${period_us:-1000}" -l "${1:-2000}" -q -t 1 -h 100 > /results/cyclictest.txt; }
 
 # The hand's motion again and again for as long as the run lasts.
 repeat_hand() {
@@ -28,11 +28,12 @@ repeat_hand() {
             split(row[i], f, ","); print f[1] + t substr(row[i], index(row[i], ",")) } }' /lab/hand.csv > /tmp/hand.csv
 }
 
-# Four steps of the hand's integration a tick instead of 20: the simulated mechanics is most of what the guest computes.
+# Four steps of the hand's integration a millisecond instead of 20: the simulated mechanics is most of what the guest computes.
 start_device() { # ADDRESS [OPTION...]
   at=$1
   shift
-  palpate-device --device "$at" --path /tmp/hand.csv --priority 70 --set substeps=4 "$@" & device=$!
+  palpate-device --device "$at" --path /tmp/hand.csv --priority 70 --set "substeps=$((4 * ${period_us:-1000} / 1000))" \
+    --set "period_s=$(awk -v us="${period_us:-1000}" 'BEGIN { print us * 1e-6 }')" "$@" & device=$!
 }
 
 # latched NAME TICKS: this fault ended the run, after at least so many ticks (an earlier one would be another fault's).
