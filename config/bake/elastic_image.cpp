@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "config/bake/drawn_fields.h"
 #include "config/bake/elastic_mesh.h"
+#include "config/bake/facet_foot.h"
 #include "config/bake/fem_body.h"
+#include "config/bake/sample_field.h"
 #include "config/bake/vertex_slopes.h"
 #include "config/body/supports.h"
 #include "config/elastic/elastic_body.h"
@@ -73,43 +76,6 @@ class NodalGradient {
   std::vector<bool> wanted_;
 };
 
-// Where a vertex of the scene's surface lies on the elements' facets.
-struct FacetFoot {
-  std::vector<int> node;
-  elastic::FacetShape shape;
-};
-
-class FacetFinder {
- public:
-  explicit FacetFinder(const elastic::Surface<3>& surface) : surface_(surface) {}
-  FacetFoot find(Vec3 p) const {
-    constexpr double kPlace[6][2] = {{0, 0}, {1, 0}, {0, 1}, {0.5, 0}, {0.5, 0.5}, {0, 0.5}};
-    constexpr std::size_t kPart[4][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}};
-    double best = kHuge;
-    const elastic::Surface<3>::Facet* best_facet = nullptr;
-    elastic::FacetPlace place;
-    for (const auto& facet : surface_.facets())
-      for (const auto& part : kPart) {
-        Vec3 corner[3];
-        for (std::size_t k = 0; k < 3; ++k) corner[k] = vec(surface_.rest(facet.nodes[part[k]]));
-        const Vec3 q = closest_on_triangle(p, corner[0], corner[1], corner[2]).point;
-        const double distance = norm(q - p);
-        if (!(distance < best)) continue;
-        best = distance;
-        best_facet = &facet;
-        const Vec3 e1 = corner[1] - corner[0], e2 = corner[2] - corner[0], n = cross(e1, e2);
-        const double b = dot(cross(q - corner[0], e2), n) / squared_norm(n),
-                     c = dot(cross(e1, q - corner[0]), n) / squared_norm(n);
-        for (int d = 0; d < 2; ++d)
-          place[d] = (1 - b - c) * kPlace[part[0]][d] + b * kPlace[part[1]][d] + c * kPlace[part[2]][d];
-      }
-    return {best_facet->nodes, elastic::facet_shape(6, place)};
-  }
-
- private:
-  const elastic::Surface<3>& surface_;
-};
-
 // Free surface nodes at least `spacing_m` apart, the first ones that are.
 std::vector<int> sample_nodes(const elastic::Surface<3>& surface, const std::vector<bool>& fixed, double spacing_m) {
   std::vector<int> kept;
@@ -126,51 +92,17 @@ std::vector<int> sample_nodes(const elastic::Surface<3>& surface, const std::vec
   return kept;
 }
 
-// c, c1 and beta anywhere on the surface: through the samples' values, smoothly (radial functions of place and outlook,
-// Matern 3/2 about the mean). A mean of near samples instead flattens the peak in the middle of a thin wall: an arch
-// was 25 % too stiff under one finger (2026-11-22).
-class SelfField {
- public:
-  SelfField(const elastic::Surface<3>& surface, const elastic::SelfTerms& terms, const std::vector<double>& beta,
-            double spacing_m)
-      : length_(kLengths * spacing_m) {
-    const auto n = static_cast<Eigen::Index>(terms.nodes.size());
-    Eigen::MatrixXd kernel(n, n), value(n, 3);
-    for (const int node : terms.nodes)
-      samples_.push_back({vec(surface.rest(node)), vec(elastic::node_normal(surface, node))});
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const std::size_t node = at(terms.nodes[static_cast<std::size_t>(i)]);
-      value.row(i) << terms.self_mpN[node], terms.second_mpN2[node], beta[static_cast<std::size_t>(i)];
-      for (Eigen::Index k = 0; k < n; ++k)
-        kernel(i, k) = likeness(samples_[static_cast<std::size_t>(i)], samples_[static_cast<std::size_t>(k)]);
-    }
-    mean_ = value.colwise().mean();
-    kernel.diagonal().array() += kNugget;
-    weight_ = kernel.llt().solve(value.rowwise() - mean_);
+// c, c1 and beta anywhere on the surface.
+SampleField self_field(const elastic::Surface<3>& surface, const elastic::SelfTerms& terms,
+                       const std::vector<double>& beta, double spacing_m) {
+  const auto n = static_cast<Eigen::Index>(terms.nodes.size());
+  Eigen::MatrixXd value(n, 3);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const std::size_t node = at(terms.nodes[static_cast<std::size_t>(i)]);
+    value.row(i) << terms.self_mpN[node], terms.second_mpN2[node], beta[static_cast<std::size_t>(i)];
   }
-  Eigen::RowVector3d show(Vec3 p, Vec3 normal) const {
-    Eigen::RowVector3d sum = mean_;
-    for (std::size_t i = 0; i < samples_.size(); ++i)
-      sum += likeness({p, normal}, samples_[i]) * weight_.row(static_cast<Eigen::Index>(i));
-    return sum;
-  }
-
- private:
-  struct Sample {
-    Vec3 position, normal;
-  };
-  // In spacings: how far a sample is heard, and how far away the opposite outlook counts as.
-  static constexpr double kLengths = 4, kTurn = 1, kNugget = 1e-6;
-  double likeness(const Sample& a, const Sample& b) const {
-    const double d = norm(a.position - b.position) / length_, turn = kTurn * norm(a.normal - b.normal);
-    const double r = std::sqrt(3.0 * (d * d + turn * turn));
-    return (1 + r) * std::exp(-r);
-  }
-  std::vector<Sample> samples_;
-  double length_;
-  Eigen::RowVector3d mean_;
-  Eigen::MatrixXd weight_;
-};
+  return {surface, terms.nodes, value, spacing_m};
+}
 
 // Mean curvature at the vertices, convex positive: how fast normals turn along the edges of a face.
 std::vector<double> mean_curvatures(const ImageContents& image, const std::vector<CornerNormals>& normals) {
@@ -240,7 +172,7 @@ Shapes term_shapes(const elastic::ElasticBody<3>& body, const NodalGradient& gra
   return out;
 }
 
-void add_vertices(const elastic::ElasticBody<3>& body, const Shapes& shapes, const SelfField& self,
+void add_vertices(const elastic::ElasticBody<3>& body, const Shapes& shapes, const SampleField& self,
                   const std::vector<FacetFoot>& feet, ImageContents& image, const std::vector<CornerNormals>& normals) {
   using namespace elastic_layout;
   const int s = body.soft, linear = static_cast<int>(body.modes.lambda_Npm3.size()) - s;
@@ -260,7 +192,7 @@ void add_vertices(const elastic::ElasticBody<3>& body, const Shapes& shapes, con
       for (int i = 0; i < 3; ++i) *out++ = show(shapes.u[t], 3, i);
       for (int i = 0; i < 9; ++i) *out++ = show(shapes.gradient[t], 9, i);
     }
-    const Eigen::RowVector3d own = self.show(image.vertex_m[v], image.vertex_normal[v]);
+    const Eigen::RowVectorXd own = self.show(image.vertex_m[v], image.vertex_normal[v]);
     *out++ = static_cast<float>(own[0]);
     *out++ = static_cast<float>(own[1]);
     *out++ = static_cast<float>(curvature[v]);
@@ -308,13 +240,6 @@ void add_moduli(const elastic::RestBody<3>& rest, const std::vector<FacetFoot>& 
         static_cast<float>(clamp_to(sum / weight / rest.contact_modulus(), elastic_layout::kLeastModulusRatio * 1.001,
                                     elastic_layout::kMostModulusRatio * 0.999)));
   }
-}
-
-std::vector<FacetFoot> feet_of(const ImageContents& image, const elastic::Surface<3>& surface) {
-  const FacetFinder finder(surface);
-  std::vector<FacetFoot> feet;
-  for (const Vec3 p : image.vertex_m) feet.push_back(finder.find(p));
-  return feet;
 }
 
 elastic::ElasticOptions options_of(int soft, int linear) {
@@ -381,9 +306,10 @@ struct ElasticBake::Parts {
   std::vector<bool> fixed;
   elastic::RestBody<3> rest;
   double spacing_m;
+  std::vector<FacetFoot> feet;
+  DrawnFields drawn;
   elastic::ElasticStock<3> stock;
   NodalGradient gradient;
-  std::vector<FacetFoot> feet;
   std::vector<CornerNormals> normals;
 
   Parts(const SceneDesc& scene, const ImageContents& image, int modes, TetMesh body, std::vector<bool> held)
@@ -392,10 +318,12 @@ struct ElasticBake::Parts {
         rest(elastic::solid_mesh(mesh, scene.source.where("body.shape")), elastic_material(scene, image.params, mesh),
              fixed),
         spacing_m(kSampleSpacing * rest.surface().extent_m()),
+        feet(facet_feet(rest.surface(), image.vertex_m)),
+        drawn(rest, feet, image.vertex_m, image.vertex_normal, image.params.max_depth_m),
         stock(elastic::make_elastic_stock(rest, sample_nodes(rest.surface(), fixed, spacing_m), modes,
-                                          options_of(modes, 0))),
+                                          options_of(modes, 0),
+                                          [this](const elastic::PressedPlace& place) { drawn.add(place); })),
         gradient(mesh, rest.surface()),
-        feet(feet_of(image, rest.surface())),
         normals(corner_normals(scene.body, image.vertex_m, image.triangle)) {}
 };
 
@@ -418,10 +346,11 @@ ElasticReport ElasticBake::write(int soft, int linear, double add_c_mpN, ImageCo
   elastic::ElasticBody<3> body = elastic::make_elastic_body(parts.stock, options_of(soft, linear));
   for (const int node : body.self.nodes) body.self.self_mpN[at(node)] += add_c_mpN;
   const std::vector<double> beta = fit_places(body.self, parts.rest, image, parts.normals);
-  const SelfField self(parts.rest.surface(), body.self, beta, parts.spacing_m);
+  const SampleField self = self_field(parts.rest.surface(), body.self, beta, parts.spacing_m);
   add_energy(body.maps.potential, image);
   add_vertices(body, term_shapes(body, parts.gradient), self, parts.feet, image, parts.normals);
   add_own_slopes(body, parts.normals, image);
+  parts.drawn.append(body, parts.spacing_m, image.elastic_vertex);
   add_moduli(parts.rest, parts.feet, image);
   ModelParams& p = image.params;
   p.elastic_soft = body.soft;

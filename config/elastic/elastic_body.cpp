@@ -17,9 +17,9 @@ constexpr double kLeastEnergyShare = 0.2;
 
 template <int kDim>
 ElasticStock<kDim> make_elastic_stock(const RestBody<kDim>& rest, const std::vector<int>& contact_nodes, int modes,
-                                      const ElasticOptions& options) {
+                                      const ElasticOptions& options, const PlaceListener& listen) {
   const double probe_m = options.probe_share * rest.surface().extent_m();
-  return {&rest, surface_modes(rest, modes), self_samples(rest, contact_nodes, probe_m, options.patch)};
+  return {&rest, surface_modes(rest, modes), self_samples(rest, contact_nodes, probe_m, options.patch, listen)};
 }
 
 template <int kDim>
@@ -48,7 +48,7 @@ ElasticBody<kDim> make_elastic_body(const RestBody<kDim>& rest, const std::vecto
 
 #define PALPATE_ELASTIC_BODY(kDim)                                                                          \
   template ElasticStock<kDim> make_elastic_stock<kDim>(const RestBody<kDim>&, const std::vector<int>&, int, \
-                                                       const ElasticOptions&);                              \
+                                                       const ElasticOptions&, const PlaceListener&);        \
   template ElasticBody<kDim> make_elastic_body<kDim>(const ElasticStock<kDim>&, const ElasticOptions&);     \
   template ElasticBody<kDim> make_elastic_body<kDim>(const RestBody<kDim>&, const std::vector<int>&,        \
                                                      const ElasticOptions&);

@@ -35,7 +35,7 @@ struct ElasticStock {
 // `modes`: at most so many will be asked for. `rest` must outlive the result.
 template <int kDim>
 ElasticStock<kDim> make_elastic_stock(const RestBody<kDim>& rest, const std::vector<int>& contact_nodes, int modes,
-                                      const ElasticOptions& options = {});
+                                      const ElasticOptions& options = {}, const PlaceListener& listen = {});
 template <int kDim>
 ElasticBody<kDim> make_elastic_body(const ElasticStock<kDim>& stock, const ElasticOptions& options);
 

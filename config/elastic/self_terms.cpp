@@ -99,8 +99,8 @@ double soft_third_order(const SoftMaps& maps, const Eigen::VectorXd& g, const Ei
 
 // Two patches at a node, the second wider.
 struct Met {
-  Eigen::VectorXd u_mpN;  // under the first
-  double sigma_m[2] = {}, give_mpN[2] = {};
+  PressedPlace place;
+  double give_mpN[2] = {};
 };
 // All nodes at once.
 template <int kDim>
@@ -119,8 +119,11 @@ std::vector<Met> meet(const RestBody<kDim>& body, std::span<const int> nodes, co
   std::vector<Met> met(nodes.size());
   for (std::size_t i = 0; i < 2 * nodes.size(); ++i) {
     const auto col = static_cast<Eigen::Index>(i);
-    if (i % 2 == 0) met[i / 2].u_mpN = u.col(col);
-    met[i / 2].sigma_m[i % 2] = sigma(i);
+    PressedPlace& place = met[i / 2].place;
+    place.node = nodes[i / 2];
+    place.sigma_m[i % 2] = sigma(i);
+    place.u_mpN[i % 2] = u.col(col);
+    if (i % 2 == 0) place.give_mpN = g.col(col).dot(u.col(col));
     const double half_space =
         gaussian_self_compliance_mpN(kDim == 2, body.contact_modulus(nodes[i / 2]), sigma(i), surface.extent_m());
     const double edges = surface.edge_m(nodes[i / 2]) / sigma(i);
@@ -134,7 +137,7 @@ std::vector<Met> meet(const RestBody<kDim>& body, std::span<const int> nodes, co
 
 template <int kDim>
 std::vector<SelfSample> self_samples(const RestBody<kDim>& body, const std::vector<int>& nodes, double probe_m,
-                                     const PatchOptions& patch) {
+                                     const PatchOptions& patch, const PlaceListener& listen) {
   const Surface<kDim>& surface = body.surface();
   for (const int node : nodes)
     if (surface.facets_at(node).empty())
@@ -142,16 +145,20 @@ std::vector<SelfSample> self_samples(const RestBody<kDim>& body, const std::vect
   std::vector<SelfSample> samples;
   for (std::size_t first = 0; first < nodes.size(); first += kTogether) {
     const auto some = std::span(nodes).subspan(first, std::min(kTogether, nodes.size() - first));
-    const std::vector<Met> met = meet(body, some, patch);
+    std::vector<Met> met = meet(body, some, patch);
+    Eigen::MatrixXd second(body.size(), static_cast<Eigen::Index>(listen ? some.size() : 0));
     for (std::size_t i = 0; i < some.size(); ++i) {
-      const Eigen::VectorXd& u = met[i].u_mpN;
+      const PressedPlace& place = met[i].place;
+      const Eigen::VectorXd& u = place.u_mpN[0];
       SelfSample sample;
       sample.node = some[i];
       sample.width =
-          WidthLaw(met[i].give_mpN, met[i].sigma_m, body.contact_modulus(some[i]), body.material().poisson_ratio);
+          WidthLaw(met[i].give_mpN, place.sigma_m, body.contact_modulus(some[i]), body.material().poisson_ratio);
       sample.curvature_1pm = node_curvature(surface, some[i]);
       const double scale = probe_m / u.cwiseAbs().maxCoeff();
-      sample.third_mpN2 = (body.internal_force(scale * u) + body.internal_force(-scale * u)).dot(u) / (scale * scale);
+      const Eigen::VectorXd bent = body.internal_force(scale * u) + body.internal_force(-scale * u);
+      sample.third_mpN2 = bent.dot(u) / (scale * scale);
+      if (listen) second.col(static_cast<Eigen::Index>(i)) = bent * (-0.5 / (scale * scale));
       // A wall's second order is of the third power in how far it gives: on a dome the patches of 4.4 and 3.3 mm stand
       // as 1 to 1.07 in R and 1 to 1.23 in this (2026-11-23). Along the patches' parabola: a plate's own growth, more,
       // leaves half shells and tubes 0.6 to 1 % softer at 5 mm (2026-11-25).
@@ -161,6 +168,12 @@ std::vector<SelfSample> self_samples(const RestBody<kDim>& body, const std::vect
         sample.third_mpN2 *= grows * grows * grows;
       }
       samples.push_back(sample);
+    }
+    if (!listen) continue;
+    second = body.solve_all(second);
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      met[i].place.second_mpN2 = second.col(static_cast<Eigen::Index>(i));
+      listen(met[i].place);
     }
   }
   return samples;
@@ -194,7 +207,7 @@ SelfTerms self_terms(const RestBody<kDim>& body, const SurfaceModes& modes, cons
   template Eigen::VectorXd gaussian_patch<kDim>(const RestBody<kDim>&, const Vector<kDim>&, const Vector<kDim>&, \
                                                 double);                                                         \
   template std::vector<SelfSample> self_samples<kDim>(const RestBody<kDim>&, const std::vector<int>&, double,    \
-                                                      const PatchOptions&);                                      \
+                                                      const PatchOptions&, const PlaceListener&);                \
   template SelfTerms self_terms<kDim>(const RestBody<kDim>&, const SurfaceModes&, const SoftMaps&,               \
                                       const std::vector<SelfSample>&);
 PALPATE_ELASTIC_SELF(2)

@@ -11,6 +11,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <vector>
 
 #include "config/elastic/soft_maps.h"
@@ -56,10 +57,20 @@ struct PatchOptions {
   double too_stiff = 0;
 };
 
-// At the given surface nodes. `probe_m`: largest displacement of the second order's difference.
+// How the whole body answers a patch at a node, for whoever draws it.
+struct PressedPlace {
+  int node = 0;
+  double sigma_m[2] = {}, give_mpN = 0;  // of the two patches; where the first presses, all of it
+  Eigen::VectorXd u_mpN[2];              // under a newton
+  Eigen::VectorXd second_mpN2;           // -1/2 K^-1 K2(u, u) of the first: what F^2 adds
+};
+using PlaceListener = std::function<void(const PressedPlace&)>;
+
+// At the given surface nodes. `probe_m`: largest displacement of the second order's difference. With `listen` each
+// place costs one more solve.
 template <int kDim>
 std::vector<SelfSample> self_samples(const RestBody<kDim>& body, const std::vector<int>& nodes, double probe_m,
-                                     const PatchOptions& patch);
+                                     const PatchOptions& patch, const PlaceListener& listen = {});
 template <int kDim>
 SelfTerms self_terms(const RestBody<kDim>& body, const SurfaceModes& modes, const SoftMaps& maps,
                      const std::vector<SelfSample>& samples);

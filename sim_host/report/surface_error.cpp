@@ -47,8 +47,7 @@ class DrawnSurface {
       moved += share * displacement_m_[v];
       normal += share * model_.vertex_normal[v];
     }
-    const Vec3 carried = rest_m + moved;
-    for (const TipDent& dent : dents_) moved += dent.at(carried, unit_or(normal, face));
+    for (const TipDent& dent : dents_) moved += dent.at(rest_m, unit_or(normal, face));
     return moved;
   }
 

@@ -49,9 +49,7 @@ Real contact_drawn_in(Real rho) {
   return rho * (1 + s + s * s) / (1 + s);
 }
 
-Real contact_drawn_in_share(Real poisson_ratio) {
-  return 2 * (1 - 2 * poisson_ratio) / (3 * kPi * (1 - poisson_ratio));
-}
+Real contact_drawn_in_by_force(Real poisson_ratio) { return (1 - 2 * poisson_ratio) / (2 * kPi * (1 - poisson_ratio)); }
 
 Real fade_out(Real distance_m, Real from_m, Real to_m) {
   if (!(distance_m < to_m)) return 0;
@@ -63,6 +61,15 @@ Real fade_out(Real distance_m, Real from_m, Real to_m) {
 Real ContactEllipse::radii(Vec3 from_middle) const {
   const Real x = dot(from_middle, along);
   return std::hypot(x / along_m, norm(from_middle - x * along) / across_m);
+}
+
+// x^2 / (A + t) + y^2 / (B + t) = 1, A and B the squares of the half axes.
+Real ContactEllipse::radii_outside(Vec3 from_middle) const {
+  const Real x = dot(from_middle, along), long2 = along_m * along_m, across2 = across_m * across_m;
+  const Real x2 = x * x, y2 = squared_norm(from_middle - x * along);
+  const Real b = x2 + y2 - long2 - across2, c = x2 * across2 + y2 * long2 - long2 * across2;
+  const Real t = std::max(0.5 * (b + std::sqrt(std::max(b * b + 4 * c, 0.0))), 0.0);
+  return std::sqrt(std::sqrt((1 + t / long2) * (1 + t / across2)));
 }
 
 ContactEllipse ball_contact(Real depth_m, Real ball_radius_m, const SurfaceBend& surface) {

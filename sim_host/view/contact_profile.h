@@ -25,8 +25,9 @@ Real contact_pressure(TipShape shape, Real rho);
 // (contact_drawn_in_share), by Hertz' pressure (Johnson 1985, eqs. 3.41b and 3.42b): nothing in the middle, inside
 // (1 - (1 - rho^2)^1.5) / rho, outside 1/rho.
 Real contact_drawn_in(Real rho);
-// At the edge, of the contact's depth: 2 (1 - 2 nu) / (3 pi (1 - nu)). 0 for a material that keeps its volume.
-Real contact_drawn_in_share(Real poisson_ratio);
+// At the edge, of force / (contact modulus x radius): (1 - 2 nu) / (2 pi (1 - nu)). 0 for a material that keeps its
+// volume.
+Real contact_drawn_in_by_force(Real poisson_ratio);
 
 // Half spaces end: 1 up to `from_m`, 0 from `to_m` on, between them falling without a kink.
 Real fade_out(Real distance_m, Real from_m, Real to_m);
@@ -39,6 +40,9 @@ struct ContactEllipse {
   // Distance from its middle in contact radii. The whole distance counts, not that on the surface: what lies far below
   // the tip, as a ring's other side, is far from it.
   Real radii(Vec3 from_middle) const;
+  // Beyond the edge (radii() >= 1) by the ellipses with the same foci instead, as far as the mean of their half axes in
+  // those of the edge: from far away all directions are alike.
+  Real radii_outside(Vec3 from_middle) const;
 };
 
 // How a surface bends at a place: principal curvatures (1/m, positive where it bulges), the smaller one along `along`.

@@ -84,10 +84,9 @@ void add_dents(const std::vector<TipDent>& dents, DeformedSurface& surface, std:
   if (rest_normal.empty()) made = mesh_normals(surface.rest_m, surface.triangle);
   const std::span<const Vec3> normal = made.empty() ? rest_normal : made;
   for (std::size_t i = 0; i < surface.rest_m.size(); ++i) {
-    const Vec3 carried = surface.rest_m[i] + surface.displacement_m[i];
     for (const TipDent& dent : dents) {
-      surface.displacement_m[i] += dent.at(carried, normal[i]);
-      surface.pressure_Pa[i] += dent.pressure_Pa(carried, normal[i]);
+      surface.displacement_m[i] += dent.at(surface.rest_m[i], normal[i]);
+      surface.pressure_Pa[i] += dent.pressure_Pa(surface.rest_m[i], normal[i]);
     }
   }
 }

@@ -4,11 +4,12 @@
 #include <array>
 #include <cmath>
 
+#include "rt_core/contact/elastic/drawn_shapes.h"
 #include "rt_core/contact/elastic/linearised.h"
-#include "rt_core/contact/elastic/near_field.h"
-#include "rt_core/contact/region_solve.h"
 #include "rt_core/tool/articulate.h"
 #include "sim_host/view/contact_profile.h"
+#include "sim_host/view/far_field.h"
+#include "sim_host/view/surface_bend.h"
 
 namespace palpate {
 
@@ -56,43 +57,72 @@ double force_of(const TouchingTip& tip, const State& state, const std::vector<To
   return state.region[tip.region].normal_force_N / static_cast<double>(sharing);
 }
 
-// Of the linear modes, J^1/2.
-std::array<double, kMaxLinearModes> linear_amplitudes(const Model& model, const State& state,
-                                                      const std::vector<TouchingTip>& tips) {
-  std::array<double, kMaxLinearModes> amplitude{};
-  for (const TouchingTip& tip : tips) {
-    const double force_N = force_of(tip, state, tips);
-    double along[kMaxLinearModes];
-    show_linear_modes(model, tip.row, along);
-    for (std::int32_t m = 0; m < model.params.elastic_linear; ++m)
-      amplitude[static_cast<std::size_t>(m)] -= force_N * along[m];
+constexpr double kNarrowest_m = 1e-9;
+// Where a deep ball has drawn the contact's edge in to, of what half a space says: on a pad and a disc half to two
+// thirds.
+constexpr double kDrawnInAtEdge = 0.6;
+// Of what draws in, times the contact's radius over the ball's: fitted to the places inside the contacts of `pad` and
+// `disc` of tests/accuracy; at nu of 0.15 to 0.49 it is as much of what draws in.
+constexpr double kSpread = 0.9;
+// Of a contact's dent, at its edge: where the rings and the force do not fit one another.
+constexpr double kLeastEdge = 0.25, kMostEdge = 0.8;
+
+// Where a body's bend is looked for, in radii of the contact, and what of a ball's a hollow may take.
+constexpr double kBendReach = 2, kLeastBend = 0.25, kLongestBall = 1.5;
+
+double contact_modulus_Pa(const Model& model, const ElasticRow& row) {
+  const ModelParams& p = model.params;
+  return row.modulus * p.youngs_modulus_Pa / (1 - p.poisson_ratio * p.poisson_ratio);
+}
+
+// A ball's contact: as wide as makes the dent one at its edge, inside on the ball and outside by the force,
+//   travel - far - sag of ball and body = 3 F / (8 E* a),
+// the wider of two such places; the ball's sag where the edge has been drawn in to.
+struct BallContact {
+  const ElasticRow& row;
+  double travel_m, force_N, modulus_Pa, drawn_in_m2;  // the last: at the edge, times the radius
+
+  double sag_m(double radius_m) const {
+    const double ball_m = row.tip.margin_m;
+    const double drawn_m = std::min(kDrawnInAtEdge * drawn_in_m2 / radius_m, 0.5 * radius_m);
+    const double now_m = std::min(radius_m - drawn_m, 0.98 * ball_m);
+    return ball_m - std::sqrt(ball_m * ball_m - now_m * now_m) + 0.5 * row.curvature_1_per_m * radius_m * radius_m;
   }
-  return amplitude;
+  double inside_m(const FarBelow& far, double radius_m) const {
+    return travel_m - far.value_m - far.bend_m - sag_m(radius_m);
+  }
+  double outside_m(double radius_m) const { return 3 * force_N / (8 * modulus_Pa * radius_m); }
+  // Looked for between half and 1.6 times the radius where the far field was told; that radius where there is none.
+  double wide_m(const FarBelow& far, double told_m) const {
+    const auto left_m = [&](double a) {
+      return inside_m({far.value_m, far.bend_m * a * a / (told_m * told_m)}, a) - outside_m(a);
+    };
+    constexpr double kStep = 0.97;
+    double low = std::min(1.6 * told_m, row.tip.margin_m), high = low;
+    while (low > 0.5 * told_m && !(left_m(low) > 0)) high = low, low *= kStep;
+    if (!(left_m(low) > 0) || low == high) return told_m;
+    for (int i = 0; i < 30; ++i) (left_m(0.5 * (low + high)) > 0 ? low : high) = 0.5 * (low + high);
+    return low;
+  }
+};
+
+// `v` with what turns one direction into another, by the shortest way.
+Vec3 turned(Vec3 v, Vec3 from, Vec3 to) {
+  const Vec3 axis = cross(from, to), once = cross(axis, v);
+  return v + once + (1 / std::max(1 + dot(from, to), 1e-6)) * cross(axis, once);
 }
 
-Vec3 linear_displacement(const Model& model, std::int32_t vertex, const std::vector<double>& amplitude) {
-  const float* shape = elastic_layout::linear_shapes(model, vertex);
-  Vec3 sum;
-  for (std::int32_t m = 0; m < model.params.elastic_linear; ++m)
-    sum += amplitude[static_cast<std::size_t>(m)] * Vec3{static_cast<double>(shape[3 * m]),
-                                                         static_cast<double>(shape[3 * m + 1]),
-                                                         static_cast<double>(shape[3 * m + 2])};
-  return sum;
-}
-
-// What the near field leaves of 1 / r.
-double left_of_half_space(double by_cut) { return 1 - by_cut / std::sqrt(by_cut * by_cut + 1); }
-
-TipDent dent_of(const TouchingTip& tip, double depth_m) {
-  const ElasticRow& row = tip.row;
+TipDent dent_of(const Model& model, const ElasticRow& row, double depth_m) {
   TipDent dent;
-  dent.foot_w = row.foot.foot_w;
-  dent.inward = -row.foot.normal_w;
   dent.depth_m = depth_m;
+  dent.edge_m = 0.5 * depth_m;
   const double radius = row.tip.margin_m, body = std::max(1 + row.curvature_1_per_m * radius, 0.25);
   dent.across_m = dent.along_m = std::sqrt(depth_m * radius / body);
-  const Vec3 axis = tangential_part(row.tip.half_axis_w, row.foot.normal_w);
-  dent.along = unit_or(axis, unit_or(cross(dent.inward, axis_off(dent.inward)), {1, 0, 0}));
+  const Vec3 axis = tangential_part(row.tip.half_axis_w, row.foot.normal_w), inward = -row.foot.normal_w;
+  dent.now = {inward, unit_or(axis, unit_or(cross(inward, axis_off(inward)), {1, 0, 0}))};
+  const RestFoot foot = rest_foot(model, row.foot);
+  dent.foot_m = foot.place_m;
+  dent.rest = {-foot.normal, turned(dent.now.along, inward, -foot.normal)};
   if (row.tip.is_ball()) return dent;
   // As far as it is straight from where its force acts, and the body bends away.
   const double straight = dent.across_m + (1 - std::abs(row.tip.along)) * norm(row.tip.half_axis_w);
@@ -102,31 +132,81 @@ TipDent dent_of(const TouchingTip& tip, double depth_m) {
   return dent;
 }
 
+// Gives a ball's dent its radius, and what it is at its edge.
+void widen(const ElasticFarField& far, const BallContact& contact, TipDent& dent) {
+  double radius_m = dent.across_m;
+  for (int i = 0; i < 2; ++i)  // the second time with the rings where they belong
+    radius_m = contact.wide_m(far.below(contact.row, radius_m), radius_m);
+  dent.across_m = dent.along_m = radius_m;
+  const double edge_m = contact.inside_m(far.below(contact.row, radius_m), radius_m);
+  dent.edge_m = std::clamp(edge_m, kLeastEdge * dent.depth_m, kMostEdge * dent.depth_m);
+}
+
+// On a body that bends differently in two directions the contact is longer where it bends less: as far as keeps the
+// same depth below the ball.
+void lengthen(const Model& model, double ball_m, TipDent& dent) {
+  const double radius_m = dent.across_m;
+  const SurfaceBend bend = surface_bend(model, dent.foot_m, -dent.rest.inward, kBendReach * radius_m);
+  const double least = kLeastBend / ball_m, most_1_per_m = std::max(1 / ball_m + bend.most_1_per_m, least),
+               least_1_per_m = std::max(1 / ball_m + bend.least_1_per_m, least);
+  const double ratio = std::min(std::sqrt(std::sqrt(most_1_per_m / least_1_per_m)), kLongestBall);
+  dent.across_m = radius_m / ratio;
+  dent.along_m = radius_m * ratio;
+  dent.rest.along = unit_or(tangential_part(bend.along, dent.rest.inward), dent.rest.along);
+  dent.now.along = turned(dent.rest.along, dent.rest.inward, dent.now.inward);
+}
+
+TipDent made_dent(const Model& model, const ElasticFarField& far, const ElasticRow& row, double travel_m,
+                  double depth_m, double force_N) {
+  TipDent dent = dent_of(model, row, depth_m);
+  const double modulus_Pa = contact_modulus_Pa(model, row);
+  const double drawn_in_m2 = contact_drawn_in_by_force(model.params.poisson_ratio) * force_N / modulus_Pa;
+  if (row.tip.is_ball() && row.tip.margin_m > 0) {
+    widen(far, {row, travel_m, force_N, modulus_Pa, drawn_in_m2}, dent);
+    lengthen(model, row.tip.margin_m, dent);
+  }
+  const double width_m = std::max(std::sqrt(dent.across_m * dent.along_m), kNarrowest_m);
+  dent.far_m = 3 * force_N / (4 * modulus_Pa * width_m);
+  dent.mean_Pa = force_N / (kPi * width_m * width_m);
+  dent.drawn_in_m = drawn_in_m2 / width_m;
+  dent.spread = kSpread * std::min(width_m / std::max(row.tip.margin_m, kNarrowest_m), 1.0);
+  dent.reach_m = drawn_shapes::reach_m(model.vertex_m);
+  return dent;
+}
+
+// What the other tips' dents are at a tip's foot, from far away: the force over pi E* r.
+double under_others_m(const Model& model, const TouchingTip& tip, const State& state,
+                      const std::vector<TouchingTip>& tips) {
+  const Vec3 foot_w = tip.row.foot.foot_w, up = tip.row.foot.normal_w;
+  const double reach_m = drawn_shapes::reach_m(model.vertex_m);
+  double sum_m = 0;
+  for (const TouchingTip& other : tips) {
+    if (&other == &tip) continue;
+    const double r = norm(foot_w - other.row.foot.foot_w);
+    const double least = std::sqrt(std::max(other.row.travel_m, 0.0) * other.row.tip.margin_m);
+    sum_m += drawn_shapes::outlook(up, -other.row.foot.normal_w) * drawn_shapes::near(r, reach_m) *
+             dot(up, other.row.foot.normal_w) * force_of(other, state, tips) /
+             (kPi * contact_modulus_Pa(model, other.row) * std::max({r, least, kNarrowest_m}));
+  }
+  return sum_m;
+}
+
 }  // namespace
 
 ElasticShape elastic_shape(const Model& model, const State& state) {
   Amplitudes soft(model, state);
   const std::vector<TouchingTip> tips = touching_tips(model, state, soft);
-  const std::array<double, kMaxLinearModes> linear = linear_amplitudes(model, state, tips);
-  ElasticShape shape{{soft.product, soft.product + elastic_layout::terms(model.params.elastic_soft)},
-                     {linear.begin(), linear.begin() + model.params.elastic_linear},
-                     {}};
-  const NearField near{far_field_scale_m2_per_N(model.params.youngs_modulus_Pa, model.params.poisson_ratio)};
+  ElasticFarField far(model);
+  for (const TouchingTip& tip : tips) far.add(tip.row, force_of(tip, state, tips));
+  const std::int32_t terms = elastic_layout::terms(model.params.elastic_soft);
+  ElasticShape shape{{soft.product, soft.product + terms}, far.amplitude_m(), {}};
   for (const TouchingTip& tip : tips) {
-    double along[kMaxLinearModes], given_m = 0, modes_m_per_N = 0;
-    show_linear_modes(model, tip.row, along);
-    for (std::int32_t m = 0; m < model.params.elastic_linear; ++m) {
-      given_m -= along[m] * linear[static_cast<std::size_t>(m)];
-      modes_m_per_N += along[m] * along[m];
+    const double travel_m = tip.row.travel_m - under_others_m(model, tip, state, tips);
+    const Vec3 carried = far.at(tip.row.foot.triangle, tip.row.foot.weight);
+    if (const double depth_m = travel_m + dot(carried, tip.row.foot.normal_w); depth_m > 0) {
+      shape.dent.push_back(made_dent(model, far, tip.row, travel_m, depth_m, force_of(tip, state, tips)));
+      shape.dent.back().mean_Pa *= state.live.stiffness;
     }
-    const double depth_m = tip.row.travel_m - given_m;
-    if (!(depth_m > 0)) continue;
-    TipDent dent = dent_of(tip, depth_m);
-    dent.mean_Pa = state.live.stiffness * force_of(tip, state, tips) / (kPi * dent.across_m * dent.along_m);
-    dent.foot_w += given_m * dent.inward;
-    dent.drawn_in_m = contact_drawn_in_share(model.params.poisson_ratio) * depth_m;
-    dent.cut_1_per_m = near.cut_1_per_m(modes_m_per_N, tip.row.c_m_per_N);
-    shape.dent.push_back(dent);
   }
   return shape;
 }
@@ -136,29 +216,30 @@ std::vector<Vec3> mode_displacement_m(const Model& model, const ElasticShape& sh
   const CarriedSurface carried{model, shape.soft.data(), &looked, &shown};
   std::vector<Vec3> displacement;
   for (std::int32_t v = 0; v < model.sizes.n_vertex; ++v)
-    displacement.push_back(carried.displacement(v) + linear_displacement(model, v, shape.linear));
+    displacement.push_back(carried.displacement(v) + drawn_shapes::displacement_m(model, v, shape.drawn));
   return displacement;
 }
 
-Vec3 TipDent::at(Vec3 point_w, Vec3 normal) const {
-  const double facing = -dot(normal, inward);
-  if (!(facing > 0)) return {};
+Vec3 TipDent::at(Vec3 rest_m, Vec3 normal) const {
   // The whole distance: what lies far below the tip, as a ring's other side, is far from it.
-  const Vec3 from = point_w - foot_w;
-  const double rho = ContactEllipse{along, across_m, along_m}.radii(from);
-  const double fade = fade_out(rho, 0.5 * kDentReach, kDentReach);
-  const double edge = across_m * cut_1_per_m,
-               ends = left_of_half_space(std::max(rho, 1.0) * edge) / left_of_half_space(edge);
-  const double deep = depth_m * contact_profile(TipShape::kBall, rho) * fade_out((rho - 1) * edge, 0, kModesTakeOver);
+  const Vec3 from = rest_m - foot_m;
+  const double share = drawn_shapes::outlook(normal, rest.inward) * drawn_shapes::near(norm(from), reach_m);
+  if (!(share > 0)) return {};
+  const ContactEllipse ellipse{rest.along, across_m, along_m};
+  const double inside = ellipse.radii(from), rho = inside < 1 ? inside : ellipse.radii_outside(from);
+  const double deep = rho < 1 ? depth_m - (depth_m - edge_m) * rho * rho
+                              : contact_profile(TipShape::kBall, rho) * (far_m + (2 * edge_m - far_m) / (rho * rho));
+  const double drawn = contact_drawn_in(rho) - (rho < 1 ? spread * rho * std::sqrt(1 - rho * rho) : 0.0);
   // Towards the middle across the ellipse's lines of equal rho.
-  const Vec3 aside = tangential_part(from, inward), length = dot(aside, along) * along;
-  const Vec3 outward = unit_or((across_m * across_m / (along_m * along_m)) * length + (aside - length), {0, 0, 0});
-  return (ends * fade * std::min(1.0, 2 * facing)) * (deep * inward - drawn_in_m * contact_drawn_in(rho) * outward);
+  const double narrow = across_m * across_m / (along_m * along_m);
+  const Vec3 outward = narrow * dot(from, rest.along) * now.along + dot(from, rest.across()) * now.across();
+  return share * (deep * now.inward - drawn_in_m * drawn * unit_or(outward, {0, 0, 0}));
 }
 
-double TipDent::pressure_Pa(Vec3 point_w, Vec3 normal) const {
-  if (!(dot(normal, inward) < 0)) return 0;
-  return mean_Pa * contact_pressure(TipShape::kBall, ContactEllipse{along, across_m, along_m}.radii(point_w - foot_w));
+double TipDent::pressure_Pa(Vec3 rest_m, Vec3 normal) const {
+  if (!(dot(normal, rest.inward) < 0)) return 0;
+  return mean_Pa *
+         contact_pressure(TipShape::kBall, ContactEllipse{rest.along, across_m, along_m}.radii(rest_m - foot_m));
 }
 
 }  // namespace palpate

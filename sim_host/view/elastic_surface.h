@@ -1,4 +1,5 @@
-// The solved surface of an elastic body: its modes, and under every tip the dent with its true radius.
+// The solved surface of an elastic body: its soft modes, what finite elements gave for a press at the tips' places, and
+// under every tip the contact with its true radius.
 #pragma once
 
 #include <vector>
@@ -8,44 +9,43 @@
 
 namespace palpate {
 
-// A dent is drawn out to this many radii, fading over the second half: beyond, the modes hold what the body does.
-inline constexpr double kDentReach = 8;
-
-// What goes along the normal is gone this many lengths 1 / cut_1_per_m beyond the contact's edge: the linear modes hold
-// all of it there. Without, the surface around a ball was 2 to 6 % of the travel too deep two to four radii away, on
-// all of the cases of docs/accuracy.md that were kept back; from 0.7 to 1.4 their mean RMS changes by 0.2 % of it.
-inline constexpr double kModesTakeOver = 1.2;
-
-// What a tip in contact adds: the profile of a frictionless contact on a half space (Hertz; Johnson 1985, eq. 3.42),
-// an ellipse where a capsule lies on its side, deep enough that the surface meets the tip, and drawn in towards the
-// middle as such a contact does. Around it the dent falls as two tips' lean on one another does
-// (rt_core/contact/elastic/near_field.h), where the linear modes take over or a wall or a layer ends: a dent of half a
-// space around a ball on a pad was 15 % of the travel off, RMS (2026-11-25).
+// What a tip in contact adds: half a space under its pressure, less what drawn_shapes.h has of it already (nothing). In
+// the contact the surface lies on the tip: `depth_m` in its middle, `edge_m` at its edge. Around it half a space does
+// as the force says (Hertz; Johnson 1985, eqs. 3.42), which at the edge of a ball's contact is `edge_m` too: that says
+// how wide the contact is. A contact draws the surface in towards its middle (eqs. 3.41b and 3.42b); where the ball is
+// deep its pressure leans outwards, by the slope of the ball, and takes most of that back.
 struct TipDent {
-  Vec3 foot_w;               // deepest place, on the surface as the modes carry it
-  Vec3 inward;               // unit
-  Vec3 along;                // unit, of the ellipse's longer axis
-  double depth_m;            // what the modes leave of the tip's overlap
-  double across_m, along_m;  // the contact's half axes
-  double mean_Pa = 0;        // its force over its area
-  double cut_1_per_m = 0;    // 1 / the length that the half space ends at; 0: never
-  double drawn_in_m = 0;     // at the contact's edge, towards its middle
+  // Unit directions at a tip's foot; the third is what is left of a right-handed frame.
+  struct Frame {
+    Vec3 inward, along;  // along: the ellipse's longer axis
+    Vec3 across() const { return cross(inward, along); }
+  };
+  Vec3 foot_m;                       // deepest place, on the surface at rest
+  Frame rest, now;                   // there, and as everything else carries it
+  double depth_m = 0;                // what is left of the tip's overlap
+  double across_m = 0, along_m = 0;  // the contact's half axes
+  double mean_Pa = 0;                // its force over its area
+  double edge_m = 0;                 // of the dent, at the contact's edge
+  double far_m = 0;        // depth that a paraboloid of that width and force has, whose dent this is from far away
+  double drawn_in_m = 0;   // at the contact's edge, towards its middle
+  double spread = 0;       // what of it is taken back inside, at the edge's slope
+  double reach_m = kHuge;  // drawn_shapes::near
 
-  // At a point of the carried surface whose normal at rest is `normal`; nothing on sides that face away.
-  Vec3 at(Vec3 point_w, Vec3 normal) const;
-  double pressure_Pa(Vec3 point_w, Vec3 normal) const;
+  // At a point of the surface at rest, with its normal there; nothing on sides that face away.
+  Vec3 at(Vec3 rest_m, Vec3 normal) const;
+  double pressure_Pa(Vec3 rest_m, Vec3 normal) const;
 };
 
 // All that the surface of a state follows from, few numbers: whoever has the modes' shapes makes the surface of it,
 // here or in the viewer's vertex shader (sim_host/viewer/shader_surface.h).
 struct ElasticShape {
-  std::vector<double> soft;    // soft_products: amplitudes, then their pairs
-  std::vector<double> linear;  // amplitudes, J^1/2, under the forces of the regions
+  std::vector<double> soft;   // soft_products: amplitudes, then their pairs
+  std::vector<double> drawn;  // m, of drawn_shapes.h, by all tips
   std::vector<TipDent> dent;
 };
 ElasticShape elastic_shape(const Model& model, const State& state);
 
-// By the soft modes (with their second order) and the linear ones; of every vertex.
+// By the soft modes (with their second order) and the drawn shapes; of every vertex.
 std::vector<Vec3> mode_displacement_m(const Model& model, const ElasticShape& shape);
 
 }  // namespace palpate

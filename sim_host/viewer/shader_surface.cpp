@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include "rt_core/contact/contact.h"
-#include "rt_core/contact/elastic/elastic_layout.h"
+#include "rt_core/contact/elastic/drawn_shapes.h"
 #include "sim_host/viewer/surface_shaders.h"
 
 namespace palpate {
@@ -54,11 +54,11 @@ std::vector<Texel> shapes_of(const Model& model) {
   std::vector<Texel> shape;
   for (std::int32_t v = 0; v < model.sizes.n_vertex; ++v) {
     const float* block = elastic_layout::vertex_block(model, v);
-    const float* linear = elastic_layout::linear_shapes(model, v);
+    const float* drawn = drawn_shapes::at(model, v);
     for (std::int32_t t = 0; t < soft; ++t, block += elastic_layout::kTermFloats)
       shape.push_back({block[0], block[1], block[2], 0});
-    for (std::int32_t m = 0; m < model.params.elastic_linear; ++m, linear += 3)
-      shape.push_back({linear[0], linear[1], linear[2], 0});
+    for (std::int32_t k = 0; k < drawn_shapes::count(model); ++k, drawn += elastic_layout::kDrawnFloats)
+      shape.push_back({drawn[0], drawn[1], drawn[2], 0});
   }
   return shape;
 }
@@ -140,7 +140,7 @@ bool ShaderSurface::can(const Model& model, std::size_t most_triangles) {
   GLint most_texels = 0;
   glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most_texels);
   const std::size_t triangles = std::max(most_triangles, model.triangle.size());
-  const std::size_t terms = at(elastic_layout::terms(model.params.elastic_soft) + model.params.elastic_linear);
+  const std::size_t terms = at(elastic_layout::terms(model.params.elastic_soft) + drawn_shapes::count(model));
   // Rings have three pairs for each triangle, in full and coarser, and one for each corner on a crease.
   return std::max(8 * triangles, terms * model.vertex_m.size()) < static_cast<std::size_t>(most_texels);
 }
@@ -157,7 +157,7 @@ ShaderSurface::ShaderSurface(const Model& model, const RefinedBody& refined, con
       pressure_(GL_R32F),
       ring_(GL_RG32I),
       base_(static_cast<std::int32_t>(model.sizes.n_vertex)),
-      terms_(elastic_layout::terms(model.params.elastic_soft) + model.params.elastic_linear) {
+      terms_(elastic_layout::terms(model.params.elastic_soft) + drawn_shapes::count(model)) {
   static_assert(offsetof(DrawnVertex, normal) == 12 && offsetof(DrawnVertex, displacement_m) == 24 &&
                 sizeof(DrawnVertex) == 32);
   const std::vector<Texel> shape = shapes_of(model);
@@ -232,7 +232,7 @@ void ShaderSurface::evaluate(const ElasticShape& shape, const GlMesh& body, bool
   const Level& level = level_[fewer && level_[1].array != 0 ? 1 : 0];
   std::vector<float> amplitude;
   for (const double a : shape.soft) amplitude.push_back(static_cast<float>(a));
-  for (const double a : shape.linear) amplitude.push_back(static_cast<float>(a));
+  for (const double a : shape.drawn) amplitude.push_back(static_cast<float>(a));
   amplitudes_.set(amplitude.data(), sizeof(float) * amplitude.size(), GL_STREAM_DRAW);
   modes_.use();
   modes_.set("terms", terms_);
@@ -242,14 +242,13 @@ void ShaderSurface::evaluate(const ElasticShape& shape, const GlMesh& body, bool
 
   std::vector<Texel> dent;
   for (const TipDent& d : shape.dent)
-    dent.insert(dent.end(), {texel(d.foot_w, d.depth_m), texel(d.inward, d.across_m), texel(d.along, d.along_m),
-                             texel({d.mean_Pa, d.cut_1_per_m, d.drawn_in_m}, 0)});
+    dent.insert(dent.end(), {texel(d.foot_m, d.depth_m), texel(d.rest.inward, d.across_m),
+                             texel(d.rest.along, d.along_m), texel({d.mean_Pa, d.edge_m, d.far_m}, d.drawn_in_m),
+                             texel({d.spread, d.reach_m, 0}, 0), texel(d.now.inward, 0), texel(d.now.along, 0)});
   has_dents_ = !dent.empty();
   if (has_dents_) dents_.set(dent.data(), sizeof(Texel) * dent.size(), GL_STREAM_DRAW);
   points_.use();
   points_.set("dents", static_cast<int>(shape.dent.size()));
-  points_.set("reach", static_cast<float>(kDentReach));
-  points_.set("take_over", static_cast<float>(kModesTakeOver));
   carried_.look_up(points_, "carried", 0);
   dents_.look_up(points_, "dent", 1);
   keep_vertices(point_array_, level.points, {placed_.buffer(), pressure_.buffer()});

@@ -22,9 +22,8 @@ layout(location = 0) in vec3 rest;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in uvec3 base;
 layout(location = 3) in vec3 share;
-uniform samplerBuffer carried, dent;  // of a dent: foot, depth; inward, across; along, along_m; mean, cut, drawn in
+uniform samplerBuffer carried, dent;
 uniform int dents;
-uniform float reach, take_over;
 out vec4 placed;  // position, length of the displacement
 out float pressure;
 const float pi = 3.14159265358979;
@@ -44,31 +43,41 @@ float fade_out(float way) {
   float s = clamp(way, 0.0, 1.0);
   return (1.0 - s) * (1.0 - s) * (1.0 + 2.0 * s);
 }
-float left(float by_cut) { return 1.0 - by_cut / sqrt(by_cut * by_cut + 1.0); }
+// Beyond the edge, by ellipses with its foci (ContactEllipse::radii_outside).
+float outside(float x2, float y2, float long2, float across2) {
+  float b = x2 + y2 - long2 - across2, c = x2 * across2 + y2 * long2 - long2 * across2;
+  float t = max(0.5 * (b + sqrt(max(b * b + 4.0 * c, 0.0))), 0.0);
+  return sqrt(sqrt((1.0 + t / long2) * (1.0 + t / across2)));
+}
 void main() {
   vec3 u = share.x * texelFetch(carried, int(base.x)).xyz + share.y * texelFetch(carried, int(base.y)).xyz +
            share.z * texelFetch(carried, int(base.z)).xyz;
-  vec3 at = rest + u;
   pressure = 0.0;
   for (int i = 0; i < dents; ++i) {
-    vec4 foot = texelFetch(dent, 4 * i), inward = texelFetch(dent, 4 * i + 1), along = texelFetch(dent, 4 * i + 2);
-    float facing = -dot(normal, inward.xyz);
-    if (!(facing > 0.0)) continue;
-    vec3 from = at - foot.xyz;
-    float x = dot(from, along.xyz);
-    float rho = length(vec2(x / along.w, length(from - x * along.xyz) / inward.w));
-    if (!(rho < reach)) continue;
-    vec3 more = texelFetch(dent, 4 * i + 3).xyz;
-    float edge = inward.w * more.y, ends = left(max(rho, 1.0) * edge) / left(edge);
-    float deep = foot.w * profile(rho) * fade_out((rho - 1.0) * edge / take_over);
-    vec3 aside = from - dot(from, inward.xyz) * inward.xyz, lengthwise = x * along.xyz;
+    vec4 foot = texelFetch(dent, 7 * i);  // at rest; depth
+    vec4 inward = texelFetch(dent, 7 * i + 1), along = texelFetch(dent, 7 * i + 2);  // at rest; half axes across, along
+    vec4 more = texelFetch(dent, 7 * i + 3);  // mean, edge, far, drawn in
+    vec2 last = texelFetch(dent, 7 * i + 4).xy;  // spread, reach
+    vec3 inward_now = texelFetch(dent, 7 * i + 5).xyz, along_now = texelFetch(dent, 7 * i + 6).xyz;
+    vec3 from = rest - foot.xyz;
+    float how = clamp(-2.0 * dot(normal, inward.xyz), 0.0, 1.0) * fade_out(2.0 * length(from) / last.y - 1.0);
+    if (!(how > 0.0)) continue;
+    float x = dot(from, along.xyz), y = length(from - x * along.xyz);
+    float rho = length(vec2(x / along.w, y / inward.w)), deep, drawn;
+    if (rho < 1.0) {
+      pressure += more.x * 1.5 * sqrt((1.0 - rho) * (1.0 + rho));
+      deep = foot.w - (foot.w - more.y) * rho * rho;
+      drawn = drawn_in(rho) - last.x * rho * sqrt((1.0 - rho) * (1.0 + rho));
+    } else {
+      rho = outside(x * x, y * y, along.w * along.w, inward.w * inward.w);
+      deep = profile(rho) * (more.z + (2.0 * more.y - more.z) / (rho * rho));
+      drawn = drawn_in(rho);
+    }
     float narrow = inward.w / along.w;
-    vec3 outward = narrow * narrow * lengthwise + aside - lengthwise;
+    vec3 outward = narrow * narrow * x * along_now + dot(from, cross(inward.xyz, along.xyz)) * cross(inward_now, along_now);
     float far = length(outward);
     if (far > 0.0) outward /= far;
-    u += (ends * fade_out(2.0 * rho / reach - 1.0) * min(1.0, 2.0 * facing)) *
-         (deep * inward.xyz - more.z * drawn_in(rho) * outward);
-    if (rho < 1.0) pressure += more.x * 1.5 * sqrt((1.0 - rho) * (1.0 + rho));
+    u += how * (deep * inward_now - more.w * drawn * outward);
   }
   placed = vec4(rest + u, length(u));
 })";

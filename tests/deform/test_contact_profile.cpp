@@ -95,7 +95,8 @@ TEST(ContactProfile, TheSurfaceIsDrawnInAsThePressureAsks) {
         pushed += contact_pressure(TipShape::kBall, r) * r * end / kSteps;
       }
       const double moved = (1 - 2 * nu) / (1 - nu) / rho * 4 / (3 * kPi) * pushed;
-      EXPECT_NEAR(contact_drawn_in_share(nu) * contact_drawn_in(rho), moved, 1e-6) << nu << " " << rho;
+      // Of the contact's depth; F / (E* a) is 4/3 of it.
+      EXPECT_NEAR(4.0 / 3 * contact_drawn_in_by_force(nu) * contact_drawn_in(rho), moved, 1e-6) << nu << " " << rho;
     }
   EXPECT_EQ(contact_drawn_in(0), 0);
 }

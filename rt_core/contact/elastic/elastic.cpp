@@ -196,12 +196,22 @@ void rub(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   sum_up(model, state, scratch);
 }
 
+// Whether the number that says how many there are is one.
+bool has_drawn_shapes(const Model& model) noexcept {
+  const std::int64_t blocks = all_vertex_floats(model);
+  if (model.sizes.n_elastic_vertex <= blocks) return false;
+  const float count = model.elastic_vertex[static_cast<std::size_t>(blocks)];
+  return count >= 0 && count <= static_cast<float>(kMostDrawnShapes) &&
+         static_cast<float>(static_cast<std::int32_t>(count)) == count;
+}
+
 ImageResult check_moduli(const Model& model) noexcept {
   if (!has_moduli(model)) return {};
   for (std::int32_t v = 0; v < static_cast<std::int32_t>(model.sizes.n_vertex); ++v) {
     const Real ratio = modulus_ratio(model, v);
     if (!(ratio >= kLeastModulusRatio && ratio <= kMostModulusRatio))
-      return broken("elastic_vertex", static_cast<std::size_t>(all_vertex_floats(model) + v));
+      return broken("elastic_vertex",
+                    static_cast<std::size_t>(model.sizes.n_elastic_vertex - model.sizes.n_vertex + v));
   }
   return {};
 }
@@ -214,7 +224,9 @@ ImageResult check_data(const Model& model) noexcept {
   if (!(p.elastic_radius_rootJ > 0)) return broken("elastic_radius_rootJ", 0);
   const std::int64_t pair = pairs(p.elastic_soft);
   const std::int64_t blocks = all_vertex_floats(model);
-  if (n.n_elastic_vertex != blocks && n.n_elastic_vertex != blocks + n.n_vertex) return broken("n_elastic_vertex", 0);
+  if (!has_drawn_shapes(model)) return broken("n_elastic_vertex", 0);
+  const std::int64_t shapes = blocks + drawn_floats(model);
+  if (n.n_elastic_vertex != shapes && n.n_elastic_vertex != shapes + n.n_vertex) return broken("n_elastic_vertex", 0);
   if (n.n_elastic_cubic != pair * p.elastic_soft) return broken("n_elastic_cubic", 0);
   if (n.n_elastic_quartic != pair * pair) return broken("n_elastic_quartic", 0);
   for (const ImageResult& result :

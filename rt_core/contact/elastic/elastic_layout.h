@@ -4,8 +4,9 @@
 //   per term t 12: u, and du_i/dX_j row by row;  c (m/N), c1 (m/N2), mean curvature (1/m), beta (1/(m N)); the
 //   gradients of these four along the surface;
 //   per linear mode 3: its shape in m/J^1/2. Rounded up to whole lanes of four.
-// After all vertices, where a body has several materials, one float each: the contact modulus E / (1 - nu^2) there over
-// that of the parameters.
+// After all vertices what is drawn of a body under its tips, of which the tick knows nothing (drawn_shapes.h), and
+// last, where a body has several materials, one float each: the contact modulus E / (1 - nu^2) there over that of the
+// parameters.
 //
 // V = p.p/2 + p_a p_b W3_ab + p_a p_b W4_ab,  W3 = cubic . p,  W4 = quartic . y2  (y2 the pairs' products).
 #pragma once
@@ -48,12 +49,22 @@ inline const float* linear_shapes(const Model& model, std::int32_t vertex) PALPA
 inline std::int64_t all_vertex_floats(const Model& model) PALPATE_RT {
   return model.sizes.n_vertex * vertex_floats(model);
 }
+// One float says of how many shapes; of each a vertex has its displacement, and what a newton there and a newton
+// squared make of it.
+inline constexpr std::int32_t kDrawnFloats = 5, kMostDrawnShapes = 128;
+inline std::int64_t drawn_count(const Model& model) PALPATE_RT {
+  return static_cast<std::int64_t>(model.elastic_vertex[static_cast<std::size_t>(all_vertex_floats(model))]);
+}
+inline std::int64_t drawn_floats(const Model& model) PALPATE_RT {
+  return 1 + kDrawnFloats * drawn_count(model) * model.sizes.n_vertex;
+}
 inline bool has_moduli(const Model& model) PALPATE_RT {
-  return model.sizes.n_elastic_vertex > all_vertex_floats(model);
+  return model.sizes.n_elastic_vertex > all_vertex_floats(model) + drawn_floats(model);
 }
 // Of a body that has them.
 inline Real modulus_ratio(const Model& model, std::int32_t vertex) PALPATE_RT {
-  return static_cast<Real>(model.elastic_vertex[static_cast<std::size_t>(all_vertex_floats(model) + vertex)]);
+  const std::int64_t at = model.sizes.n_elastic_vertex - model.sizes.n_vertex + vertex;
+  return static_cast<Real>(model.elastic_vertex[static_cast<std::size_t>(at)]);
 }
 
 }  // namespace palpate::elastic_layout
