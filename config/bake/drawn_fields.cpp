@@ -23,9 +23,11 @@ constexpr double kToNoWidth = 0.8;
 constexpr Eigen::Index kSpare = 12;
 // Shapes without which all fields together lose less than this share of their size are left out.
 constexpr double kLost = 0.004;
-// In deviations of the patch: within half of it a field is smoothed, within one and a half the paraboloid is fitted.
-// Tori have 0.2 % less of the travel off with it.
-constexpr double kCore = 2;
+// In deviations of the patch: within half of it a field is smoothed, less up to all of it; the paraboloid is fitted as
+// far as kAround times it, to so many vertices or more that look the same way. Tori have 0.2 % less of the travel off
+// with it.
+constexpr double kCore = 2, kAround = 1.5, kFacing = 0.3;
+constexpr Eigen::Index kFewestAround = 10;
 // Images are 16 MB at most; beside its floats a vertex has 0.7 kB of triangles, boxes and normals.
 constexpr std::size_t kMostFloats = 3'700'000, kBesideFloats = 170;
 constexpr std::int32_t kFewestShapes = 8;
@@ -127,14 +129,14 @@ void DrawnFields::smooth_core(const elastic::PressedPlace& place, Eigen::VectorX
   for (std::size_t v = 0; v < vertex_m_.size(); ++v) {
     const Vec3 from = (1 / unit_m) * (vertex_m_[v] - at);
     const double r = norm(from);
-    if (!(r < 1.5) || !(dot(vertex_normal_[v], up) > 0.3)) continue;
-    const double x = dot(from, one), y = dot(from, two), s = clamp_to(2 * r - 1, 0.0, 1.0);
+    if (!(r < kAround) || !(dot(vertex_normal_[v], up) > kFacing)) continue;
+    const double x = dot(from, one), y = dot(from, two);
     power.row(static_cast<Eigen::Index>(near.size())) << 1, x, y, x * x, x * y, y * y;
     near.push_back(static_cast<Eigen::Index>(v));
-    share.push_back((1 - s) * (1 - s) * (1 + 2 * s));
+    share.push_back(drawn_shapes::near(r, 1));
   }
   const auto n = static_cast<Eigen::Index>(near.size());
-  if (n < 10) return;
+  if (n < kFewestAround) return;
   Eigen::MatrixXd value(n, 3);
   for (Eigen::Index i = 0; i < n; ++i)
     value.row(i) = field.segment<3>(3 * near[static_cast<std::size_t>(i)]).transpose();

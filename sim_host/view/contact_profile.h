@@ -22,7 +22,7 @@ Real contact_profile(TipShape shape, Real rho);
 Real contact_pressure(TipShape shape, Real rho);
 
 // How far a frictionless ball's contact draws the surface in towards its middle, over that at the contact's edge
-// (contact_drawn_in_share), by Hertz' pressure (Johnson 1985, eqs. 3.41b and 3.42b): nothing in the middle, inside
+// (contact_drawn_in_by_force), by Hertz' pressure (Johnson 1985, eqs. 3.41b and 3.42b): nothing in the middle, inside
 // (1 - (1 - rho^2)^1.5) / rho, outside 1/rho.
 Real contact_drawn_in(Real rho);
 // At the edge, of force / (contact modulus x radius): (1 - 2 nu) / (2 pi (1 - nu)). 0 for a material that keeps its

@@ -9,11 +9,11 @@
 
 namespace palpate {
 
-// What a tip in contact adds: half a space under its pressure, less what drawn_shapes.h has of it already (nothing). In
-// the contact the surface lies on the tip: `depth_m` in its middle, `edge_m` at its edge. Around it half a space does
-// as the force says (Hertz; Johnson 1985, eqs. 3.42), which at the edge of a ball's contact is `edge_m` too: that says
-// how wide the contact is. A contact draws the surface in towards its middle (eqs. 3.41b and 3.42b); where the ball is
-// deep its pressure leans outwards, by the slope of the ball, and takes most of that back.
+// What a tip in contact adds: half a space under its pressure, which drawn_shapes.h leaves out. In the contact the
+// surface lies on the tip: `depth_m` in its middle, `edge_m` at its edge. Around it half a space does as the force says
+// (Hertz; Johnson 1985, eqs. 3.42), which at the edge of a ball's contact is `edge_m` too: that says how wide the
+// contact is. A contact draws the surface in towards its middle (eqs. 3.41b and 3.42b); where the ball is deep its
+// pressure leans outwards, by the slope of the ball, and takes most of that back.
 struct TipDent {
   // Unit directions at a tip's foot; the third is what is left of a right-handed frame.
   struct Frame {
