@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "rt_core/device_profile.h"
-#include "rt_core/safety/encoder_observer.h"
 
 namespace palpate {
 namespace {
@@ -107,9 +106,8 @@ void DevicePlant::evaluate_local(double elapsed_s) noexcept {
   local_due_s_ += period_s;
   const Vec3 before_m = observed_m_, moved_m = pose_.position_m - last_exact_m_;
   last_exact_m_ = pose_.position_m;
-  const Vec3 expected = observed_m_ + period_s * observed_m_per_s_;
-  observed_m_ = expected +
-                observe(device_observer_gains(options_.encoder_m, period_s), encoder_m() - expected, observed_m_per_s_);
+  const Vec3 told_before_m = last_measured_m_, told_m = encoder_m();
+  observed_m_ = told_m + between_edges(options_.encoder_m, period_s, told_m - told_before_m, edges_);
   if ((due_.flags & CommandFlag::kEnable) == 0) return;
   const bool stale = age_s_ > due_.local.valid_s;  // or none
   if (!stale) evaluated_m_ = observed_m_;

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "hal/device/device.h"
+#include "hal/device/edge_observer.h"
 #include "hal/device/hand_path.h"
 #include "hal/device/kinematics.h"
 #include "hal/loop/clock.h"
@@ -118,7 +119,8 @@ class DevicePlant {
   // Of the local model: the command in force, how old it is, where the handle is within an encoder step.
   DeviceCommand due_;
   double age_s_ = 0, local_due_s_ = 0;
-  Vec3 observed_m_, observed_m_per_s_, evaluated_m_, last_exact_m_;
+  Vec3 observed_m_, evaluated_m_, last_exact_m_;
+  EdgeMemory edges_;
   Vec3 unmoved_N_;
 };
 

@@ -41,13 +41,6 @@ inline ObserverGains gains_for(Real step, Real reach, Real dead, const ObserverT
 inline ObserverGains observer_gains(Real step, Real period_s) PALPATE_RT {
   return gains_for(step, kObserverReach, 0.2, {7e-3, 15e-3, 10e-3, 4e-3}, period_s);
 }
-// Of a device that closes a stiff loop on it: the smoothing above is late by 2 to 8 ms where a motion is of the size of
-// a step, and with 2.8 N/mm swung a hand of 800 N/m by 140 mN (2026-11-22). This one never leaves what the encoder
-// told, half a step, is late by at most 1.1 ms there and leaves half of the staircase.
-inline ObserverGains device_observer_gains(Real step, Real period_s) PALPATE_RT {
-  return gains_for(step, 0.5, 0.25, {3.3e-3, 5e-3, 25e-3, kHuge}, period_s);
-}
-
 // One axis: how far the told position lies from the estimate, `ahead`, and its velocity, which is brought up to date.
 // Returns the correction of the estimate. Numbers that are none give none.
 inline Real observe(const ObserverGains& g, Real ahead, Real& velocity) PALPATE_RT {
