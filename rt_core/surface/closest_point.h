@@ -60,6 +60,10 @@ struct SurfacePoint {
 SurfacePoint closest_surface_point(const Model& model, Vec3 p, double search_radius_m, std::int32_t warm_triangle,
                                    std::int32_t most_searched = kMaxSearched) PALPATE_RT;
 
+// The same where a bound is known that is nearly the answer, or below which none is asked for: no walk, and no first
+// leaf that would find one; the hierarchy's boxes beyond it are not opened.
+SurfacePoint nearer_surface_point(const Model& model, Vec3 p, double than_m, std::int32_t most_searched) PALPATE_RT;
+
 // Outward pseudo-normal (not unit) of a feature of a triangle: face normal, sum of both unit face normals on an edge,
 // Model::vertex_normal at a vertex.
 Vec3 pseudo_normal(const Model& model, std::int32_t triangle, Feature feature) PALPATE_RT;

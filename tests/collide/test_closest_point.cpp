@@ -79,6 +79,26 @@ TEST_P(ClosestPoint, MatchesBruteForceEverywhere) {
   EXPECT_LE(truncated, 15);  // 1 %: points that fall next to the medial axis
 }
 
+// From a bound: the same answer, or none and nothing nearer than the bound.
+TEST_P(ClosestPoint, ABoundFindsTheSameOrNothing) {
+  std::mt19937_64 rng(11);
+  for (int i = 0; i < 500; ++i) {
+    const Vec3 p = centre + random_vec(rng, i % 2 == 0 ? 0.06 : 0.3);
+    const Brute oracle = brute_force(body.model, p);
+    const double distance = square_root(oracle.distance2);
+    const SurfacePoint wider = nearer_surface_point(body.model, p, 1.001 * distance, kMaxSearched);
+    if (wider.truncated) continue;
+    ASSERT_TRUE(wider.found);
+    ASSERT_EQ(wider.triangle, oracle.triangle);
+    ASSERT_EQ(wider.closest_w, oracle.closest);
+    const SurfacePoint narrower = nearer_surface_point(body.model, p, 0.999 * distance, kMaxSearched);
+    ASSERT_FALSE(narrower.found);
+    ASSERT_LE(narrower.lower_bound_m, distance);
+    if (narrower.truncated) continue;
+    ASSERT_GE(narrower.lower_bound_m, 0.998 * distance);
+  }
+}
+
 TEST_P(ClosestPoint, MatchesBruteForceNextToFacesEdgesAndVertices) {
   std::mt19937_64 rng(8);
   std::uniform_int_distribution<std::size_t> any(0, body.model.triangle.size() - 1);

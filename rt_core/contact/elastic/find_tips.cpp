@@ -15,6 +15,10 @@ using namespace elastic_layout;
 constexpr Real kFollowed_m = 4e-3;
 // Of half a capsule's axis.
 constexpr Real kThird = 1.0 / 3;
+// Another place on the axis is looked for where it is nearer by more. Of a jaw that comes down along a block's edge all
+// three are equally near, and to find that out two of them looked at 109 boxes and triangles of the 96 that a tick may;
+// now at 48 (2026-11-26).
+constexpr Real kNearer_m = 1e-6;
 
 // A body under load is looked for where it may have come to: this far a surface of amplitudes y stands from its place
 // at rest at most.
@@ -128,9 +132,11 @@ class Finder {
       if (places > 1) tip.along = ((i == 0 ? last : i <= last ? i - 1 : i) - 1) * (2 * kThird);
       const std::int32_t left = surface_work_share(model_.params) - scratch_.surface_work;
       if (left <= 0) return hold(point);
-      const Real radius = best.found && best.signed_distance_m > 0 ? best.signed_distance_m : kHuge;
-      const SurfacePoint here = closest_surface_point(model_, tip.centre_w() - moved, radius, warm,
-                                                      left < kMaxTipSearched ? left : kMaxTipSearched);
+      const bool beside = best.found && best.signed_distance_m > kNearer_m;
+      const std::int32_t most = left < kMaxTipSearched ? left : kMaxTipSearched;
+      const Vec3 rest = tip.centre_w() - moved;
+      const SurfacePoint here = beside ? nearer_surface_point(model_, rest, best.signed_distance_m - kNearer_m, most)
+                                       : closest_surface_point(model_, rest, kHuge, warm, most);
       scratch_.surface_work += here.looked;
       scratch_.work.queries += 1;
       if (here.truncated) scratch_.status |= Status::kTraversalTruncated;
