@@ -30,7 +30,7 @@ struct RegionSolution {
 
 // Laws: the local laws of n regions and the potential W(F) of what couples them.
 //   static constexpr: kIterations; kEnough_m, below which another step would change nothing but rounding; kTolerance_m,
-//                     above which a solve counts as not converged
+//                     above which a solve counts as not converged; kEnoughStepped_m, if any: enough after a step
 //   start(r)                     a first shift for region r
 //   load(r, shift)               LawPoint: F_r and -dF_r/dshift of its rows, all depths reduced by the shift
 //   shift_under(force, r)        dW/dF_r
@@ -42,6 +42,14 @@ template <class Laws>
 concept HasSteps = requires(const Laws& laws, RegionSystem& s) {
   laws.newton_step(s);
 };
+
+template <class Laws>
+constexpr Real enough_stepped_m() noexcept {
+  if constexpr (requires { Laws::kEnoughStepped_m; })
+    return Laws::kEnoughStepped_m;
+  else
+    return Laws::kEnough_m;
+}
 
 template <class Laws>
 void start(const Laws& laws, std::int32_t n, RegionSystem& s) PALPATE_RT {
@@ -101,12 +109,14 @@ bool newton_step(const Laws& laws, std::int32_t, RegionSystem& s) PALPATE_RT req
 
 }  // namespace region_solve
 
-// Goes on with a solution until no more than enough_m is left. Bound: Laws::kIterations steps.
+// Goes on with a solution until no more than enough_m is left, or after a step as little as the laws have for it.
+// Bound: Laws::kIterations steps.
 template <class Laws>
 void refine_regions(const Laws& laws, std::int32_t n, RegionSystem& system, Real enough_m,
                     RegionSolution& result) PALPATE_RT {
+  constexpr Real stepped_m = region_solve::enough_stepped_m<Laws>();
   for (std::int32_t k = 0; k < Laws::kIterations; ++k) {  // bound: Laws::kIterations
-    if (result.residual_m <= enough_m) break;
+    if (result.residual_m <= (result.steps > 0 ? max_of(enough_m, stepped_m) : enough_m)) break;
     result.steps += 1;
     if (!region_solve::newton_step(laws, n, system)) {
       result.singular = true;

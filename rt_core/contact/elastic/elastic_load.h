@@ -32,6 +32,8 @@ struct PlaceForce {
 
 struct ElasticLoad : TipLaws {
   static constexpr bool kPullsAside = true, kTellsTangent = true;  // tool_tangent.h
+  // After a step: another one ends at rounding, and the next tick begins with one wherever rounding is not reached.
+  static constexpr Real kEnoughStepped_m = 1e-12;
   Tip tip[kMaxPieces];
   const ElasticRow* placed[kMaxPieces];
   PlacedLaw law[kMaxPieces];
