@@ -1,5 +1,7 @@
 #include "rt_core/contact/tips/line_law.h"
 
+#include "rt_core/math.h"
+
 namespace palpate {
 
 namespace {
@@ -140,6 +142,7 @@ void LineLaw::keep(Real e_m) const PALPATE_RT {
   const Real unit = modulus_Pa_ * radius_m_, force = l.energy * by, tangent = l.energy * (by * by + by2);
   out.tangent_N_per_m = unit * tangent;
   out.force_N = unit * radius_m_ * (force + tangent * beyond);
+  out.root_force = math::cbrt(out.force_N);
   const Real cube = unit * radius_m_ * radius_m_;
   out.energy_J = cube * (l.energy + beyond * (force + 0.5 * tangent * beyond));
   out.energy_by_across_Jm = cube * l.energy * (0.5 * x - l.falls) * radius_m_ / across_;

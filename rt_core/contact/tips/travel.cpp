@@ -1,7 +1,5 @@
 #include "rt_core/contact/tips/travel.h"
 
-#include "rt_core/math.h"
-
 namespace palpate {
 
 namespace {
@@ -24,7 +22,7 @@ Real h_of(const TipCoupling& coupling, std::int32_t i, std::int32_t j, std::int3
 LawPoint line_at(const Tip& tip, Real e_m) PALPATE_RT {
   const LineLaw::Point& line = tip.line->at(e_m);
   const PlaceTerms& add = *tip.place;
-  const Real f = line.force_N, k = line.tangent_N_per_m, root = math::cbrt(f), depth = e_m - tip.line->touches_at_m();
+  const Real f = line.force_N, k = line.tangent_N_per_m, root = line.root_force, depth = e_m - tip.line->touches_at_m();
   if (!(f > 0 && depth > 0)) return {};
   const Real a = root * add.between_N_per_m25, b = root * root * add.third_N_per_m3;
   const Real by = f * (add.second_N_per_m2 + 7.0 / 3 * a + 8.0 / 3 * b);
@@ -35,7 +33,8 @@ LawPoint line_at(const Tip& tip, Real e_m) PALPATE_RT {
 }  // namespace
 
 PlaceEnergies line_energies(const LineLaw& line, Real e_m) PALPATE_RT {
-  const Real f = line.at(e_m).force_N, root = math::cbrt(f), square = f * f;
+  const LineLaw::Point& at = line.at(e_m);
+  const Real root = at.root_force, square = at.force_N * at.force_N;
   return {{0.5 * square, square * root, square * root * root, 0}};
 }
 
