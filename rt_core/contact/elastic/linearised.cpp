@@ -294,18 +294,21 @@ template <class Count>
 Real Linearised<Count>::step(const Real* force_N) PALPATE_RT {
   Real delta[kMaxSoftModes];
   const Real share = find_step(force_N, delta);
-  const Real* last = state_.elastic.step_rootJ.data();
+  auto &p = state_.elastic.soft_rootJ, &goes = state_.elastic.step_rootJ;
   Real back = 0;
-  for (std::int32_t a = 0; a < n_; ++a) back += last[a] * (last[a] + share * delta[a]);  // bound: soft
+  for (std::int32_t a = 0; a < n_; ++a) back += goes[a] * (goes[a] + share * delta[a]);  // bound: soft
+  bool rubs = false;
+  for (std::int32_t r = 0; r < regions(); ++r) rubs = rubs || work_.rub[r].is_on;  // bound: kMaxRegions
   // What springs back from under a tip that slips does not go on: a column swung between the two every other tick. Nor
-  // does what turns back, but for its direction: steps twice too far alternate where H is off by a third (a ring on
-  // its rim, 4e-4 N every other tick, 2026-11-25).
-  const Real goes_on = share < 1 || slips_ ? 0.0 : back < 0 ? kTurnedBack : 1.0;
-  auto& p = state_.elastic.soft_rootJ;
+  // does what turns back, but for its direction: steps twice too far alternate where H is off by a third (a ring on its
+  // rim, 4e-4 N every other tick, 2026-11-25). With friction every amplitude by itself: jaws that drag a block along
+  // bent and twisted it to and fro across the drag, by up to 34 mN for as long as it went on (2026-11-26). Without,
+  // that would leave a loop over an arch 1e-6 of the stored energy instead of 4e-8.
+  const bool stops = share < 1 || slips_;
   for (std::int32_t a = 0; a < n_; ++a) {  // bound: soft
-    const Real d = share * delta[a];
+    const Real d = share * delta[a], turns = rubs ? goes[a] * (goes[a] + d) : back;
     p[a] += is_finite(d) ? d : 0.0;
-    state_.elastic.step_rootJ[a] = goes_on * (p[a] - work_.y_begun[a]);
+    goes[a] = (stops ? 0.0 : turns < 0 ? kTurnedBack : 1.0) * (p[a] - work_.y_begun[a]);
   }
   for (std::int32_t r = 0; r < regions(); ++r) sweep(share, delta, r);  // bound: kMaxRegions
   return left_m(force_N, share, delta);
