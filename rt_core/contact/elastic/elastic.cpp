@@ -29,15 +29,25 @@ constexpr Real kEnoughToSlip_m = 1e-7;
 
 // What the places ask of the modes, in tip laws evaluated: two of them, and sums over numbers and modes.
 constexpr std::int32_t kPlaceLaws = 5;
+// A line's law, in tip laws, and how often a place evaluates it.
+constexpr std::int32_t kLineLaws = 4, kPlaceLines = 2;
+
+// Tip laws in one evaluation of all.
+std::int32_t laws_in(const ElasticLoad& load, std::int32_t tips) PALPATE_RT {
+  std::int32_t sum = tips;
+  for (std::int32_t i = 0; i < tips && i < kMaxPieces; ++i) sum += load.law[i].is_line ? kLineLaws - 1 : 0;
+  return sum;
+}
 
 // Shifts and forces of the regions, to `enough_m` where there are several.
-RegionSolution solve_forces(const ElasticLoad& load, Scratch& scratch, Real enough_m, Real* force_N) PALPATE_RT {
+RegionSolution solve_forces(const ElasticLoad& load, std::int32_t laws, Scratch& scratch, Real enough_m,
+                            Real* force_N) PALPATE_RT {
   RegionSolution result;
   if (load.n > 1) {
     result = solve_regions(load, load.n, scratch.system, enough_m);
   } else {
     const TravelResult alone = solve_travel(load.region[0], load.shift_alone_m(0));
-    scratch.work.tip_laws += alone.evaluations * load.region[0].count;
+    scratch.work.tip_laws += alone.evaluations * laws;
     const LawPoint at = region_at(load.region[0], alone.shift_m);
     scratch.system.shift_m[0] = alone.shift_m;
     scratch.system.force_N[0] = at.force_N;
@@ -54,8 +64,9 @@ void finish_forces(const ElasticLoad& load, Scratch& scratch, RegionSolution& re
   for (std::int32_t r = 0; r < load.n; ++r) force_N[r] = scratch.system.force_N[r];  // bound: kMaxRegions
 }
 
-void judge_solution(const ElasticLoad& load, const RegionSolution& result, bool is_last, Scratch& scratch) PALPATE_RT {
-  if (load.n > 1) scratch.work.tip_laws += count_solution(result, load.n, scratch.contact_count, scratch.work);
+void judge_solution(const ElasticLoad& load, std::int32_t laws, const RegionSolution& result, bool is_last,
+                    Scratch& scratch) PALPATE_RT {
+  if (load.n > 1) scratch.work.tip_laws += count_solution(result, load.n, laws, scratch.work);
   scratch.residual_m = result.residual_m;
   if (result.singular) scratch.status |= Status::kCouplingSingular;
   if (is_last && !(scratch.residual_m <= kTravelTolerance_m)) scratch.status |= Status::kNotConverged;
@@ -86,16 +97,18 @@ void solve_pressed(const Model& model, State& state, Scratch& scratch, Count sof
   for (std::int32_t r = 0; r < regions; ++r) before_N[r] = state.region[scratch.rows.slot[r]].normal_force_N;
   Real force_N[kMaxRegions];
   body.prepare(before_N);
-  scratch.work.tip_laws += kPlaceLaws * regions;
+  const std::int32_t laws = laws_in(load, scratch.contact_count);
+  scratch.work.tip_laws += kPlaceLaws * regions + kPlaceLines * (laws - scratch.contact_count);
   for (std::int32_t i = 0; i < kSolvesOfFriction; ++i) {  // bound: kSolvesOfFriction
     body.let_give(i == 0 ? before_N : force_N);
     const bool is_last = i + 1 == kSolvesOfFriction;
-    RegionSolution result = solve_forces(load, scratch, is_last ? ElasticLoad::kEnough_m : kEnoughToSlip_m, force_N);
+    RegionSolution result =
+        solve_forces(load, laws, scratch, is_last ? ElasticLoad::kEnough_m : kEnoughToSlip_m, force_N);
     scratch.work.linearised += regions;
     scratch.work.linked += regions * (regions + 1) / 2 * (model.params.elastic_linear + model.params.elastic_soft);
     const bool goes_on = !is_last && body.slips(force_N);
     if (!goes_on && !is_last) finish_forces(load, scratch, result, force_N);
-    judge_solution(load, result, !goes_on, scratch);
+    judge_solution(load, laws, result, !goes_on, scratch);
     if (!goes_on) break;
   }
   const Real left_m = body.step(force_N);
@@ -265,9 +278,9 @@ void add_most_work(const Model& model, const SceneSizes& n, Work& work) noexcept
   add_most_regions(n, kSolvesOfFriction * TipLaws::kIterations, work);
   work.shown += n.points * (2 * place + terms(soft));
   work.soft_pairs += soft_work(pair);
-  work.tip_laws +=
-      kSolvesOfFriction * (kSeriesIterations + 1 + TipLaws::kIterations * (kStepHalvings + 1)) * n.contacts +
-      kPlaceLaws * n.regions;
+  work.tip_laws += kLineLaws * kSolvesOfFriction *
+                       (kSeriesIterations + 1 + TipLaws::kIterations * (kStepHalvings + 1)) * n.contacts +
+                   (kPlaceLaws + kPlaceLines * (kLineLaws - 1)) * n.regions;
   work.linearised += kSolvesOfFriction * n.regions;
   work.linked += kSolvesOfFriction * n.regions * (n.regions + 1) / 2 * (model.params.elastic_linear + soft);
   work.soft_pairs_again += soft_work(pair) / 2;
