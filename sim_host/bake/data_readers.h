@@ -26,12 +26,13 @@ namespace palpate {
   X(late_ticks_max, "hal/loop/loop.h")                         \
   X(stall_max_s, "hal/loop/loop.h")
 
-// X(array or parameter, reader, when): in the tick, but not in any scene the gate plays.
-#define PALPATE_RARE_READERS(X)                                                                 \
-  X(grip_x_m, "rt_core/tool/held_body.h", "a hand holds the body (device.holds)")               \
-  X(grip_y_m, "rt_core/tool/held_body.h", "a hand holds the body (device.holds)")               \
-  X(grip_z_m, "rt_core/tool/held_body.h", "a hand holds the body (device.holds)")               \
-  X(response_root, "rt_core/contact/tips/tip_law.cpp", "tables of responses, which users bake") \
+// X(array or parameter, reader, when): in the tick, but not in every scene that the gate plays.
+#define PALPATE_RARE_READERS(X)                                                                    \
+  X(grip_x_m, "rt_core/tool/held_body.h", "a hand holds the body (device.holds)")                  \
+  X(grip_y_m, "rt_core/tool/held_body.h", "a hand holds the body (device.holds)")                  \
+  X(grip_z_m, "rt_core/tool/held_body.h", "a hand holds the body (device.holds)")                  \
+  X(response_root, "rt_core/contact/tips/tip_law.cpp", "tables of responses, which users bake")    \
+  X(factor, "rt_core/contact/tips/tip_law.cpp", "a tip is no line: a ball, or on no elastic body") \
   X(wall_N_per_m, "rt_core/contact/nodes/gather.cpp", "a node that the body holds is pushed")
 
 struct DataReader {

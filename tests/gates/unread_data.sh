@@ -14,7 +14,7 @@ bake() {
   "$palpate" bake "$root/config/scenes/$scene.toml" "${set[@]}" -o "$work/$name.pal" >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
 }
 bake heart_compass_paper coupled coupling.law=coupled skeleton.law=paper_guarded
-bake pinch_block gauss_seidel contact.nodal.solver=gauss_seidel
+bake pinch_block_nodal gauss_seidel contact.nodal.solver=gauss_seidel
 bake tools_on_layer relaxing 'body.material.relaxation_share=[0.2, 0.1, 0.1]' 'body.material.relaxation_s=[0.1, 1, 10]'
 bake tools_on_layer ringing contact.transient.amplitude_N_per_m_s=10 contact.transient.frequency_Hz=100 contact.transient.decay_per_s=80
 bake tools_on_layer losing body.material.lost_share=0.2

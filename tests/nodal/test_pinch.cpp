@@ -10,7 +10,7 @@
 namespace palpate::test {
 namespace {
 
-SceneDesc pinch_scene() { return load_scene(PALPATE_SOURCE_DIR "/config/scenes/pinch_block.toml"); }
+SceneDesc pinch_scene() { return load_scene(PALPATE_SOURCE_DIR "/config/scenes/pinch_block_nodal.toml"); }
 
 struct Seen {
   int both = 0, single = 0;  // ticks with two regions, with one

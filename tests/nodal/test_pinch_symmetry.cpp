@@ -42,7 +42,7 @@ Squeeze squeeze(SceneDesc desc, bool along_z) {
 }
 
 SceneDesc pinch_scene(FrictionLaw friction, FemPrecision precision) {
-  SceneDesc desc = load_scene(PALPATE_SOURCE_DIR "/config/scenes/pinch_block.toml");
+  SceneDesc desc = load_scene(PALPATE_SOURCE_DIR "/config/scenes/pinch_block_nodal.toml");
   desc.friction.law = friction;
   desc.fem.precision = precision;
   return desc;

@@ -115,7 +115,7 @@ TEST(WarmPivots, PlateOnABlock) {
 
 TEST(WarmPivots, PinchedBlock) {
   for (const bool rough : {false, true}) {
-    SceneDesc desc = load_scene(PALPATE_SOURCE_DIR "/config/scenes/pinch_block.toml");
+    SceneDesc desc = load_scene(PALPATE_SOURCE_DIR "/config/scenes/pinch_block_nodal.toml");
     if (!rough) desc.friction.law = FrictionLaw::kNone;
     const BakedScene scene(desc);
     Bench bench(scene.model());
