@@ -7,9 +7,14 @@ namespace {
 // Lowest shift over depth: see solve_travel.
 constexpr Real kMostSwelling = 20.0;
 
+// A line that leans touches at its end before it does where it stands.
 Real deepest_m(const TipRegion& region) PALPATE_RT {
   Real deepest = 0;
-  for (std::int32_t k = 0; k < region.count; ++k) deepest = max_of(region.tip[k].depth_m, deepest);  // bound: tips
+  for (std::int32_t k = 0; k < region.count; ++k) {  // bound: tips
+    const Tip& tip = region.tip[k];
+    const Real before = tip.kind == TipKind::kLine ? max_of(-tip.line->touches_at_m(), 0.0) : 0.0;
+    deepest = max_of(tip.depth_m + before, deepest);
+  }
   return deepest;
 }
 
