@@ -250,7 +250,8 @@ struct ToolPoint {
   double area_m2;  // surface area it stands for
   double weight;   // area_m2 / reference area: multiplies the contact law in the Winkler weighting
   std::int32_t piece;
-  std::int32_t reserved;
+  // Elastic: a triangle of the one part of the surface that it touches, which ends at sharp edges; 0: it touches all.
+  std::int32_t begins_at;
 };
 // Curvature-extremal point of the body with its straight beam's section.
 struct Anchor {

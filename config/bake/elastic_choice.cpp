@@ -7,6 +7,7 @@
 #include "config/bake/elastic_check.h"
 #include "config/bake/elastic_image.h"
 #include "config/bake/parallel.h"
+#include "config/bake/surface_parts.h"
 #include "config/scene/schema.h"
 
 namespace palpate {
@@ -128,6 +129,7 @@ ElasticReport::Check check_of(const CheckPress& press, const CheckedPress& check
 
 ElasticReport bake_elastic_body(const SceneDesc& scene, ImageContents& image, std::vector<std::string>& warnings,
                                 const BakeRun& run) {
+  touch_by_parts(scene, image);
   const ElasticBake bake(scene, image, modes_of(scene.elastic), warnings);
   const std::int32_t linear = scene.elastic.linear;
   const auto unchecked = [&] {

@@ -8,7 +8,9 @@
 #include "config/bake/elastic_mesh.h"
 #include "config/bake/facet_foot.h"
 #include "config/bake/fem_body.h"
+#include "config/bake/image_rules.h"
 #include "config/bake/sample_field.h"
+#include "config/bake/surface_parts.h"
 #include "config/bake/vertex_slopes.h"
 #include "config/body/supports.h"
 #include "config/elastic/elastic_body.h"
@@ -299,6 +301,39 @@ std::vector<double> fit_places(elastic::SelfTerms& self, const elastic::RestBody
   return beta;
 }
 
+// Of a part of the surface one set of numbers: the curvature where it begins, and the mean c of what is about as
+// curved, no less than the linear modes' share. On an arm c is a small difference of large numbers, and what its
+// changes from place to place asked for along the surface was a tenth of the force (2026-11-26); c1 and beta would be
+// less than a hundredth of the way.
+void hold_numbers(const elastic::ElasticBody<3>& body, ImageContents& image) {
+  using namespace elastic_layout;
+  const int s = body.soft, linear = static_cast<int>(body.modes.lambda_Npm3.size()) - s;
+  const auto stride = at(vertex_floats(s, linear)), own = at(kTermFloats * terms(s));
+  const auto own_of = [&](std::int32_t v) { return &image.elastic_vertex[stride * at(v) + own]; };
+  for (const ToolPoint& point : image.tool_point) {
+    const float curvature = own_of(image.triangle[at(point.begins_at)].vertex[0])[2];
+    const std::vector<std::int32_t> part = part_of(model_of(image), point.begins_at);
+    double c = 0, least = 0;
+    int count = 0;
+    for (const std::int32_t t : part)
+      for (int k = 0; k < 3; ++k) {
+        const float* of = own_of(image.triangle[at(t)].vertex[k]);
+        if (std::abs(of[2] - curvature) > 0.5f * std::abs(curvature)) continue;
+        const Vec3 n = image.corner_normal[at(t)].normal[k];
+        for (const float* u = of + kOwnFloats; u != of + kOwnFloats + 3 * linear; u += 3) {
+          const double along =
+              dot(n, {static_cast<double>(u[0]), static_cast<double>(u[1]), static_cast<double>(u[2])});
+          least += along * along;
+        }
+        c += static_cast<double>(of[0]);
+        count += 1;
+      }
+    const float numbers[kOwnValues] = {static_cast<float>(std::max(c, least) / count), 0, curvature, 0};
+    for (const std::int32_t t : part)
+      for (const std::int32_t v : image.triangle[at(t)].vertex) std::copy_n(numbers, kOwnValues, own_of(v));
+  }
+}
+
 }  // namespace
 
 struct ElasticBake::Parts {
@@ -349,7 +384,10 @@ ElasticReport ElasticBake::write(int soft, int linear, double add_c_mpN, ImageCo
   const SampleField self = self_field(parts.rest.surface(), body.self, beta, parts.spacing_m);
   add_energy(body.maps.potential, image);
   add_vertices(body, term_shapes(body, parts.gradient), self, parts.feet, image, parts.normals);
-  add_own_slopes(body, parts.normals, image);
+  if (touches_in_parts(image))
+    hold_numbers(body, image);
+  else
+    add_own_slopes(body, parts.normals, image);
   parts.drawn.append(body, parts.spacing_m, image.elastic_vertex);
   add_moduli(parts.rest, parts.feet, image);
   ModelParams& p = image.params;

@@ -27,6 +27,9 @@ struct BodyCard {
   std::vector<AnchorPoint> (*anchors)(const BodyDesc&) = nullptr;
   // Exact outward normal at point `p` of a facet of normal `face`, of a body `height_m` high; nullptr: from the mesh.
   Vec3 (*normal)(const BodyDesc&, Vec3 p, Vec3 face, double height_m) = nullptr;
+  // Elastic: which part of the surface a facet about `middle` is of, from 1, 0: of none; nullptr: it has no parts. A
+  // piece of the tool touches each part in one place, and what is of none in no place. Parts meet nowhere.
+  int (*part)(Vec3 middle, Vec3 face) = nullptr;
   // Principal curvatures where a tip touches, the same everywhere (`layer`: pressed as a layer); nullptr: it has none.
   BodyCurvature (*curvature)(const BodyDesc&, bool layer) = nullptr;
   // The body of revolution that stands for it in presses by finite elements, shape alone; false or nullptr: none does.

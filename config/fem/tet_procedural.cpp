@@ -215,8 +215,9 @@ TetMesh make_ring_tets(double inner_m, double outer_m, double width_m, std::arra
   return mesh;
 }
 
-TetMesh make_clip_mesh(std::int32_t level, const ClipShape& shape) {
-  const ClipLevel n = clip_level(level);
+namespace {
+
+TetMesh clip_of(const ClipLevel& n, const ClipShape& shape) {
   std::vector<double> angle = equal_steps(0, shape.half_foot_rad, n.foot);
   const double end = kPi - shape.half_opening_rad;
   const std::vector<double> arm = equal_steps(shape.half_foot_rad, end, n.arm);
@@ -236,6 +237,11 @@ TetMesh make_clip_mesh(std::int32_t level, const ClipShape& shape) {
   });
   return mesh;
 }
+
+}  // namespace
+
+TetMesh make_clip_mesh(std::int32_t level, const ClipShape& shape) { return clip_of(clip_level(level), shape); }
+TetMesh make_clip_outline(const ClipShape& shape) { return clip_of({4, 28, 2, 18, 2}, shape); }
 
 Supports clip_supports(const TetMesh& mesh, const ClipShape& shape) {
   const double outer = shape.inner_m + shape.thickness_m;

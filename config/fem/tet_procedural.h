@@ -40,6 +40,9 @@ inline constexpr std::int32_t kMostClipLevel = 3;
 // Three meshes for a convergence study. Level 1: 717 nodes, 282 quadratic elements (the paper: 686 and 293).
 // Throws ConfigError for another level.
 TetMesh make_clip_mesh(std::int32_t level, const ClipShape& shape = {});
+// Elements too flat to solve on, whose surface follows the clip's: facets of 2 degrees along the arms, 5 round their
+// ends.
+TetMesh make_clip_outline(const ClipShape& shape = {});
 Supports clip_supports(const TetMesh& mesh, const ClipShape& shape = {});
 
 }  // namespace palpate

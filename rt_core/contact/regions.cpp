@@ -19,7 +19,8 @@ void sort_by_row(const Scratch& scratch, Clusters& out) PALPATE_RT {
 }
 
 // What tells contacts of an articulated tool apart: one part is one region however it touches, different fingers are
-// different regions, and parts of one finger join as the distances in linked() say. Rigid tools go by distance alone.
+// different regions, and parts of one finger join as the distances in linked() say. Rigid tools go by distance alone,
+// and so do tips on an elastic body, each of which is a region.
 struct Kinship {
   std::int32_t piece[kMaxContacts];
   std::int32_t group[kMaxContacts];
@@ -41,8 +42,9 @@ void find_kinship(const Model& model, const Scratch& scratch, const Clusters& ou
   std::int32_t newest[kChains];
   for (std::int32_t& contact : newest) contact = -1;  // bound: kChains
   for (std::int32_t i = 0; i < out.contacts; ++i) {   // bound: kMaxContacts
-    kin.piece[i] = scratch.contact[out.order[i]].piece;
-    kin.group[i] = model.piece[static_cast<std::size_t>(kin.piece[i])].group;
+    const std::int32_t piece = scratch.contact[out.order[i]].piece;
+    kin.piece[i] = model.params.elastic_soft > 0 ? -1 - i : piece;
+    kin.group[i] = model.piece[static_cast<std::size_t>(piece)].group;
     std::int32_t& last = newest[static_cast<std::uint32_t>(kin.group[i]) % kChains];
     kin.previous[i] = last;
     last = i;

@@ -110,6 +110,10 @@ EdgePlace place_on_edge(Vec3 centre_w, CarriedTriangle& last, ElasticRow& row) P
   const EdgePlace on = follow_edge(centre_w, last);
   if (on.edge < 0 || !(on.square_m2 > kStillCarried_m * kStillCarried_m)) return {};
   const std::int32_t here = last.triangle, other = triangle_of(last).adjacent[on.edge];
+  if (row.tip.is_of_part) {
+    stand_on(on, centre_w, last, row.foot);
+    return on;
+  }
   if (other < 0) return {};
   const Vec3* v = last.corners.v;
   const Vec3 edge = v[(on.edge + 1) % 3] - v[on.edge], out = centre_w - on.place_w;

@@ -19,7 +19,8 @@ void find_carried_foot(Vec3 centre_w, Vec3 near_w, CarriedTriangle& last, Elasti
 // After a foot was lost at a sharp edge: on its other side where the tip is above that (row.foot is found, edge -1),
 // else on the edge or its end as the body carries it. A facet at rest, moved as one of its corners is, was up to a
 // millimetre off on a ring that had turned, and another one on either side of the edge: the ring jumped between the two
-// (2026-11-23). Of hollow edges, and from inside, nothing: edge -1. Bound: two ends, two searches.
+// (2026-11-23). Of hollow edges, and from inside, nothing: edge -1. A tip of a part stands on its edges whatever is
+// beyond. Bound: two ends, two searches.
 EdgePlace place_on_edge(Vec3 centre_w, CarriedTriangle& last, ElasticRow& row) PALPATE_RT;
 
 }  // namespace palpate

@@ -303,6 +303,12 @@ void CarriedSurface::place(const RoundTip& tip, std::int32_t triangle, Vec3 near
     on = place_on_edge(centre_w, last, row);
     found = row.foot.state == FootState::kFound;
   }
+  if (!found && on.edge < 0 && tip.is_of_part) {
+    row.foot = {};
+    row.foot.state = FootState::kFar;
+    row.foot.triangle = last.triangle;
+    return;
+  }
   if (!found && on.edge < 0 && !place_on_facet(centre_w, triangle, row)) return;
   row.travel_m = tip.margin_m - row.foot.height_m;
   if (!(row.travel_m + nearer_m > 0)) {

@@ -120,9 +120,11 @@ void solve_pressed(const Model& model, State& state, Scratch& scratch, Count sof
   scratch.energy_J += body.energy_J() + body.linear_energy_J(force_N);
   body.pull_aside(force_N);
   press_regions(load, state, scratch);
-  for (std::int32_t r = 0; r < regions; ++r)  // bound: kMaxRegions
-    state.region[scratch.rows.slot[r]].tangent_N_per_m =
-        load.place_N_per_m(r, force_N[r], scratch.system.root_tangent[r]);
+  for (std::int32_t r = 0; r < regions; ++r) {  // bound: kMaxRegions
+    Real& root_tangent = scratch.system.root_tangent[r];
+    root_tangent = load.told_root_tangent(r, force_N[r], root_tangent);
+    state.region[scratch.rows.slot[r]].tangent_N_per_m = load.place_N_per_m(r, force_N[r], root_tangent);
+  }
   body.tell_tangent(force_N);
 }
 
@@ -220,6 +222,19 @@ bool has_drawn_shapes(const Model& model) noexcept {
          static_cast<float>(static_cast<std::int32_t>(count)) == count;
 }
 
+// A row for every point: one of a piece, or one for each part of the surface.
+ImageResult check_points(const Model& model) noexcept {
+  if (model.tool_point.size() > static_cast<std::size_t>(kMaxPieces)) return broken("n_tool_point", 0);
+  for (std::size_t i = 0; i < model.tool_point.size(); ++i) {
+    const ToolPoint& point = model.tool_point[i];
+    const auto piece = static_cast<std::size_t>(point.piece);
+    if (point.begins_at != 0 && !in_range(point.begins_at, model.triangle.size()))
+      return broken("tool_point.begins_at", i);
+    if (point.begins_at == 0 && model.piece[piece].point_count > 1) return not_together("piece.tip_points", piece);
+  }
+  return {};
+}
+
 ImageResult check_moduli(const Model& model) noexcept {
   if (!has_moduli(model)) return {};
   for (std::int32_t v = 0; v < static_cast<std::int32_t>(model.sizes.n_vertex); ++v) {
@@ -288,7 +303,7 @@ void add_most_work(const Model& model, const SceneSizes& n, Work& work) noexcept
 
 }  // namespace
 
-const ContactMethod elastic_method{find_elastic_tips, solve,         rub,        check_tip_points,
+const ContactMethod elastic_method{find_elastic_tips, solve,         rub,        check_points,
                                    check_data,        add_most_work, work_bytes, create_work};
 
 }  // namespace palpate

@@ -8,7 +8,7 @@ void ElasticLoad::start(Real* shift_m) const PALPATE_RT {
   for (std::int32_t r = 0; r < n; ++r) force_N[r] = before_N[r];  // bound: kMaxRegions
   end_lanes(n, force_N);
   pair.slopes(n, force_N, shift_m, bend);
-  for (std::int32_t r = 0; r < n; ++r) shift_m[r] += far_shift_m(region[r].far, force_N[r]);
+  for (std::int32_t r = 0; r < n; ++r) shift_m[r] = keeps_dent(r, shift_m[r] + far_shift_m(region[r].far, force_N[r]));
 }
 
 Real ElasticLoad::evaluate(const Real* shift_m, RegionSystem& s) const PALPATE_RT {

@@ -24,6 +24,7 @@ struct RoundTip {
   Real margin_m = 0;
   Real modulus_Pa = 0, depth_max_m = 0;  // of a capsule's law: E*
   Real along = 0;                        // where on the axis it touches, -1 to 1
+  bool is_of_part = false;               // ToolPoint::begins_at
 
   Vec3 centre_w() const PALPATE_RT { return middle_w + along * half_axis_w; }
   bool is_ball() const PALPATE_RT { return !(squared_norm(half_axis_w) > 0); }
@@ -39,6 +40,7 @@ struct ElasticRow {
   LineLaw::Shape line;                   // of a capsule, where the next tick takes it
   Real arm_m;                            // and LineLaw::Lean there
   LineLaw::Point told;                   // at the depth kTold, whatever leans
+  Real dent_m;                           // how deep about the line is under the force that it had; 0: had none
   Real travel_m;                         // how far the carried surface and the tip overlap; < 0 apart
   Real pull[kMaxSoftModes];              // d travel / d p
   Real turn[elastic_layout::kMaxPairs];  // d2 travel / d p2, with the foot's slide
@@ -72,7 +74,8 @@ struct CarriedSurface {
   // Puts the tip on the surface, starting at `triangle`, where `near_w` is above it. A capsule moves along its axis by
   // one step to where it is deepest, and the travel is that of there, to second order. Beyond a sharp edge on that
   // (carried_edge.h); below the focal surface on the facet nearest to the centre as it was before the body moved, with
-  // foot.triangle -1 where the tick's share of surface work is used up. A tip that is still apart when the surface
+  // foot.triangle -1 where the tick's share of surface work is used up. One of a part that is not found there is kFar,
+  // with the triangle from which to go on. A tip that is still apart when the surface
   // comes `nearer_m` towards it gets its foot and travel alone, and one without a force in the last tick no slide.
   void place(const RoundTip& tip, std::int32_t triangle, Vec3 near_w, Real nearer_m, const Box& box, ElasticRow& row,
              Real force_N = 0) const PALPATE_RT;

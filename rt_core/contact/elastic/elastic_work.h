@@ -7,7 +7,7 @@
 namespace palpate {
 
 struct ElasticWork {
-  ElasticRow row[kMaxPieces];               // by piece
+  ElasticRow row[kMaxPieces];               // by tool point
   SoftEnergy energy;                        // at the amplitudes that the rows were placed with
   Real y[elastic_layout::kMaxTerms];        // products of the amplitudes: those the rows were placed with, then the new
   Real y_begun[elastic_layout::kMaxTerms];  // as the tick found it

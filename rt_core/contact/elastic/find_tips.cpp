@@ -13,6 +13,8 @@ using namespace elastic_layout;
 
 // A tip that went farther in one tick, 4 m/s at 1 kHz, has left the facets that its foot is followed over.
 constexpr Real kFollowed_m = 4e-3;
+// Walks to a part's foot that was lost: a tip that is thrown.
+constexpr std::int32_t kFurtherWalks = 1;
 // Of half a capsule's axis.
 constexpr Real kThird = 1.0 / 3;
 // Another place on the axis is looked for where it is nearer by more. Of a jaw that comes down along a block's edge all
@@ -29,14 +31,14 @@ Real most_moved_m(const Model& model, const ElasticWork& work) PALPATE_RT {
 }
 
 // How far a surface let go moves at most, and as much again for what its normals turn.
-Real most_let_go_m(const Model& model, const ElasticWork& work, const Real* step) PALPATE_RT {
+Real most_let_go_m(const Model& model, const ElasticWork& work, const Real* reach_m, const Real* step) PALPATE_RT {
   const std::int32_t soft = model.params.elastic_soft;
   Real sum = 0;
   std::int32_t pair = soft;
   for (std::int32_t a = 0; a < soft; ++a) {  // bound: pairs
-    sum += abs_of(step[a]) * work.reach_m[a];
+    sum += abs_of(step[a]) * reach_m[a];
     for (std::int32_t b = a; b < soft; ++b, ++pair)
-      sum += (abs_of(step[a] * work.y[b]) + abs_of(step[b] * work.y[a])) * work.reach_m[pair];
+      sum += (abs_of(step[a] * work.y[b]) + abs_of(step[b] * work.y[a])) * reach_m[pair];
   }
   return 2 * sum;
 }
@@ -59,7 +61,7 @@ class Finder {
                                                                           box_(root_box(model)),
                                                                           moved_m_(most_moved_m(model, work_)) {
     let_go(model, work_.energy, let_go_);
-    nearer_m_ = most_let_go_m(model, work_, let_go_);
+    nearer_m_ = most_let_go_m(model, work_, work_.reach_m, let_go_);
   }
 
   void visit(std::int32_t index) PALPATE_RT {
@@ -67,7 +69,8 @@ class Finder {
     const bool touched = point.triangle >= 0 && point.gap_m < 0;
     RoundTip tip = round_tip(model_, index, carrier_w(model_, state_, piece_of(index)));
     if (!touched && is_far(index, tip)) return;
-    ElasticRow& row = work_.row[piece_of(index)];
+    if (tip.is_of_part) return visit_part(index, tip, touched);
+    ElasticRow& row = work_.row[index];
     if (touched) tip.come_near(point.closest_w);
     const bool followed = touched && has_stayed(point, tip);
     const Real force_N = point.region >= 0 ? state_.region[point.region].normal_force_N : 0.0;
@@ -87,6 +90,48 @@ class Finder {
   }
 
  private:
+  // A part of the surface is never looked for: its foot is followed from where it was, or from where the bake has it
+  // begin, over as many facets a tick as a walk takes. Until it is there the part does not touch.
+  void visit_part(std::int32_t index, RoundTip& tip, bool touched) PALPATE_RT {
+    PointState& point = state_.point[index];
+    if (point.triangle < 0) point.triangle = model_.tool_point[static_cast<std::size_t>(index)].begins_at;
+    const Vec3 near = touched ? point.closest_w : tip.centre_w();
+    tip.come_near(touched ? near + tip.margin_m * point.normal_w : displaced(point.triangle));
+    ElasticRow& row = work_.row[index];
+    const Real force_N = point.region >= 0 ? state_.region[point.region].normal_force_N : 0.0;
+    nearer_m_ = let_go_there_m(point.triangle);
+    surface_.place(tip, point.triangle, near, nearer_m_, box_, row, force_N);
+    for (std::int32_t i = 0; i < kFurtherWalks && row.foot.state == FootState::kFar; ++i)
+      surface_.place(tip, row.foot.triangle, tip.centre_w(), nearer_m_, box_, row, force_N);
+    if (row.foot.state == FootState::kFar) {
+      point.triangle = row.foot.triangle;
+      hold(point);
+      point.gap_m = kHuge;
+      return;
+    }
+    if (free_depth(row) > 0) {
+      keep(index, row);
+      point.gap_bound_m = -row.travel_m;
+      return;
+    }
+    let_lift(point, row, kHuge);
+    point.gap_m = -row.travel_m;
+  }
+  // As most_let_go_m(), about a triangle: the seat of a clip hardly moves with its arms.
+  Real let_go_there_m(std::int32_t triangle) const PALPATE_RT {
+    Real reach[kMaxTerms] = {};
+    for (const std::int32_t v : model_.triangle[static_cast<std::size_t>(triangle)].vertex)  // bound: 3 kMaxTerms
+      for (std::int32_t t = 0; t < terms(model_.params.elastic_soft); ++t) {
+        const Double4 u = widen4(vertex_block(model_, v) + kTermFloats * t);
+        reach[t] = max_of(reach[t], norm(Vec3{u[0], u[1], u[2]}));
+      }
+    return most_let_go_m(model_, work_, reach, let_go_);
+  }
+  Vec3 displaced(std::int32_t triangle) const PALPATE_RT {
+    const std::int32_t vertex = model_.triangle[static_cast<std::size_t>(triangle)].vertex[0];
+    return model_.vertex_m[static_cast<std::size_t>(vertex)] + surface_.displacement(vertex);
+  }
+
   std::int32_t piece_of(std::int32_t index) const PALPATE_RT {
     return model_.tool_point[static_cast<std::size_t>(index)].piece;
   }
@@ -213,6 +258,7 @@ RoundTip round_tip(const Model& model, std::int32_t index, const Pose& carrier) 
   RoundTip tip;
   tip.margin_m = point.margin_m;
   tip.middle_w = transform(carrier, point.position_tool_m);
+  tip.is_of_part = point.begins_at > 0;
   if (piece.shape == PieceShape::kCapsule && point.position_tool_m == piece.pose_tool.position_m)
     tip.half_axis_w =
         rotate(carrier.orientation, rotate(piece.pose_tool.orientation, Vec3{0, 0, piece.half_extent_m[2]}));
@@ -231,12 +277,12 @@ void find_elastic_tips(const Model& model, State& state, Scratch& scratch) PALPA
     return;
   }
   Finder finder(model, state, scratch);
-  for (const ToolPiece& piece : model.piece) {  // bound: kMaxPieces, one point each at most
-    if (piece.point_count > 0) finder.visit(piece.first_point);
-  }
+  const auto points = static_cast<std::int32_t>(model.tool_point.size()),
+             pieces = static_cast<std::int32_t>(model.piece.size());
+  for (std::int32_t i = 0; i < points; ++i) finder.visit(i);  // bound: kMaxPieces
   state.high_water.contacts =
       state.high_water.contacts < scratch.contact_count ? scratch.contact_count : state.high_water.contacts;
-  scratch.work.points += static_cast<std::int32_t>(model.piece.size());
+  scratch.work.points += points > pieces ? points : pieces;
   scratch.work.found += scratch.contact_count;
   scratch.work.looks = scratch.surface_work;
   group_points(model, state, scratch, nullptr);

@@ -10,7 +10,9 @@ namespace {
 constexpr Real kLeastDepth = 1e-3, kLeastArmDepth = 1e-2;
 constexpr Real kMostBend = 0.9;   // of 1 / R, of the height's bend along the axis
 constexpr Real kMostSlide = 0.5;  // of the half axis, in one step
-constexpr Real kSkewed = 1e-3;    // an axis that leaves a side of the body's box slower than so does not
+// A place of a part stands on it, whatever the line that leans does beyond: on the rim it would have no side.
+constexpr Real kInset_m = 1e-5;
+constexpr Real kSkewed = 1e-3;  // an axis that leaves a side of the body's box slower than so does not
 // Beyond the body an end is that of the body: steeper than round by so much for every radius that is cut off.
 constexpr Real kSteeper = 10, kSteepest = 10;
 
@@ -28,12 +30,11 @@ void limit(Real axis, Real foot_m, Real lower_m, Real upper_m, Real radius_m, Re
   reach.right_m = min_of(reach.right_m, axis > 0 ? up : down);
   reach.left_m = min_of(reach.left_m, axis > 0 ? down : up);
 }
-Reach reach_of(const Model& model, const Box& box, Vec3 axis, const ElasticRow& row) PALPATE_RT {
+Reach reach_of(const Model& model, const Box& box, Vec3 axis, Real radius, const ElasticRow& row) PALPATE_RT {
   const Triangle& triangle = model.triangle[static_cast<std::size_t>(row.foot.triangle)];
   Vec3 rest;
   for (int k = 0; k < 3; ++k)  // bound: 3
     rest += row.foot.weight[k] * model.vertex_m[static_cast<std::size_t>(triangle.vertex[k])];
-  const Real radius = row.tip.margin_m;
   Reach reach;
   limit(axis.x, rest.x, box.lower.x, box.upper.x, radius, reach);
   limit(axis.y, rest.y, box.lower.y, box.upper.y, radius, reach);
@@ -64,7 +65,7 @@ Real stand_on_line(const Model& model, const Box& box, Real bend_1_per_m, Real f
   const Vec3 axis = (1.0 / half) * row.tip.half_axis_w;
   const Real bend = min_of(bend_1_per_m, kMostBend / radius), lean = -dot(row.rise, axis);
   const Real along = bend / (1.0 - bend * clamp_to(row.foot.height_m, 0.0, radius));
-  const Reach reach = reach_of(model, box, axis, row);
+  const Reach reach = reach_of(model, box, axis, radius, row);
   LineLaw::Shape& line = row.line;
   line = {radius, (1 + before) * half, (1 - before) * half, 1, 1, lean, along, 2 * row.curvature_1_per_m - along,
           false};
@@ -76,11 +77,16 @@ Real stand_on_line(const Model& model, const Box& box, Real bend_1_per_m, Real f
   const Real told_m = kTold * row.tip.depth_max_m;
   row.told = law.at(told_m + law.touches_at_m());
   const bool had = force_N > 0 && row.told.force_N > 0;
-  const Real deep =
-      max_of(had ? dent_m(row.told, told_m, force_N) : row.travel_m - law.touches_at_m(), kLeastDepth * radius);
+  row.dent_m = had ? dent_m(row.told, told_m, force_N) : 0.0;
+  const Real deep = max_of(had ? row.dent_m : row.travel_m - law.touches_at_m(), kLeastDepth * radius);
   const LineLaw::Lean stands = law.lean_at(law.touches_at_m() + deep);
   row.arm_m = stands.arm_m * min_of(deep / (kLeastArmDepth * radius), 1.0);
-  row.tip.along = clamp_to(before + clamp_to(stands.to_pressure_m / half, -kMostSlide, kMostSlide), -1.0, 1.0);
+  Real way_m = stands.to_pressure_m;
+  if (row.tip.is_of_part) {
+    const Reach on_face = reach_of(model, box, axis, 0, row);
+    way_m = clamp_to(way_m, min_of(kInset_m - on_face.left_m, 0.0), max_of(on_face.right_m - kInset_m, 0.0));
+  }
+  row.tip.along = clamp_to(before + clamp_to(way_m / half, -kMostSlide, kMostSlide), -1.0, 1.0);
   const Real step = (row.tip.along - before) * half;
   row.travel_m += step * (lean - 0.5 * step * bend);
   line.lean = lean - bend * step;

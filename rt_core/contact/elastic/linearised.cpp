@@ -148,14 +148,14 @@ Linearised<Count>::Linearised(const Model& model, State& state, Scratch& scratch
   for (std::int32_t r = 0; r < regions(); ++r) {  // bound: kMaxRegions
     const RegionRows rows = rows_of(scratch, r);
     const Region& region = state.region[scratch.rows.slot[r]];
-    work_.rub[r] = begin_rub(region, material_motion(model, state, rows, work_.row[rows[0].piece].foot.foot_w));
+    work_.rub[r] = begin_rub(region, material_motion(model, state, rows, work_.row[rows[0].point].foot.foot_w));
   }
 }
 
 template <class Count>
 void Linearised<Count>::prepare(const Real* force_N) PALPATE_RT {
   for (std::int32_t r = 0; r < regions(); ++r) {  // bound: kMaxContacts rows
-    leading_[r] = &work_.row[deepest_of(rows_of(scratch_, r)).piece];
+    leading_[r] = &work_.row[deepest_of(rows_of(scratch_, r)).point];
     let_stick(model_, state_, *leading_[r], work_.rub[r]);
   }
   if (regions() > 1) pairs_.link(model_, leading_, regions());
@@ -434,7 +434,7 @@ Real Linearised<Count>::linear_energy_J(const Real* force_N) const PALPATE_RT {
 
 template <class Count>
 void Linearised<Count>::add_tip(Contact& contact, std::int32_t at) PALPATE_RT {
-  const ElasticRow& row = work_.row[contact.piece];
+  const ElasticRow& row = work_.row[contact.point];
   Tip& tip = load_.tip[at];
   tip = Tip{};
   tip.local = local_law(model_, contact.piece);
