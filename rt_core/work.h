@@ -17,7 +17,7 @@ namespace palpate {
   X(looks, kFindRows, 200, "boxes and triangles of the surface looked at")                 \
   X(queries, kFindRows, 750, "points measured on it")                                      \
   X(feet, kFindRows, 480, "Newton steps towards a smooth foot")                            \
-  X(found, kFindRows, 150, "contacts found")                                               \
+  X(found, kFindRows, 250, "contacts found")                                               \
   X(pairs, kFindRows, 12, "pairs of contacts compared, and labels changed")                \
   X(clusters, kFindRows, 240, "clusters given a place")                                    \
   X(recalls, kFindRows, 19, "contacts compared with lost regions")                         \

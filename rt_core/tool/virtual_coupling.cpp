@@ -153,8 +153,8 @@ bool answer(const Model& model, const State& state, const Pose& from, const Wren
   ContactStiffness further;
   Wrench with_landings = wrench;
   const bool turns = add_reversals(state, forwards, further);
-  const bool lands =
-      model.tool_point[0].begins_at > 0 && Landing(model, state, from, forwards, with_landings, further).add();
+  const bool in_parts = !model.tool_point.empty() && model.tool_point[0].begins_at > 0;
+  const bool lands = in_parts && Landing(model, state, from, forwards, with_landings, further).add();
   if (!turns && !lands) {
     motion = forwards;
     return true;
