@@ -36,6 +36,11 @@ inline Vec3 unit_or(Vec3 a, Vec3 fallback) PALPATE_RT {
   const Real length = norm(a);
   return length > 1e-300 && length < kHuge ? (1.0 / length) * a : fallback;
 }
+// The same direction, no longer than `most`.
+inline Vec3 shortened(Vec3 v, Real most) PALPATE_RT {
+  const Real length = norm(v);
+  return length > most ? (most / length) * v : v;
+}
 // Part of a that lies in the plane with unit normal n.
 inline Vec3 tangential_part(Vec3 a, Vec3 n) PALPATE_RT { return a - dot(a, n) * n; }
 // A coordinate axis well off unit vector n: where any tangent will do, the first step to one.

@@ -13,6 +13,7 @@ namespace palpate {
 
 namespace {
 
+using elastic::vec;
 using elastic::Vector;
 
 // Towards no width by so much of the two patches' parabola: contacts are a third to all of a patch wide, and what noise
@@ -31,8 +32,6 @@ constexpr Eigen::Index kFewestAround = 10;
 // Images are 16 MB at most; beside its floats a vertex has 0.7 kB of triangles, boxes and normals.
 constexpr std::size_t kMostFloats = 3'700'000, kBesideFloats = 170;
 constexpr std::int32_t kFewestShapes = 8;
-
-Vec3 vec(const Vector<3>& v) { return {v[0], v[1], v[2]}; }
 
 // What the soft modes alone do under a patch, of first and second order.
 struct SoftAnswer {

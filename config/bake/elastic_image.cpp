@@ -27,6 +27,7 @@ namespace palpate {
 namespace {
 
 using Field = Eigen::VectorXd;  // [node * 3 + component]
+using elastic::vec;
 using elastic::Vector;
 
 // Self terms are smooth along a body: samples this share of its size apart, and never nearer than an element's edge.
@@ -39,7 +40,6 @@ constexpr elastic::PatchOptions kPatch{0.75, 0.0063};
 constexpr double kFacing = 0.5;  // samples on another face say nothing about this one
 
 std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
-Vec3 vec(const Vector<3>& v) { return {v[0], v[1], v[2]}; }
 Vector<3> eigen(Vec3 v) { return {v.x, v.y, v.z}; }
 
 // du_i/dX_j of a field at every surface node, [node * 9 + 3 i + j]: the mean of the elements' own there.

@@ -6,8 +6,6 @@ namespace palpate {
 
 namespace {
 
-Vec3 vec(const elastic::Vector<3>& v) { return {v[0], v[1], v[2]}; }
-
 class FacetFinder {
  public:
   explicit FacetFinder(const elastic::Surface<3>& surface) : surface_(surface) {}
@@ -20,7 +18,7 @@ class FacetFinder {
     for (const auto& facet : surface_.facets())
       for (const auto& part : kPart) {
         Vec3 corner[3];
-        for (std::size_t k = 0; k < 3; ++k) corner[k] = vec(surface_.rest(facet.nodes[part[k]]));
+        for (std::size_t k = 0; k < 3; ++k) corner[k] = elastic::vec(surface_.rest(facet.nodes[part[k]]));
         const Vec3 q = closest_on_triangle(p, corner[0], corner[1], corner[2]).point;
         const double distance = norm(q - p);
         if (!(distance < best)) continue;

@@ -12,8 +12,6 @@ namespace {
 // In spacings: how far a sample is heard, and how far away the opposite outlook counts as.
 constexpr double kLengths = 4, kTurn = 1, kNugget = 1e-6;
 
-Vec3 vec(const elastic::Vector<3>& v) { return {v[0], v[1], v[2]}; }
-
 }  // namespace
 
 SampleField::SampleField(const elastic::Surface<3>& surface, const std::vector<int>& nodes,
@@ -21,7 +19,8 @@ SampleField::SampleField(const elastic::Surface<3>& surface, const std::vector<i
     : length_(kLengths * spacing_m) {
   const auto n = static_cast<Eigen::Index>(nodes.size());
   Eigen::MatrixXd kernel(n, n);
-  for (const int node : nodes) samples_.push_back({vec(surface.rest(node)), vec(elastic::node_normal(surface, node))});
+  for (const int node : nodes)
+    samples_.push_back({elastic::vec(surface.rest(node)), elastic::vec(elastic::node_normal(surface, node))});
   for (Eigen::Index i = 0; i < n; ++i)
     for (Eigen::Index k = 0; k < n; ++k)
       kernel(i, k) = likeness(samples_[static_cast<std::size_t>(i)], samples_[static_cast<std::size_t>(k)]);

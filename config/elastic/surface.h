@@ -9,11 +9,13 @@
 
 #include "config/fem/contact_points.h"
 #include "config/fem/large_strain_mesh.h"
+#include "rt_core/vec.h"
 
 namespace palpate::elastic {
 
 template <int kDim>
 using Vector = Eigen::Matrix<double, kDim, 1>;
+inline Vec3 vec(const Vector<3>& v) { return {v[0], v[1], v[2]}; }
 
 inline constexpr std::size_t kMaxFacetNodes = 9;
 

@@ -41,6 +41,7 @@ inline ObserverGains gains_for(Real step, Real reach, Real dead, const ObserverT
 inline ObserverGains observer_gains(Real step, Real period_s) PALPATE_RT {
   return gains_for(step, kObserverReach, 0.2, {7e-3, 15e-3, 10e-3, 4e-3}, period_s);
 }
+
 // One axis: how far the told position lies from the estimate, `ahead`, and its velocity, which is brought up to date.
 // Returns the correction of the estimate. Numbers that are none give none.
 inline Real observe(const ObserverGains& g, Real ahead, Real& velocity) PALPATE_RT {

@@ -16,11 +16,6 @@ inline Real stiffness_size(Vec3 along, Vec3 across) PALPATE_RT {
   return min_of(row, square_root(squared_norm(along) + 2 * squared_norm(across)));
 }
 
-inline Vec3 shortened(Vec3 v, Real most) PALPATE_RT {
-  const Real length = norm(v);
-  return length > most ? (most / length) * v : v;
-}
-
 // What it evaluates does not turn round against the force that it was told.
 inline Vec3 not_turned_round(Vec3 force_N, Vec3 told_N) PALPATE_RT {
   const Vec3 sense = unit_or(told_N, {});

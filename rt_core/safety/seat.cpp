@@ -19,11 +19,6 @@ constexpr Real kSeatMost_m = 0.05, kSeatMost_rad = 0.5;
 // Of the largest force: less holds nothing.
 constexpr Real kNothingShare = 1e-3;
 
-Vec3 cut(Vec3 v, Real most) PALPATE_RT {
-  const Real length = norm(v);
-  return length > most ? (most / length) * v : v;
-}
-
 bool at_rest(const State& state) PALPATE_RT {
   return state.safety.mode == Mode::kIdle || state.safety.mode == Mode::kFault;
 }
@@ -97,8 +92,8 @@ void seat_anew(const Model& model, State& state, const Pose& handle_w) PALPATE_R
   const bool over = squared_norm(now.force_N) == 0 && squared_norm(now.torque_Nm) == 0;
   safety.unpaid_J = over ? held_J(model.params, state) : max_of(0, unpaid_J + got_J);
   const Twist apart = twist_between(handle_w, end);
-  state.seat_m = cut(apart.translation_m, kSeatMost_m);
-  state.seat_rad = cut(apart.rotation_rad, kSeatMost_rad);
+  state.seat_m = shortened(apart.translation_m, kSeatMost_m);
+  state.seat_rad = shortened(apart.rotation_rad, kSeatMost_rad);
   state.apart = 1;
   state.device_w = state.device_previous_w = state.told_w = handle_w;
   state.observed_m_per_s = state.observed_rad_per_s = {};
@@ -120,8 +115,8 @@ void ease_seat(const Model& model, State& state) PALPATE_RT {
       (p.torque_max_Nm > 0 ? kFreeStepShare * p.torque_max_Nm / p.coupling_Nm_per_rad : kFreeStep_rad);
   const Vec3 apart_m = eased(state.seat_m + yield.translation_m, stretch.translation_m, loose ? step_m : 0);
   const Vec3 apart_rad = eased(state.seat_rad + yield.rotation_rad, stretch.rotation_rad, loose ? step_rad : 0);
-  state.seat_m = settled(cut(apart_m, kSeatMost_m));
-  state.seat_rad = settled(cut(apart_rad, kSeatMost_rad));
+  state.seat_m = settled(shortened(apart_m, kSeatMost_m));
+  state.seat_rad = settled(shortened(apart_rad, kSeatMost_rad));
   if (squared_norm(state.seat_m) == 0 && squared_norm(state.seat_rad) == 0 && !(safety.unpaid_J > 0) &&
       safety.ramp >= 1)
     forget_seat(state);

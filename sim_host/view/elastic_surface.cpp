@@ -170,15 +170,13 @@ TipDent made_dent(const Model& model, const ElasticFarField& far, const ElasticR
   dent.mean_Pa = force_N / (kPi * width_m * width_m);
   dent.drawn_in_m = drawn_in_m2 / width_m;
   dent.spread = kSpread * std::min(width_m / std::max(row.tip.margin_m, kNarrowest_m), 1.0);
-  dent.reach_m = drawn_shapes::reach_m(model.vertex_m);
   return dent;
 }
 
 // What the other tips' dents are at a tip's foot, from far away: the force over pi E* r.
 double under_others_m(const Model& model, const TouchingTip& tip, const State& state,
-                      const std::vector<TouchingTip>& tips) {
+                      const std::vector<TouchingTip>& tips, double reach_m) {
   const Vec3 foot_w = tip.row.foot.foot_w, up = tip.row.foot.normal_w;
-  const double reach_m = drawn_shapes::reach_m(model.vertex_m);
   double sum_m = 0;
   for (const TouchingTip& other : tips) {
     if (&other == &tip) continue;
@@ -198,13 +196,15 @@ ElasticShape elastic_shape(const Model& model, const State& state) {
   const std::vector<TouchingTip> tips = touching_tips(model, state, soft);
   ElasticFarField far(model);
   for (const TouchingTip& tip : tips) far.add(tip.row, force_of(tip, state, tips));
+  const double reach_m = drawn_shapes::reach_m(model.vertex_m);
   const std::int32_t terms = elastic_layout::terms(model.params.elastic_soft);
   ElasticShape shape{{soft.product, soft.product + terms}, far.amplitude_m(), {}};
   for (const TouchingTip& tip : tips) {
-    const double travel_m = tip.row.travel_m - under_others_m(model, tip, state, tips);
+    const double travel_m = tip.row.travel_m - under_others_m(model, tip, state, tips, reach_m);
     const Vec3 carried = far.at(tip.row.foot.triangle, tip.row.foot.weight);
     if (const double depth_m = travel_m + dot(carried, tip.row.foot.normal_w); depth_m > 0) {
       shape.dent.push_back(made_dent(model, far, tip.row, travel_m, depth_m, force_of(tip, state, tips)));
+      shape.dent.back().reach_m = reach_m;
       shape.dent.back().mean_Pa *= state.live.stiffness;
     }
   }

@@ -3,13 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <deque>
 #include <limits>
 #include <tuple>
 #include <vector>
 
 #include "rt_core/safety/encoder_observer.h"
 #include "rt_core/safety/smoothing_friction.h"
+#include "tests/support/held_handle.h"
 
 namespace palpate {
 namespace {
@@ -26,7 +26,7 @@ Followed follow(Motion motion, int ticks, double period_s = kPeriod_s) {
   Followed run;
   double estimate = motion(0), velocity = 0;
   for (int i = 0; i < ticks; ++i) {
-    const double x = motion(i * period_s), told = kStep_m * std::floor(x / kStep_m + 0.5);
+    const double x = motion(i * period_s), told = test::told_m(x, kStep_m);
     estimate += period_s * velocity;
     estimate += observe(observer_gains(kStep_m, period_s), told - estimate, velocity);
     EXPECT_LE(std::abs(estimate - told), kObserverReach * kStep_m * (1 + 1e-9));
@@ -75,39 +75,20 @@ TEST(EncoderObserver, ForgetsWhatIsNoNumber) {
   EXPECT_EQ(velocity, 0);
 }
 
-// A handle at rest against a spring that reads it smoothed, and the hand that holds it there.
-struct Hold {
-  double mass_kg, damping_Ns_per_m, delay_s, period_s;
-  double hand_N_per_m, hand_Ns_per_m, hand_kg;
-  double stiffness_N_per_m() const { return std::min(1e4, 0.8 * 2 * damping_Ns_per_m / (period_s + 2 * delay_s)); }
-};
+// A handle whose spring, as stiff as the device admits, reads it smoothed.
+test::HeldHandle held(double mass_kg, double damping, double delay_s, double period_s, double hand, double hand_damping,
+                      double hand_kg) {
+  const double stiffness = std::min(1e4, 0.8 * 2 * damping / (period_s + 2 * delay_s));
+  return {mass_kg, damping, delay_s, period_s, hand, hand_damping, hand_kg, stiffness, kStep_m, 3};
+}
 
-// RMS of the spring's force in the last of three seconds, after the handle was let go `aside_m` from where it rests.
-// `edge`: where rest lies between two steps of the encoder, in steps.
-double unrest_N(const Hold& h, double friction_N, double aside_m, double edge) {
-  constexpr double kSubstep_s = 2e-5;
-  const double stiffness = h.stiffness_N_per_m(), mass = h.mass_kg + h.hand_kg;
-  const int substeps = static_cast<int>(std::lround(h.period_s / kSubstep_s));
-  std::deque<double> on_the_way(static_cast<std::size_t>(std::lround(h.delay_s / kSubstep_s)) + 1, 0.0);
-  double x = aside_m, v = 0, estimate = aside_m, velocity = 0, sum = 0, squares = 0;
-  const int ticks = static_cast<int>(std::lround(3 / h.period_s)), counted = ticks / 3;
-  for (int i = 0; i < ticks; ++i) {
-    const double told = kStep_m * (std::floor(x / kStep_m + edge + 0.5) - edge);
+double unrest_N(const test::HeldHandle& h, double friction_N, double aside_m, double edge) {
+  double estimate = aside_m, velocity = 0;
+  return test::unrest_N(h, friction_N, aside_m, edge, [&](double told) {
     estimate += h.period_s * velocity;
     estimate += observe(observer_gains(kStep_m, h.period_s), told - estimate, velocity);
-    const double force = -stiffness * estimate;
-    if (i >= ticks - counted) sum += force, squares += force * force;
-    for (int k = 0; k < substeps; ++k) {
-      on_the_way.push_back(force);
-      const double moved = on_the_way.front() - h.hand_N_per_m * x - (h.hand_Ns_per_m + h.damping_Ns_per_m) * v;
-      on_the_way.pop_front();
-      if (v == 0 && std::abs(moved) <= friction_N) continue;
-      const double next = v + kSubstep_s / mass * (moved - std::copysign(friction_N, v != 0 ? v : moved));
-      v = friction_N > 0 && next * v < 0 ? 0 : next;
-      x += kSubstep_s * v;
-    }
-  }
-  return std::sqrt(std::max(0.0, squares / counted - sum * sum / counted / counted));
+    return estimate;
+  });
 }
 
 constexpr struct {
@@ -127,9 +108,9 @@ TEST(EncoderObserver, LeavesAHandleAtRestThatItsFrictionHolds) {
                                                      {2.5, 5e-4, 2.4e-4},
                                                      {2.5, 5e-4, 2e-3}})
       for (const auto& hand : kHands) {
-        const Hold h{mass, damping, delay_s, period_s, hand.stiffness, hand.damping, hand.mass};
-        const double step_N = h.stiffness_N_per_m() * kStep_m;
-        const double friction_N = friction_to_smooth(kSmoothedPosition, h.stiffness_N_per_m(), kStep_m, mass);
+        const test::HeldHandle h = held(mass, damping, delay_s, period_s, hand.stiffness, hand.damping, hand.mass);
+        const double step_N = h.stiffness_N_per_m * kStep_m;
+        const double friction_N = friction_to_smooth(kSmoothedPosition, h.stiffness_N_per_m, kStep_m, mass);
         EXPECT_LE(friction_N, 2 * step_N * (1 + 1e-12));  // what takes all that the lag can give
         for (const double aside_m : {6e-5, 3e-4, 1.5e-3})
           for (const double edge : {0.0, 0.5})
@@ -141,8 +122,8 @@ TEST(EncoderObserver, LeavesAHandleAtRestThatItsFrictionHolds) {
 
 // What it is asked for: without, the shipped device in a light hand goes to and fro by several steps' force for good.
 TEST(EncoderObserver, SetsAHandleWithoutFrictionGoing) {
-  const Hold h{0.1, 2.5, 5e-4, 1e-3, kHands[0].stiffness, kHands[0].damping, kHands[0].mass};
-  const double step_N = h.stiffness_N_per_m() * kStep_m;
+  const test::HeldHandle h = held(0.1, 2.5, 5e-4, 1e-3, kHands[0].stiffness, kHands[0].damping, kHands[0].mass);
+  const double step_N = h.stiffness_N_per_m * kStep_m;
   EXPECT_GT(unrest_N(h, 0, 3e-4, 0), 3 * step_N);
   EXPECT_GT(unrest_N(h, 0.25 * step_N, 3e-4, 0), 2 * step_N);
   EXPECT_LT(unrest_N(h, step_N, 3e-4, 0), 1e-3 * step_N);

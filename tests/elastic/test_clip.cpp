@@ -10,11 +10,10 @@
 #include "rt_core/contact/regions.h"
 #include "rt_core/status.h"
 #include "tests/elastic/elastic_tick_scene.h"
+#include "tests/support/snap_reference.h"
 
 namespace palpate::test {
 namespace {
-
-constexpr double kTouch_m = 0.01414133;  // height of the tube's middle at the first touch; seated at 0
 
 std::string clip(int level) {
   return "name = \"clip\"\n[body]\nshape = \"clip\"\n[body.fem]\nlevel = " + std::to_string(level) +
@@ -25,13 +24,6 @@ std::string clip(int level) {
          "= [0, 18, 0] } ]\n";
 }
 
-// Large strain in plane stress (tests/nodal/test_snap.cpp), which nu = 0 is in space.
-struct Sample {
-  double insertion_mm, force_N;
-};
-constexpr Sample kReference[] = {{0.5, 2.589},   {1, 4.361},   {2, 6.170},   {3, 6.534},  {4, 5.965},
-                                 {5, 4.630},     {6, 2.899},   {7, 0.795},   {8, -1.467}, {10, -5.719},
-                                 {11.5, -7.351}, {12, -7.232}, {13, -5.505}, {14, -0.944}};
 constexpr double kLargest_N = 7.351;
 
 class ElasticClip : public testing::Test {
@@ -40,14 +32,14 @@ class ElasticClip : public testing::Test {
   void lower(double to_m) {
     const int steps = static_cast<int>(std::lround(std::abs(to_m - at_m_) / 2e-6));
     for (int i = 1; i <= steps; ++i) {
-      bench_.tick_at({{0, kTouch_m - at_m_ - (to_m - at_m_) * i / steps, 0}, {}}, {});
+      bench_.tick_at({{0, kFirstContact_m - at_m_ - (to_m - at_m_) * i / steps, 0}, {}}, {});
       unconverged_ += (bench_.output.status & Status::kNotConverged) != 0 ? 1 : 0;
       largest_step_N_ = std::max(largest_step_N_, std::abs(bench_.output.contact_w.force_N.y - last_N_));
       last_N_ = bench_.output.contact_w.force_N.y;
     }
     at_m_ = to_m;
   }
-  double worst_share(const Sample& s, double so_far) const {
+  double worst_share(const SnapSample& s, double so_far) const {
     return std::max(so_far, std::abs(last_N_ - s.force_N) / kLargest_N);
   }
   static const Model& model() {
@@ -63,7 +55,7 @@ class ElasticClip : public testing::Test {
 TEST_F(ElasticClip, SnapsOverATubeAsLargeStrainElementsDoAndLetsItGo) {
   double worst = 0;
   std::vector<double> in_N;
-  for (const Sample& s : kReference) {
+  for (const SnapSample& s : kSnapReference) {
     lower(1e-3 * s.insertion_mm);
     EXPECT_EQ(bench_.output.regions, 2) << s.insertion_mm;
     EXPECT_LT(std::abs(bench_.output.contact_w.force_N.x), 0.01 * kLargest_N) << s.insertion_mm;
@@ -72,11 +64,11 @@ TEST_F(ElasticClip, SnapsOverATubeAsLargeStrainElementsDoAndLetsItGo) {
   }
   RecordProperty("of_the_largest_force", std::to_string(100 * worst) + " %");
   EXPECT_LT(worst, 0.05);
-  lower(kTouch_m + 2e-5);  // into the seat, a stop
+  lower(kFirstContact_m + 2e-5);  // into the seat, a stop
   EXPECT_GT(last_N_, 5);
-  for (std::size_t i = std::size(kReference); i-- > 0;) {
-    lower(1e-3 * kReference[i].insertion_mm);
-    EXPECT_NEAR(last_N_, in_N[i], 0.01 * kLargest_N) << kReference[i].insertion_mm;
+  for (std::size_t i = std::size(kSnapReference); i-- > 0;) {
+    lower(1e-3 * kSnapReference[i].insertion_mm);
+    EXPECT_NEAR(last_N_, in_N[i], 0.01 * kLargest_N) << kSnapReference[i].insertion_mm;
   }
   lower(-1e-3);
   EXPECT_EQ(norm(bench_.output.contact_w.force_N), 0);
@@ -89,7 +81,7 @@ TEST_F(ElasticClip, TheForceHasNoSteps) {
   lower(14e-3);
   RecordProperty("largest_step_N", std::to_string(largest_step_N_));
   EXPECT_LT(largest_step_N_, 0.03);
-  const Vec3 held{0, kTouch_m - at_m_, 0};
+  const Vec3 held{0, kFirstContact_m - at_m_, 0};
   EXPECT_LT(change_while_held_N(bench_, held, 20), 1e-8);
 }
 

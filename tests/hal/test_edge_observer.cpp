@@ -7,13 +7,14 @@
 #include <utility>
 
 #include "hal/device/edge_observer.h"
+#include "tests/support/held_handle.h"
 
 namespace palpate {
 namespace {
 
 constexpr double kStep_m = 3e-5, kPeriod_s = 1e-4, kTwoPi = 6.283185307179586;
 
-double quantised(double x, double edge = 0) { return kStep_m * (std::floor(x / kStep_m + edge + 0.5) - edge); }
+double quantised(double x, double edge = 0) { return test::told_m(x, kStep_m, edge); }
 
 class Follower {
  public:
@@ -93,27 +94,6 @@ TEST(EdgeObserver, StaysOnAnEdge) {
   EXPECT_NEAR(0.5 * (most + least), edge_m, 0.1 * kStep_m);
 }
 
-// A handle let go beside where a spring on the estimate and a hand hold it: RMS of the spring's force a second later.
-double unrest_N(double mass_kg, double hand_N_per_m, double hand_Ns_per_m, double stiffness, double friction_N,
-                double aside_m, double edge) {
-  constexpr double kSubstep_s = 2e-5, kDamping_Ns_per_m = 2.5;
-  double x = aside_m, v = 0, sum = 0, squares = 0;
-  Follower follower(quantised(x, edge));
-  constexpr int kTicks = 15000, kCounted = 5000;
-  for (int i = 0; i < kTicks; ++i) {
-    const double force = -stiffness * follower.next(quantised(x, edge));
-    if (i >= kTicks - kCounted) sum += force, squares += force * force;
-    for (int k = 0; k < 5; ++k) {
-      const double moved = force - hand_N_per_m * x - (hand_Ns_per_m + kDamping_Ns_per_m) * v;
-      if (v == 0 && std::abs(moved) <= friction_N) continue;
-      const double next = v + kSubstep_s / mass_kg * (moved - std::copysign(friction_N, v != 0 ? v : moved));
-      v = next * v < 0 ? 0 : next;
-      x += kSubstep_s * v;
-    }
-  }
-  return std::sqrt(std::max(0.0, squares / kCounted - sum * sum / kCounted / kCounted));
-}
-
 TEST(EdgeObserver, LeavesAHandleAtRestThatLittleFrictionHolds) {
   constexpr double kShare = 0.66;  // 0.55 to 0.6 is enough, and a tenth
   for (const double mass : {0.1, 0.15, 0.4})
@@ -122,7 +102,10 @@ TEST(EdgeObserver, LeavesAHandleAtRestThatLittleFrictionHolds) {
         for (const double aside_m : {6e-5, 3e-4, 1.5e-3})
           for (const double edge : {0.0, 0.25, 0.5}) {
             const double step_N = stiffness * kStep_m;
-            EXPECT_LT(unrest_N(mass, hand, damping, stiffness, kShare * step_N, aside_m, edge), 0.02 * step_N)
+            const test::HeldHandle h{mass, 2.5, 0, kPeriod_s, hand, damping, 0, stiffness, kStep_m, 1.5};
+            Follower follower(quantised(aside_m, edge));
+            const auto next = [&](double told) { return follower.next(told); };
+            EXPECT_LT(test::unrest_N(h, kShare * step_N, aside_m, edge, next), 0.02 * step_N)
                 << mass << " kg, " << stiffness << " N/m, hand " << hand << ", " << aside_m << " m, " << edge;
           }
 }

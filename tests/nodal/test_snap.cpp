@@ -1,7 +1,6 @@
-// The clip of Duriez, Andriot & Kheddar (2003, section 5) snapped over a rigid tube. Reference: a large-strain
-// finite-element solution in plane stress (E = 2000 MPa, nu = 0.35, element size 0.7 mm, uncertain by 1.5 %). In three
-// dimensions plane stress is nu = 0: with 0.35 and a width of five thicknesses the arms cannot bend anticlastically,
-// which makes them 7 % stiffer.
+// The clip of Duriez, Andriot & Kheddar (2003, section 5) snapped over a rigid tube. Reference: large strain in
+// plane stress (tests/support/snap_reference.h). In three dimensions plane stress is nu = 0: with 0.35 and a width of
+// five thicknesses the arms cannot bend anticlastically, which makes them 7 % stiffer.
 #include <gtest/gtest.h>
 #include <limits>
 
@@ -12,20 +11,13 @@
 #include "config/scene/scene.h"
 #include "tests/nodal/nodal_scene.h"
 #include "tests/support/baked_scene.h"
+#include "tests/support/snap_reference.h"
 
 namespace palpate::test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-constexpr double kFirstContact_m = 0.01414133;
-
-struct Sample {
-  double insertion_mm, force_N;
-};
-constexpr Sample kReference[] = {{0.5, 2.589},   {1, 4.361},   {2, 6.170},   {3, 6.534},  {4, 5.965},
-                                 {5, 4.630},     {6, 2.899},   {7, 0.795},   {8, -1.467}, {10, -5.719},
-                                 {11.5, -7.351}, {12, -7.232}, {13, -5.505}, {14, -0.944}};
 constexpr double kPeak_N = 6.534;
 
 class Clip {
@@ -76,7 +68,7 @@ double zero_crossing_mm(const std::vector<double>& force) {
 
 double worst_error(const std::vector<double>& force) {
   double worst = 0;
-  for (const Sample& s : kReference)
+  for (const SnapSample& s : kSnapReference)
     worst = std::max(worst, std::abs(force[static_cast<std::size_t>(std::lround(10 * s.insertion_mm))] - s.force_N));
   return worst / kPeak_N;
 }
