@@ -22,7 +22,7 @@ std::vector<PackedPiece> pack_image(std::span<const std::byte> image) {
     uLongf packed = compressBound(size);
     PackedPiece piece{static_cast<std::uint32_t>(size), std::vector<std::byte>(packed)};
     if (compress2(reinterpret_cast<Bytef*>(piece.bytes.data()), &packed,
-                  reinterpret_cast<const Bytef*>(image.data() + at), size, Z_BEST_SPEED) != Z_OK) {
+                  reinterpret_cast<const Bytef*>(image.data() + at), size, Z_NO_COMPRESSION) != Z_OK) {
       throw RecordingError("no memory to pack the scene image");
     }
     piece.bytes.resize(packed);

@@ -1,4 +1,4 @@
-// The scene image inside a recording: packed (zlib) in pieces, so that a recording can be replayed and drawn anywhere.
+// The scene image inside a recording: in pieces (zlib), so that a recording can be replayed and drawn anywhere.
 #pragma once
 
 #include <memory>
@@ -12,7 +12,8 @@
 
 namespace palpate {
 
-// At the fastest level: 12 MB of half_shell in 0.2 s, a quarter smaller at most with the slowest.
+// Stored: an image is floats, of which zlib's fastest level takes 12 to 14 %, for 130 instructions a byte before a run
+// can arm. 10.6 MB of half_shell took 0.22 s, stored 4 ms (2026-11-26).
 std::vector<PackedPiece> pack_image(std::span<const std::byte> image);
 
 // The scene a recording was made with, checked completely: from `image` when that is not empty (whatever it is), else

@@ -5,7 +5,7 @@
 //   chunks: u32 tag, u32 count, u32 payload bytes, u32 CRC-32 of the 12 bytes before and of the payload; payload
 //     HEAD  one RecordingHeader        first
 //     STAT  one State: initial state   second
-//     IMAG  a piece of the scene image, compressed (zlib), `count` bytes when unpacked; in order, next; may be absent
+//     IMAG  a piece of the scene image, a zlib stream, `count` bytes when unpacked; in order, next; may be absent
 //     SLIC  {first sequence, 1 if STAT is the state before it}: only in a slice of a longer run, next
 //     TICK  `count` records: TickRecord up to `region`, then region_count RegionRecords each
 //     LOST  {first sequence, number}: records the recorder did not get

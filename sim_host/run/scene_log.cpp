@@ -37,7 +37,8 @@ std::unique_ptr<SceneLog::Kept> SceneLog::begin(const ImageFile& image, std::opt
   auto kept = std::make_unique<Kept>();
   const Model& model = image.model();
   kept->initial = make_state(model);
-  const std::vector<PackedPiece> packed = pack_image(image.bytes());
+  std::vector<PackedPiece> packed;
+  if (file || !options_.black_box.empty()) packed = pack_image(image.bytes());
   if (file) kept->file = std::make_unique<RecordingWriter>(std::move(*file), header_, block_of(*kept->initial), packed);
   begun_ += 1;
   if (!options_.black_box.empty()) {
