@@ -317,7 +317,7 @@ void CarriedSurface::place(const RoundTip& tip, std::int32_t triangle, Vec3 near
     *shown += 2 * terms(model.params.elastic_soft);
     return;
   }
-  row.has_slide = force_N > 0 && (found || on.edge >= 0);
+  row.has_slide = tip.is_ball() && force_N > 0 && (found || on.edge >= 0);
   FootSlopes slopes;
   Real step_m = 0;
   if (found) {

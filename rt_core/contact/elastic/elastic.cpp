@@ -29,8 +29,8 @@ constexpr Real kEnoughToSlip_m = 1e-7;
 
 // What the places ask of the modes, in tip laws evaluated: two of them, and sums over numbers and modes.
 constexpr std::int32_t kPlaceLaws = 5;
-// A line's law, in tip laws, and how often a place evaluates it.
-constexpr std::int32_t kLineLaws = 4, kPlaceLines = 2;
+// A line's law, in tip laws.
+constexpr std::int32_t kLineLaws = 4;
 
 // Tip laws in one evaluation of all.
 std::int32_t laws_in(const ElasticLoad& load, std::int32_t tips) PALPATE_RT {
@@ -98,7 +98,7 @@ void solve_pressed(const Model& model, State& state, Scratch& scratch, Count sof
   Real force_N[kMaxRegions];
   body.prepare(before_N);
   const std::int32_t laws = laws_in(load, scratch.contact_count);
-  scratch.work.tip_laws += kPlaceLaws * regions + kPlaceLines * (laws - scratch.contact_count);
+  scratch.work.tip_laws += kPlaceLaws * regions;
   for (std::int32_t i = 0; i < kSolvesOfFriction; ++i) {  // bound: kSolvesOfFriction
     body.let_give(i == 0 ? before_N : force_N);
     const bool is_last = i + 1 == kSolvesOfFriction;
@@ -295,7 +295,7 @@ void add_most_work(const Model& model, const SceneSizes& n, Work& work) noexcept
   work.soft_pairs += soft_work(pair);
   work.tip_laws += kLineLaws * kSolvesOfFriction *
                        (kSeriesIterations + 1 + TipLaws::kIterations * (kStepHalvings + 1)) * n.contacts +
-                   (kPlaceLaws + kPlaceLines * (kLineLaws - 1)) * n.regions;
+                   kPlaceLaws * n.regions;
   work.linearised += kSolvesOfFriction * n.regions;
   work.linked += kSolvesOfFriction * n.regions * (n.regions + 1) / 2 * (model.params.elastic_linear + soft);
   work.soft_pairs_again += soft_work(pair) / 2;

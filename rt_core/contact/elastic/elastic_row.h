@@ -45,8 +45,9 @@ struct ElasticRow {
   Real pull[kMaxSoftModes];              // d travel / d p
   Real turn[elastic_layout::kMaxPairs];  // d2 travel / d p2, with the foot's slide
   Vec3 sweep_w[kMaxSoftModes];           // of the material at the foot, by each amplitude
-  // Of a tip that had a force, on the smooth surface or an edge: the foot's area coordinates 1 and 2 by each amplitude,
-  // the other way; and of c, c1, the curvature and beta in those two the slopes, and the bends 11, 12 and 22.
+  // Of a ball or flat tip that had a force, on the smooth surface or an edge: the foot's area coordinates 1 and 2 by
+  // each amplitude, the other way; and of c, c1, the curvature and beta in those two the slopes, and the bends 11, 12
+  // and 22.
   bool has_slide;
   Real slide[2][kMaxSoftModes];
   Real number_slope[2][elastic_layout::kOwnSlopes], number_bend[3][elastic_layout::kOwnSlopes];

@@ -45,16 +45,13 @@ void add_line_terms(const TipLaw& law, const ElasticRow& row, PlacedLaw& out) PA
   const Real equal = base / (law.coefficient * row.modulus), bent = row.line.along_1_per_m * square;
   const Real wide = radius * (2 * depth + bent * equal * equal) / (2 * depth + bent);
   if (!(told.force_N > 0)) return;
-  out.scale_by_curvature = 2 * row.modulus * told.energy_by_across_Jm / told.energy_J;
   // The series of c, and beta, in powers of the line's force as those of a ball's (travel.h, line_energies).
-  const Real rho = max_of(-row.c_m_per_N, 0.0), c_falls = rho > 0 ? -1.0 : 0.0, root = math::cbrt(base);
+  const Real rho = max_of(-row.c_m_per_N, 0.0), root = math::cbrt(base);
   const Real second = 0.75 * root * root, third = 0.25 * wide / (root * root), beta = row.beta_1_per_mN;
   // At the deepest depth: 4^p times the force, 4 + 8 (p - 1) for powers p of 1 to 1.5.
   const Real power = clamp_to(told.tangent_N_per_m * depth / told.force_N, 1.0, 1.5);
   const Real held = 1.0 / (1 + max_of(-beta, 0.0) * wide * told.force_N * (8 * power - 4) / kMostByBeta);
   out.terms = {rho, second * rho * rho, beta * third * held, 0};
-  out.by_c = {c_falls, 2 * second * rho * c_falls, 0, 0};
-  out.by_beta = {0, 0, third * held * held, 0};
 }
 
 void place_line(const TipLaw& law, const ElasticRow& row, PlacedLaw& out) PALPATE_RT {
@@ -63,7 +60,6 @@ void place_line(const TipLaw& law, const ElasticRow& row, PlacedLaw& out) PALPAT
   out.is_line = true;
   out.line = LineLaw(shape, row.tip.modulus_Pa * row.modulus, law.depth_max_m);
   out.scale = row.modulus;
-  out.scale_by_modulus = 1;
   add_line_terms(law, row, out);
 }
 

@@ -143,9 +143,7 @@ void LineLaw::keep(Real e_m) const PALPATE_RT {
   out.tangent_N_per_m = unit * tangent;
   out.force_N = unit * radius_m_ * (force + tangent * beyond);
   out.root_force = math::cbrt(out.force_N);
-  const Real cube = unit * radius_m_ * radius_m_;
-  out.energy_J = cube * (l.energy + beyond * (force + 0.5 * tangent * beyond));
-  out.energy_by_across_Jm = cube * l.energy * (0.5 * x - l.falls) * radius_m_ / across_;
+  out.energy_J = unit * radius_m_ * radius_m_ * (l.energy + beyond * (force + 0.5 * tangent * beyond));
 }
 
 LineLaw::Lean LineLaw::lean_at(Real e_m) const PALPATE_RT {

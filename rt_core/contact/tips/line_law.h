@@ -29,8 +29,7 @@ class LineLaw {
   };
   struct Point {
     Real force_N, tangent_N_per_m, energy_J;
-    Real energy_by_across_Jm;  // J m: by k_c
-    Real root_force;           // cubic; a place's terms (line_energies) ask for it three times
+    Real root_force;  // cubic; a place's terms (line_energies) ask for it three times
   };
   struct Lean {
     Real to_pressure_m = 0;  // along the axis, from where the tip stands to where the force acts
