@@ -51,6 +51,12 @@ Real contact_drawn_in(Real rho) {
 
 Real contact_drawn_in_by_force(Real poisson_ratio) { return (1 - 2 * poisson_ratio) / (2 * kPi * (1 - poisson_ratio)); }
 
+Real contact_spread(Real rho, Real poisson_ratio) {
+  const Real back = 0.028 * (1 - 2 * poisson_ratio);
+  if (rho > 1) return (0.075 / (rho * rho) - 0.082 + back) / (rho * rho * rho);
+  return rho * (0.146 - (0.153 - back) * rho * rho);
+}
+
 Real fade_out(Real distance_m, Real from_m, Real to_m) {
   if (!(distance_m < to_m)) return 0;
   if (distance_m <= from_m) return 1;

@@ -58,14 +58,12 @@ double force_of(const TouchingTip& tip, const State& state, const std::vector<To
 }
 
 constexpr double kNarrowest_m = 1e-9;
-// Where a deep ball has drawn the contact's edge in to, of what half a space says: on a pad and a disc half to two
-// thirds.
-constexpr double kDrawnInAtEdge = 0.6;
-// Of what draws in, times the contact's radius over the ball's: fitted to the places inside the contacts of `pad` and
-// `disc` of tests/accuracy; at nu of 0.15 to 0.49 it is as much of what draws in.
-constexpr double kSpread = 0.9;
+// Of a ball's radius: beyond, it is as high as there.
+constexpr double kSteepest = 0.98;
 // Of a contact's dent, at its edge: where the rings and the force do not fit one another.
 constexpr double kLeastEdge = 0.25, kMostEdge = 0.8;
+// Of a dent, what it must be less at its edge by to have its ball's shape.
+constexpr double kLeastSag = 0.1;
 
 // Where a body's bend is looked for, in radii of the contact, and what of a ball's a hollow may take.
 constexpr double kBendReach = 2, kLeastBend = 0.25, kLongestBall = 1.5;
@@ -75,28 +73,31 @@ double contact_modulus_Pa(const Model& model, const ElasticRow& row) {
   return row.modulus * p.youngs_modulus_Pa / (1 - p.poisson_ratio * p.poisson_ratio);
 }
 
+// How much higher a ball is at some distance from its lowest place.
+double ball_sag_m(double ball_m, double from_m) {
+  const double within_m = std::min(from_m, kSteepest * ball_m), square_m2 = within_m * within_m;
+  return square_m2 / (ball_m + std::sqrt(ball_m * ball_m - square_m2));
+}
+
 // A ball's contact: as wide as makes the dent one at its edge, inside on the ball and outside by the force,
 //   travel - far - sag of ball and body = 3 F / (8 E* a),
-// the wider of two such places; the ball's sag where the edge has been drawn in to.
+// the wider of two such places; the ball's sag where the edge has moved to.
 struct BallContact {
   const ElasticRow& row;
   double travel_m, force_N, modulus_Pa, drawn_in_m2;  // the last: at the edge, times the radius
 
-  double sag_m(double radius_m) const {
-    const double ball_m = row.tip.margin_m;
-    const double drawn_m = std::min(kDrawnInAtEdge * drawn_in_m2 / radius_m, 0.5 * radius_m);
-    const double now_m = std::min(radius_m - drawn_m, 0.98 * ball_m);
-    return ball_m - std::sqrt(ball_m * ball_m - now_m * now_m) + 0.5 * row.curvature_1_per_m * radius_m * radius_m;
+  double now_m(const FarBelow& far, double radius_m) const {
+    return radius_m + std::max(far.out_m - drawn_in_m2 / radius_m, -0.5 * radius_m);
   }
+  double body_bend_m(double radius_m) const { return 0.5 * row.curvature_1_per_m * radius_m * radius_m; }
   double inside_m(const FarBelow& far, double radius_m) const {
-    return travel_m - far.value_m - far.bend_m - sag_m(radius_m);
+    return travel_m - far.value_m - far.bend_m - ball_sag_m(row.tip.margin_m, now_m(far, radius_m)) -
+           body_bend_m(radius_m);
   }
   double outside_m(double radius_m) const { return 3 * force_N / (8 * modulus_Pa * radius_m); }
   // Looked for between half and 1.6 times the radius where the far field was told; that radius where there is none.
   double wide_m(const FarBelow& far, double told_m) const {
-    const auto left_m = [&](double a) {
-      return inside_m({far.value_m, far.bend_m * a * a / (told_m * told_m)}, a) - outside_m(a);
-    };
+    const auto left_m = [&](double a) { return inside_m(far.at(a / told_m), a) - outside_m(a); };
     constexpr double kStep = 0.97;
     double low = std::min(1.6 * told_m, row.tip.margin_m), high = low;
     while (low > 0.5 * told_m && !(left_m(low) > 0)) high = low, low *= kStep;
@@ -138,8 +139,11 @@ void widen(const ElasticFarField& far, const BallContact& contact, TipDent& dent
   for (int i = 0; i < 2; ++i)  // the second time with the rings where they belong
     radius_m = contact.wide_m(far.below(contact.row, radius_m), radius_m);
   dent.across_m = dent.along_m = radius_m;
-  const double edge_m = contact.inside_m(far.below(contact.row, radius_m), radius_m);
-  dent.edge_m = std::clamp(edge_m, kLeastEdge * dent.depth_m, kMostEdge * dent.depth_m);
+  const FarBelow below = far.below(contact.row, radius_m);
+  dent.edge_m = std::clamp(contact.inside_m(below, radius_m), kLeastEdge * dent.depth_m, kMostEdge * dent.depth_m);
+  dent.ball_m = contact.row.tip.margin_m;
+  dent.bend_m = below.bend_m + contact.body_bend_m(radius_m);
+  dent.out_m = below.out_m;
 }
 
 // On a body that bends differently in two directions the contact is longer where it bends less: as far as keeps the
@@ -169,7 +173,9 @@ TipDent made_dent(const Model& model, const ElasticFarField& far, const ElasticR
   dent.far_m = 3 * force_N / (4 * modulus_Pa * width_m);
   dent.mean_Pa = force_N / (kPi * width_m * width_m);
   dent.drawn_in_m = drawn_in_m2 / width_m;
-  dent.spread = kSpread * std::min(width_m / std::max(row.tip.margin_m, kNarrowest_m), 1.0);
+  dent.poisson_ratio = model.params.poisson_ratio;
+  // Under a line the pressure is less by as much as it is longer.
+  dent.spread_m = force_N * dent.across_m / dent.along_m / (modulus_Pa * std::max(row.tip.margin_m, width_m));
   return dent;
 }
 
@@ -220,6 +226,18 @@ std::vector<Vec3> mode_displacement_m(const Model& model, const ElasticShape& sh
   return displacement;
 }
 
+double TipDent::sag_share(double rho) const {
+  if (!(ball_m > 0)) return rho * rho;
+  const double width_m = std::sqrt(across_m * along_m);
+  const auto sag_m = [&](double at) {
+    const double moved_m =
+        spread_m * contact_spread(at, poisson_ratio) - drawn_in_m * contact_drawn_in(at) + out_m * at;
+    return ball_sag_m(ball_m, std::max(at * width_m + moved_m, 0.0)) + bend_m * at * at;
+  };
+  const double edge = sag_m(1);
+  return edge > kLeastSag * depth_m ? sag_m(rho) / edge : rho * rho;
+}
+
 Vec3 TipDent::at(Vec3 rest_m, Vec3 normal) const {
   // The whole distance: what lies far below the tip, as a ring's other side, is far from it.
   const Vec3 from = rest_m - foot_m;
@@ -227,13 +245,13 @@ Vec3 TipDent::at(Vec3 rest_m, Vec3 normal) const {
   if (!(share > 0)) return {};
   const ContactEllipse ellipse{rest.along, across_m, along_m};
   const double inside = ellipse.radii(from), rho = inside < 1 ? inside : ellipse.radii_outside(from);
-  const double deep = rho < 1 ? depth_m - (depth_m - edge_m) * rho * rho
+  const double outwards_m = spread_m * contact_spread(rho, poisson_ratio) - drawn_in_m * contact_drawn_in(rho);
+  const double deep = rho < 1 ? depth_m - (depth_m - edge_m) * sag_share(rho)
                               : contact_profile(TipShape::kBall, rho) * (far_m + (2 * edge_m - far_m) / (rho * rho));
-  const double drawn = contact_drawn_in(rho) - (rho < 1 ? spread * rho * std::sqrt(1 - rho * rho) : 0.0);
   // Towards the middle across the ellipse's lines of equal rho.
   const double narrow = across_m * across_m / (along_m * along_m);
   const Vec3 outward = narrow * dot(from, rest.along) * now.along + dot(from, rest.across()) * now.across();
-  return share * (deep * now.inward - drawn_in_m * drawn * unit_or(outward, {0, 0, 0}));
+  return share * (deep * now.inward + outwards_m * unit_or(outward, {0, 0, 0}));
 }
 
 double TipDent::pressure_Pa(Vec3 rest_m, Vec3 normal) const {

@@ -11,6 +11,7 @@ namespace palpate {
 namespace {
 
 constexpr int kRing = 8;  // places on each of two rings
+constexpr double kMeanShare = 0.75;
 // Share of the force that is a layer's, as z in width_law.h, from which F^2 alone is no longer a sum's second term: on
 // a pad (z = 0.27) it is 7 % of the travel too much along the surface, on tori (0.1) 1 % are missing without it.
 constexpr double kLayered = 0.15;
@@ -75,16 +76,18 @@ Vec3 ElasticFarField::near(std::int32_t triangle, Vec3 rest_m) const {
 FarBelow ElasticFarField::below(const ElasticRow& row, double radius_m) const {
   const auto [rest_m, up] = rest_foot(model_, row.foot);
   const Vec3 one = unit_or(cross(up, axis_off(up)), {1, 0, 0}), two = cross(up, one);
+  FarBelow below;
   double mean = 0, bent = 0;  // of the values, and of them times the share squared
   for (int i = 0; i < 2 * kRing; ++i) {
     const double share = i < kRing ? 0.5 : 1, angle = 2 * kPi * i / kRing;
-    const Vec3 aside = share * radius_m * (std::cos(angle) * one + std::sin(angle) * two);
-    const double value_m = -dot(near(row.foot.triangle, rest_m + aside), row.foot.normal_w);
+    const Vec3 out = std::cos(angle) * one + std::sin(angle) * two;
+    const Vec3 moved = near(row.foot.triangle, rest_m + share * radius_m * out);
+    const double value_m = -dot(moved, row.foot.normal_w);
+    below.out_m += dot(moved, out) / (2 * kRing * kMeanShare);
     mean += value_m / (2 * kRing);
     bent += share * share * value_m / (2 * kRing);
   }
   constexpr double kSquare = 0.625, kFourth = 0.53125;  // means of share^2 and share^4
-  FarBelow below;
   below.bend_m = (bent - kSquare * mean) / (kFourth - kSquare * kSquare);
   below.value_m = mean - kSquare * below.bend_m;
   return below;

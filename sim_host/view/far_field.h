@@ -8,9 +8,11 @@
 
 namespace palpate {
 
-// What a contact of some radius meets of the far field along its inward normal: value_m + bend_m (r / radius)^2.
+// What a contact of some radius meets of the far field: along its inward normal value_m + bend_m (r / radius)^2,
+// outwards along the surface out_m r / radius.
 struct FarBelow {
-  double value_m = 0, bend_m = 0;
+  double value_m = 0, bend_m = 0, out_m = 0;
+  FarBelow at(double share) const { return {value_m, share * share * bend_m, share * out_m}; }
 };
 
 // A foot on the carried surface, where its material is at rest.

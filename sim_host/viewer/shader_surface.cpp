@@ -244,7 +244,8 @@ void ShaderSurface::evaluate(const ElasticShape& shape, const GlMesh& body, bool
   for (const TipDent& d : shape.dent)
     dent.insert(dent.end(), {texel(d.foot_m, d.depth_m), texel(d.rest.inward, d.across_m),
                              texel(d.rest.along, d.along_m), texel({d.mean_Pa, d.edge_m, d.far_m}, d.drawn_in_m),
-                             texel({d.spread, d.reach_m, 0}, 0), texel(d.now.inward, 0), texel(d.now.along, 0)});
+                             texel({d.spread_m, d.reach_m, d.ball_m}, d.bend_m), texel(d.now.inward, d.out_m),
+                             texel(d.now.along, d.poisson_ratio)});
   has_dents_ = !dent.empty();
   if (has_dents_) dents_.set(dent.data(), sizeof(Texel) * dent.size(), GL_STREAM_DRAW);
   points_.use();

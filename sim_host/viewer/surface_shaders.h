@@ -39,6 +39,16 @@ float drawn_in(float rho) {
   float s = sqrt((1.0 - rho) * (1.0 + rho));
   return rho * (1.0 + s + s * s) / (1.0 + s);
 }
+float spread(float rho, float nu) {
+  float back = 0.028 * (1.0 - 2.0 * nu);
+  if (rho > 1.0) return (0.075 / (rho * rho) - 0.082 + back) / (rho * rho * rho);
+  return rho * (0.146 - (0.153 - back) * rho * rho);
+}
+// How much higher a ball is at some distance from its lowest place.
+float ball_sag(float ball, float from) {
+  float within = min(from, 0.98 * ball);
+  return within * within / (ball + sqrt((ball - within) * (ball + within)));
+}
 float fade_out(float way) {
   float s = clamp(way, 0.0, 1.0);
   return (1.0 - s) * (1.0 - s) * (1.0 + 2.0 * s);
@@ -57,27 +67,36 @@ void main() {
     vec4 foot = texelFetch(dent, 7 * i);  // at rest; depth
     vec4 inward = texelFetch(dent, 7 * i + 1), along = texelFetch(dent, 7 * i + 2);  // at rest; half axes across, along
     vec4 more = texelFetch(dent, 7 * i + 3);  // mean, edge, far, drawn in
-    vec2 last = texelFetch(dent, 7 * i + 4).xy;  // spread, reach
-    vec3 inward_now = texelFetch(dent, 7 * i + 5).xyz, along_now = texelFetch(dent, 7 * i + 6).xyz;
+    vec4 last = texelFetch(dent, 7 * i + 4);  // spread, reach, ball, bend
+    vec4 now = texelFetch(dent, 7 * i + 5);   // inward; out
+    vec3 inward_now = now.xyz, along_now = texelFetch(dent, 7 * i + 6).xyz;
+    float nu = texelFetch(dent, 7 * i + 6).w;
     vec3 from = rest - foot.xyz;
     float how = clamp(-2.0 * dot(normal, inward.xyz), 0.0, 1.0) * fade_out(2.0 * length(from) / last.y - 1.0);
     if (!(how > 0.0)) continue;
     float x = dot(from, along.xyz), y = length(from - x * along.xyz);
-    float rho = length(vec2(x / along.w, y / inward.w)), deep, drawn;
+    float rho = length(vec2(x / along.w, y / inward.w)), deep, moved;
     if (rho < 1.0) {
       pressure += more.x * 1.5 * sqrt((1.0 - rho) * (1.0 + rho));
-      deep = foot.w - (foot.w - more.y) * rho * rho;
-      drawn = drawn_in(rho) - last.x * rho * sqrt((1.0 - rho) * (1.0 + rho));
+      moved = last.x * spread(rho, nu) - more.w * drawn_in(rho);
+      float how_high = rho * rho;  // TipDent::sag_share
+      if (last.z > 0.0) {
+        float width = sqrt(inward.w * along.w);
+        float edge = ball_sag(last.z, max(width + last.x * spread(1.0, nu) - more.w * drawn_in(1.0) + now.w, 0.0)) + last.w;
+        float here = ball_sag(last.z, max(rho * width + moved + now.w * rho, 0.0)) + last.w * rho * rho;
+        if (edge > 0.1 * foot.w) how_high = here / edge;
+      }
+      deep = foot.w - (foot.w - more.y) * how_high;
     } else {
       rho = outside(x * x, y * y, along.w * along.w, inward.w * inward.w);
       deep = profile(rho) * (more.z + (2.0 * more.y - more.z) / (rho * rho));
-      drawn = drawn_in(rho);
+      moved = last.x * spread(rho, nu) - more.w * drawn_in(rho);
     }
     float narrow = inward.w / along.w;
     vec3 outward = narrow * narrow * x * along_now + dot(from, cross(inward.xyz, along.xyz)) * cross(inward_now, along_now);
     float far = length(outward);
     if (far > 0.0) outward /= far;
-    u += how * (deep * inward_now - more.w * drawn * outward);
+    u += how * (deep * inward_now + moved * outward);
   }
   placed = vec4(rest + u, length(u));
 })";

@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
+#include "sim_host/report/reference_curve.h"
 #include "sim_host/view/neighbourhood.h"
 #include "sim_host/view/surface_bend.h"
 #include "sim_host/view/surface_shape.h"
@@ -99,6 +101,28 @@ TEST(ContactProfile, TheSurfaceIsDrawnInAsThePressureAsks) {
       EXPECT_NEAR(4.0 / 3 * contact_drawn_in_by_force(nu) * contact_drawn_in(rho), moved, 1e-6) << nu << " " << rho;
     }
   EXPECT_EQ(contact_drawn_in(0), 0);
+}
+
+// The accuracy case `block`, a ball half as deep as its radius on what is nearly half a space: where large-strain
+// elements see the surface go along itself, Hertz' inward draw taken off. The form is within 0.007 of force / (E*
+// ball's radius) there, an eighth of its largest (2026-11-26); a third of that for the block's far field.
+TEST(ContactProfile, ADeepBallSpreadsTheSurfaceAsElementsDo) {
+  const std::string path = PALPATE_SOURCE_DIR "/tests/accuracy/block.reference.csv";
+  const ReferenceCurve reference = read_reference(path);
+  constexpr double kNu = 0.49, kModulus = 2.62166e6 / (1 - kNu * kNu);  // block.toml
+  const double ball_m = reference.press.radius_m, unit_m = norm(reference.force_N.back()) / (kModulus * ball_m);
+  const double hertz_m = std::cbrt(0.75 * unit_m * ball_m * ball_m);
+  const double drawn_m = contact_drawn_in_by_force(kNu) * unit_m * ball_m / hertz_m;
+  int seen = 0;
+  for (const elastic::MovedPlace& place : reference.surface.place) {
+    const Vec3 from = tangential_part(place.rest_m - reference.press.place_m, reference.press.normal);
+    const double r = norm(from), rho = r / hertz_m;
+    if (rho > 2 || norm(place.displacement_m) < 0.05 * reference.surface.depth_m) continue;
+    const double spread_m = dot(place.displacement_m, from) / r + drawn_m * contact_drawn_in(rho);
+    EXPECT_NEAR(spread_m / unit_m, contact_spread(rho, kNu), 0.01) << rho;
+    ++seen;
+  }
+  EXPECT_GT(seen, 30);
 }
 
 // A ball on a plane: inside the edge the dented surface is the ball's paraboloid, and beyond it lies outside the ball.

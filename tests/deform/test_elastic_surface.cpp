@@ -116,10 +116,11 @@ TEST(ElasticSurface, AContactDrawsTheSurfaceIn) {
   EXPECT_NEAR(along(-0.012, 0).x, 0.0002, 1e-12);
   const Vec3 beside = along(0.006, -0.003);
   EXPECT_NEAR(beside.x / beside.z, -0.006 / 0.003 / 9, 1e-9);  // the ellipse is three times as long as wide
-  const double before = along(0, 0.0028).z, edge = along(0, 0.004).z;
-  dent.spread = 0.5;
-  EXPECT_GT(along(0, 0.0028).z - before, 0.5 * 0.0002 * 0.49);
-  EXPECT_EQ(along(0, 0.004).z, edge);
+  const double before = along(0, 0.0024).z, edge = along(0, 0.004).z;
+  dent.spread_m = 0.001;
+  EXPECT_GT(along(0, 0.0024).z - before, 0.05 * dent.spread_m);
+  EXPECT_NEAR(along(0, 0.004).z, edge, 0.01 * dent.spread_m);
+  EXPECT_LT(along(0, 0.006).z, -0.0002 * 0.004 / 0.006);  // around it the surface is drawn down into the dent
 }
 
 // Over the drawn surface the pressure adds up to the force, of every method that has one.
