@@ -4,6 +4,7 @@
 #include "rt_core/skeleton/beam_table.h"
 #include "rt_core/stage_cost.h"
 #include "rt_core/surface/closest_point.h"
+#include "rt_core/surface/ring_proof.h"
 
 namespace palpate {
 
@@ -43,6 +44,8 @@ ImageResult check_surface(const Model& model) noexcept {
       if (!in_range(t.vertex[k], model.vertex_m.size())) return broken("triangle.vertex", i);
       if (!in_range(t.adjacent[k], model.triangle.size())) return broken("triangle.adjacent", i);
     }
+    if (t.ring_convex < 0 || !in_range(ring_proof::lowest_about_hub(t), model.triangle.size()))
+      return broken("triangle.ring_convex", i);
   }
   return {};
 }

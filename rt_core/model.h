@@ -185,7 +185,7 @@ struct Triangle {
   float clear_scale_per_m = 0;
   float clear_radius_m = 0;
   // 1: no vertex of the ring lies above the plane of this triangle or of one across an edge of it; 2: nor above that of
-  // any triangle of the ring.
+  // any triangle of the ring; 3 and more: surface/ring_proof.h, where clear_* is of what rises above these planes.
   std::int32_t ring_convex = 0;
 };
 // Node of a 4-wide hierarchy over the triangles. Bounds are single precision, rounded outward. The normal cone of a

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "config/bake/plane_clearance.h"
 #include "rt_core/surface/closest_point.h"
 #include "rt_core/surface/ring.h"
 #include "rt_core/surface/triangle.h"
@@ -17,6 +18,12 @@ constexpr int kHeightsTried = 8;
 constexpr double kShrink = 1 - 1.5e-7;
 // A distance beyond this multiple of the height gains nothing.
 constexpr double kUsefulFactor = 1.5;
+// Slivers are this many times longer than wide: their ring is too narrow for a ball that covers their length.
+constexpr double kSliver = 8;
+// Triangles of a ring that is dearer to look at than what planes prove; in an even mesh it has 13.
+constexpr std::size_t kLargeRing = 20;
+
+enum class Coverage { kNoRing, kPart, kWhole };
 
 class Clearance {
  public:
@@ -34,7 +41,8 @@ class Clearance {
       for (int k = 0; k < 4; ++k) bound_child(n, k);
   }
 
-  void measure(std::int32_t index) {
+  // What of the triangle its ring certifies.
+  Coverage measure(std::int32_t index) {
     Triangle& t = bvh_.triangle[static_cast<std::size_t>(index)];
     const Vec3 a = corner(t, 0), b = corner(t, 1), c = corner(t, 2);
     const Vec3 normal = cross(b - a, c - a);
@@ -42,7 +50,8 @@ class Clearance {
     ring_.clear();
     ring_.push_back(index);
     const auto add = [this](std::int32_t i, std::int32_t) { ring_.push_back(i); };
-    if (!(length > 0) || !for_each_in_ring(bvh_.triangle.data(), index, add)) return;
+    if (!(length > 0)) return Coverage::kWhole;  // none to certify
+    if (!for_each_in_ring(bvh_.triangle.data(), index, add)) return Coverage::kNoRing;
     const Vec3 centroid = (1.0 / 3.0) * (a + b + c);
     const double reach2 =
         std::max({squared_norm(a - centroid), squared_norm(b - centroid), squared_norm(c - centroid)});
@@ -60,6 +69,16 @@ class Clearance {
       t.clear_radius_m = static_cast<float>(kShrink * clear);
     }
     if (most_room2 > 0) t.ring_convex = ring_convexity(t);
+    return most_room2 < reach2 ? Coverage::kPart : Coverage::kWhole;
+  }
+
+  // Of the triangle just measured.
+  bool has_large_ring() const { return ring_.size() > kLargeRing; }
+  bool is_sliver(std::int32_t index) const {
+    const Triangle& t = bvh_.triangle[static_cast<std::size_t>(index)];
+    const Vec3 a = corner(t, 0), b = corner(t, 1), c = corner(t, 2);
+    const double longest2 = std::max({squared_norm(b - a), squared_norm(c - b), squared_norm(a - c)});
+    return longest2 > kSliver * norm(cross(b - a, c - a));
   }
 
  private:
@@ -206,8 +225,13 @@ class Clearance {
 
 void measure_clearance(std::span<const Vec3> vertex_m, BvhBuild& bvh) {
   Clearance clearance(vertex_m, bvh);
+  PlaneClearance planes(vertex_m, bvh);
   const auto triangles = static_cast<std::int32_t>(bvh.triangle.size());
-  for (std::int32_t i = 0; i < triangles; ++i) clearance.measure(i);
+  for (std::int32_t i = 0; i < triangles; ++i) {
+    const Coverage by_ring = clearance.measure(i);
+    const bool helps = clearance.has_large_ring() || (by_ring == Coverage::kPart && clearance.is_sliver(i));
+    if (by_ring == Coverage::kNoRing || helps) planes.measure(i, by_ring != Coverage::kNoRing);
+  }
 }
 
 }  // namespace palpate

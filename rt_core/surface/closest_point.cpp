@@ -1,7 +1,9 @@
 #include "rt_core/surface/closest_point.h"
 
 #include "rt_core/surface/candidate.h"
+#include "rt_core/surface/plane_proof.h"
 #include "rt_core/surface/ring.h"
+#include "rt_core/surface/ring_proof.h"
 
 namespace palpate {
 
@@ -57,14 +59,14 @@ enum class Proof : std::int32_t {
 // (ellipsoid, 2026-11-21). A step costs some 250 instructions, a search 3,000 to 12,000.
 constexpr std::int32_t kMaxWalk = 24;
 
-enum class Certificate : std::int32_t { kNone, kRing, kConvexOutside };
+enum class Certificate : std::int32_t { kNone, kRing, kConvexOutside, kByPlanes };
 
 // Whether every surface point as near to p as best.triangle lies in its ring (kRing): the ball about p is inside the
 // ball about the triangle's clearance point, which holds no other surface. kConvexOutside: besides, p is outside and
 // the ring lies below the planes of all triangles that hold the closest point c, so below the plane through c with
 // normal p - c, a positive combination of theirs: only a triangle that holds c can be as near. c is inset enough that
 // rounding cannot move it to another feature (the scene compiler checks kSafeInset against the size of those
-// triangles).
+// triangles). kByPlanes: p is outside, and what is as near lies below the planes that plane_proof.h goes by.
 Certificate certificate(const Surface& surface, Vec3 p, const Candidate& best) PALPATE_RT {
   const Triangle& t = surface.triangle[best.triangle];
   const double distance = square_root(best.distance2);
@@ -75,9 +77,10 @@ Certificate certificate(const Surface& surface, Vec3 p, const Candidate& best) P
   const Vec3 clear = (1.0 / 3.0) * (a + b + c) + static_cast<double>(t.clear_scale_per_m) * normal;
   // The shrinking covers the rounding of this test, so that a triangle outside the ring cannot even tie.
   if (!(squared_norm(p - clear) < (1 - 1e-9) * (spare * spare))) return Certificate::kNone;
+  const bool outside = distance > kDirectionFloor_m && dot(p - best.at.point, normal) > 0;
+  if (ring_proof::is_by_planes(t)) return outside ? Certificate::kByPlanes : Certificate::kNone;
   const bool at_vertex = best.at.feature >= Feature::kVertex0;
   const bool convex = at_vertex ? t.ring_convex == 2 : t.ring_convex >= 1 && best.at.inset > kSafeInset;
-  const bool outside = distance > kDirectionFloor_m && dot(p - best.at.point, normal) > 0;
   return convex && outside ? Certificate::kConvexOutside : Certificate::kRing;
 }
 
@@ -120,15 +123,25 @@ bool search_ring(const Surface& surface, Vec3 p, Candidate& best) PALPATE_RT {
 
 // Improves `best`, which holds a measured triangle (its ceiling need not be up to date; it is afterwards when kNone is
 // returned). The proof rests on Triangle::clear_*: see measure_clearance in the scene compiler. The price does not
-// depend on the size of the mesh. Bound: kMaxWalk fans and two rings, `most_work` and what a ring or fan adds.
+// depend on the size of the mesh. Bound: kMaxWalk fans and two rings, `most_work` and what a ring or fan adds, and one
+// turn with kMaxWarmWork.
 Proof walk(const Surface& surface, Vec3 p, std::int32_t most_work, Candidate& best) PALPATE_RT {
   bool searched = false;  // a ring, without a certificate: dear, so a walk that needs a second gives up
-  const std::int32_t most_looked = best.looked + most_work;
+  bool turned = false;    // about a fan's middle: once it does not count
+  std::int32_t most_looked = best.looked + most_work;
   for (std::int32_t step = 0; step < kMaxWalk && best.looked < most_looked; ++step) {
     const std::int32_t centre = best.triangle;
     const Certificate found = certificate(surface, p, best);
     const bool convex = found == Certificate::kConvexOutside;
     if (convex && best.at.feature == Feature::kFace) return Proof::kOutside;
+    if (found == Certificate::kByPlanes) {
+      const Settled settled = settle_by_planes(surface, p, best);
+      if (settled == Settled::kNearest) return Proof::kOutside;
+      if (settled == Settled::kNone) break;
+      if (settled == Settled::kTurned && !turned) most_looked = best.looked + kMaxWarmWork;
+      turned |= settled == Settled::kTurned;
+      continue;
+    }
     const bool at_border = found == Certificate::kNone && best.at.feature != Feature::kFace;
     if (convex || at_border) {
       const double lowest2 = best.distance2 - distance2_rounding(best);

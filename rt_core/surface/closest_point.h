@@ -20,8 +20,10 @@ inline constexpr std::int32_t kMaxSearched = 512;
 // instructions on the ring instead of 54,500 (2026-11-23).
 inline constexpr std::int32_t kMaxWarmWork = 24;
 inline constexpr std::int32_t kMaxLandedWork = 48;
-// Boxes and triangles one query looks at in all: two walks and the fan or ring in which each gives up (3 kMaxFan), the
-// way down to a leaf, and the search with its last node's 16 triangles: 64 + 128 + 2 * 72 + 68 + 512 + 512 + 16.
+// Boxes and triangles one query looks at in all: two walks and the fan or ring in which each gives up (3 kMaxFan), in
+// each a turn about a fan's middle (kMaxTurn / kSpokesPerLook and kMaxWarmWork) and what meets at it (kMaxNearCorner),
+// the way down to a leaf, and the search with its last node's 16 triangles:
+// 64 + 128 + 2 * 72 + 2 * (32 + 24 + 128) + 68 + 512 + 512 + 16.
 inline constexpr std::int32_t kMaxQueryWork = 2048;
 // Triangles that may meet in one vertex: no query could look at more. Those about the poles of a body of four million
 // triangles are 2,000. Refused when the body is read and when its image is loaded.

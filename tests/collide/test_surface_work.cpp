@@ -96,7 +96,7 @@ struct Crowd {
 };
 
 TEST(SurfaceWork, ATickKeepsToItsShareAndNobodyWaitsForEver) {
-  constexpr std::int32_t kShare = 1024;
+  constexpr std::int32_t kShare = 128;
   Crowd crowd(50, kShare);
   const Pose pressed{{3e-3, 1e-3, 0.0325}, small_rotation({0.02, 0.01, 0})};
   int held_ticks = 0;
