@@ -2,6 +2,8 @@
 #pragma once
 
 #include "rt_core/limits.h"
+#include "rt_core/surface/plane_proof.h"
+#include "rt_core/surface/ring_proof.h"
 #include "rt_core/surface/smooth_foot.h"
 
 namespace palpate::foot {
@@ -11,6 +13,9 @@ inline constexpr Real kOutside = 1e-9;
 // One this far below zero will not come back in two more steps: the triangle is left at once. A tip that crosses five
 // triangles in a tick took a fifth less (ring, thrown about: 50,500 -> 46,800 instructions, 2026-11-23).
 inline constexpr Real kFarOutside = -0.25;
+// An area coordinate this near to one: at a vertex, on all the triangles that meet there. Where they lie in one plane
+// any of them is as good, and Newton's steps would be sent on round the vertex.
+inline constexpr Real kAtVertex = 1e-6;
 // Newton has converged when neither the foot nor the height moves by more than this: far below an atom.
 inline constexpr Real kStill_m = 1e-14;
 
@@ -50,6 +55,13 @@ inline Step newton_step(const Corners& k, Vec3 p, const Place& at) PALPATE_RT {
 
 inline Real least_coordinate(const Place& at) PALPATE_RT { return min_of(min_of(1.0 - at.b - at.c, at.b), at.c); }
 
+inline bool is_at_flat_vertex(const Triangle& t, const Place& at) PALPATE_RT {
+  if (!ring_proof::is_by_planes(t)) return false;
+  const Real a = 1.0 - at.b - at.c;
+  const int corner = a > 1 - kAtVertex ? 0 : at.b > 1 - kAtVertex ? 1 : at.c > 1 - kAtVertex ? 2 : -1;
+  return corner >= 0 && least_coordinate(at) > -kAtVertex && ring_proof::is_flat_about(t, corner);
+}
+
 // Edge to cross: that of the most negative coordinate; -1 when the foot is inside. Edge k joins corners k and k + 1, so
 // it is left through the coordinate of corner k + 2.
 inline int edge_to_cross(const Place& at) PALPATE_RT {
@@ -73,6 +85,15 @@ inline std::int32_t across(const Model& model, std::int32_t triangle, int edge) 
     }
   }
   return next;
+}
+
+// The corner about which a foot that leaves through an edge is turned on to the triangle below it, needles and needles
+// away maybe: an end of the edge in a flat fan; -1: neither, and the triangle across is next.
+inline int corner_to_turn_about(const Triangle& t, int edge) PALPATE_RT {
+  if (!ring_proof::is_by_planes(t)) return -1;
+  const int end = edge == 2 ? 0 : edge + 1, hub = ring_proof::hub_corner(t);
+  if (hub == edge || hub == end) return hub;
+  return ring_proof::is_flat_about(t, edge) ? edge : ring_proof::is_flat_about(t, end) ? end : -1;
 }
 
 // Area coordinates on another triangle of the point nearest to `foot` in its plane.
@@ -110,16 +131,18 @@ inline SmoothFoot foot_at(const Corners& k, std::int32_t triangle, const Place& 
 
 // As smooth_foot(), on the surface whose corners `corners_of(triangle)` gives, from the foot of `near_w`. The last step
 // is at most `still_m`; what is left then is its square over the radius of the surface. At most `most_crossed` edges
-// are crossed. `steps`: counts Newton's.
-template <class CornersOf>
-SmoothFoot search(const Model& model, const CornersOf& corners_of, Vec3 p, std::int32_t triangle, Vec3 near_w,
-                  Real still_m = kStill_m, std::int32_t most_crossed = kFootWalk,
-                  std::int32_t* steps = nullptr) PALPATE_RT {
+// are crossed, and one fan passed round: `at_rest(corner, off)` takes what is off a corner back to the body at rest.
+// `steps`: counts Newton's. `passed`: adds the spokes of the fan.
+template <class CornersOf, class AtRest>
+SmoothFoot search(const Model& model, const CornersOf& corners_of, const AtRest& at_rest, Vec3 p, std::int32_t triangle,
+                  Vec3 near_w, Real still_m = kStill_m, std::int32_t most_crossed = kFootWalk,
+                  std::int32_t* steps = nullptr, std::int32_t* passed = nullptr) PALPATE_RT {
   if (triangle < 0 || static_cast<std::size_t>(triangle) >= model.corner_normal.size() || !is_finite(p)) return {};
   Corners corners = corners_of(triangle);
   Place at = place_on(corners, near_w, 0.0);
   at.t = dot(flat_foot(corners, at) - p, corners.u[0]);
   std::int32_t walked = 0, on_this = 0;
+  bool turned = false;
   for (std::int32_t i = 0; i < kFootNewtonSteps; ++i) {  // bound: kFootNewtonSteps
     const Step step = newton_step(corners, p, at);
     if (steps != nullptr) *steps = i + 1;
@@ -133,17 +156,26 @@ SmoothFoot search(const Model& model, const CornersOf& corners_of, Vec3 p, std::
     const bool outside = least_coordinate(at) < kFarOutside;
     if (!still && !outside && on_this < 3) continue;
     const int edge = edge_to_cross(at);
-    if (edge < 0) {
+    if (edge < 0 || is_at_flat_vertex(model.triangle[static_cast<std::size_t>(triangle)], at)) {
       if (still) return foot_at(corners, triangle, at, step);
       continue;
     }
-    const std::int32_t next = walked < most_crossed ? across(model, triangle, edge) : -1;
+    std::int32_t next = walked < most_crossed ? across(model, triangle, edge) : -1;
     if (next < 0) {
       SmoothFoot lost;
       lost.state = walked < most_crossed ? FootState::kEdge : FootState::kFar;
       return lost;
     }
     const Vec3 foot = flat_foot(corners, at);
+    const Triangle& here = model.triangle[static_cast<std::size_t>(triangle)];
+    const int corner = turned ? -1 : corner_to_turn_about(here, edge);
+    if (corner >= 0) {
+      const Turn turn = turn_about({model.triangle.data(), model.vertex_m.data()},
+                                   at_rest(corner, foot - corners.v[corner]), triangle, here.vertex[corner]);
+      if (turn.triangle >= 0 && turn.triangle != triangle) next = turn.triangle;
+      if (passed != nullptr) *passed += turn.passed;
+      turned = true;
+    }
     triangle = next;
     corners = corners_of(triangle);
     at = place_on(corners, foot, at.t);

@@ -161,6 +161,15 @@ TEST(ElasticHard, HubOfNeedles) {
   EXPECT_GT(bench.output.contact_w.force_N.y, 10);
   move_to(bench, {0, 0.0365, 0}, {0, 0.0345, 0});
   EXPECT_LT(change_while_held_N(bench, {0, 0.0345, 0}, 20), 1e-9);
+  // Where all needles meet no tick searches the hierarchy, which looks at 32 nodes before it gives up, nor stands on a
+  // facet: what its walk looks at is all.
+  std::int64_t looks = 0;
+  for (int i = 0; i <= 100; ++i) {
+    bench.tick_at({{0, 0.0365 - 2e-5 * i, 0}, {}}, {});
+    if (i > 0) looks = std::max<std::int64_t>(looks, bench.scratch->work.looks);
+    EXPECT_EQ(bench.output.status & Status::kTraversalTruncated, 0u) << i;
+  }
+  EXPECT_LE(looks, 12);
 }
 
 // Out of a deep press in one tick, and back in one: nothing is left over, and the same press is the same force.

@@ -9,6 +9,8 @@ constexpr Real kStillCarried_m = 1e-9;
 
 // Facets that a foot crosses in a tick, at most: what follows a tip at 4 m/s over edges of a millimetre.
 constexpr std::int32_t kMostCrossed = 5;
+// Spokes of a fan that cost what a term of a vertex does.
+constexpr std::int32_t kSpokesPerTerm = 2;
 // Ends of edges that a foot passes.
 constexpr std::int32_t kMostEnds = 2;
 
@@ -96,6 +98,7 @@ void stand_on(const EdgePlace& on, Vec3 centre_w, const CarriedTriangle& last, S
 }  // namespace
 
 void find_carried_foot(Vec3 centre_w, Vec3 near_w, CarriedTriangle& last, ElasticRow& row) PALPATE_RT {
+  std::int32_t passed = 0;
   row.foot = foot::search(
       last.model,
       [&last](std::int32_t t) PALPATE_RT {
@@ -103,7 +106,9 @@ void find_carried_foot(Vec3 centre_w, Vec3 near_w, CarriedTriangle& last, Elasti
         last.turn_normals();
         return last.corners;
       },
-      centre_w, last.triangle, near_w, kStillCarried_m, kMostCrossed);
+      [&last](int corner, Vec3 off) PALPATE_RT { return last.vertex[corner].at_rest(off); }, centre_w, last.triangle,
+      near_w, kStillCarried_m, kMostCrossed, nullptr, &passed);
+  *last.shown += passed / kSpokesPerTerm;
 }
 
 EdgePlace place_on_edge(Vec3 centre_w, CarriedTriangle& last, ElasticRow& row) PALPATE_RT {

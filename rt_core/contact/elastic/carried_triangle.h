@@ -15,6 +15,10 @@ struct CarriedVertex {
   Vec3 carried(Vec3 normal) const PALPATE_RT {
     return {dot(cross(row[1], row[2]), normal), dot(cross(row[2], row[0]), normal), dot(cross(row[0], row[1]), normal)};
   }
+  // A direction on the body at rest that is carried along to `off`; not to scale.
+  Vec3 at_rest(Vec3 off) const PALPATE_RT {
+    return off.x * cross(row[1], row[2]) + off.y * cross(row[2], row[0]) + off.z * cross(row[0], row[1]);
+  }
 };
 
 template <class Count>
@@ -76,7 +80,10 @@ struct CarriedTriangle {
   void walk_below(Vec3 centre_w) PALPATE_RT {
     std::int32_t left = -1;
     for (std::int32_t i = 0; i < kFootWalk; ++i) {  // bound: kFootWalk
-      const int edge = foot::edge_to_cross(foot::place_on(corners, centre_w, 0.0));
+      const foot::Place at = foot::place_on(corners, centre_w, 0.0);
+      const int edge = foot::is_at_flat_vertex(model.triangle[static_cast<std::size_t>(triangle)], at)
+                           ? -1
+                           : foot::edge_to_cross(at);
       const std::int32_t next = edge < 0 ? -1 : foot::across(model, triangle, edge);
       if (next < 0 || next == left) return;
       left = triangle;

@@ -11,6 +11,7 @@
 #include "rt_core/contact/tips/tip_check.h"
 #include "rt_core/image_check.h"
 #include "rt_core/surface/closest_point.h"
+#include "rt_core/surface/plane_proof.h"
 
 namespace palpate {
 
@@ -283,11 +284,11 @@ void create_work(const Model& model, void* block) noexcept {
   }
 }
 
-// A tip stands on the carried surface after kFootWalk triangles at worst, or on its facet; found twice in a tick that
-// loses it.
+// A tip stands on the carried surface after kFootWalk triangles and a turn about a fan (twice at an edge, at half a
+// term a spoke) at worst, or on its facet; found twice in a tick that loses it.
 void add_most_work(const Model& model, const SceneSizes& n, Work& work) noexcept {
   const std::int32_t soft = model.params.elastic_soft, pair = pairs(soft);
-  const std::int32_t place = (3 * (kFootWalk + 2) + 6) * terms(soft) + kSlideWork;
+  const std::int32_t place = (3 * (kFootWalk + 2) + 6) * terms(soft) + kMaxTurn + kSlideWork;
   add_most_points(model, n, work);
   work.queries += 2 * n.points;  // a capsule asks three times
   add_most_regions(n, kSolvesOfFriction * TipLaws::kIterations, work);
