@@ -101,6 +101,11 @@ constexpr bool has_two_devices(HeldPart part) PALPATE_RT {
 #define PALPATE_ARTICULATIONS(X) X(kRigid, rigid) X(kGripper, gripper) X(kHand, hand) X(kTwoTools, two_tools)
 PALPATE_CHOICE(Articulation, PALPATE_ARTICULATIONS);
 
+// Where a handle is between two steps of its encoder: tracked as a motion through a dead zone
+// (safety/encoder_observer.h), or from the edges it passed (safety/edge_observer.h).
+#define PALPATE_ENCODER_LAWS(X) X(kMotion, motion) X(kEdges, edges)
+PALPATE_CHOICE(EncoderLaw, PALPATE_ENCODER_LAWS);
+
 // Who measures contact and makes force. Response: tool points on the rest surface, one law per region. Nodal: surface
 // nodes of a finite-element body against the tool's pieces (rt_core/contact/nodes). Elastic: whole tips on a body that
 // gives as its modes do (rt_core/contact/elastic).

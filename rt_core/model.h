@@ -119,6 +119,8 @@ namespace palpate {
     "of the device's own evaluation of the local contact model; 0: it has none, forces are held")                     \
   X(double, encoder_step_m, "m", 0, 0.1, "of the device: within it the handle's position is observed")                \
   X(double, encoder_step_rad, "rad", 0, 1, "and its orientation")                                                     \
+  PALPATE_CHOICE_PARAM(X, EncoderLaw, encoder_law_m, "how the position is observed")                                  \
+  PALPATE_CHOICE_PARAM(X, EncoderLaw, encoder_law_rad, "how the orientation is")                                      \
   X(double, force_max_N, "N", 0, kWireForceMax_N, "magnitude limit of the rendered force")                            \
   X(double, torque_max_Nm, "N*m", 0, kWireTorqueMax_Nm, "magnitude limit of the rendered torque")                     \
   X(double, force_rate_max_N_per_s, "N/s", 1, 1e7, "fault limiter of the force change")                               \

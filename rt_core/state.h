@@ -13,15 +13,12 @@
 #include "rt_core/limits.h"
 #include "rt_core/model.h"
 #include "rt_core/pool.h"
-#include "rt_core/state_visit.h"
+#include "rt_core/safety/edge_observer.h"
+#include "rt_core/state_fields.h"
 #include "rt_core/work.h"
 
 namespace palpate {
 
-// One row of a table: X(type, name, value after a reset, meaning).
-#define PALPATE_STATE_FIELD(type, name, initial, meaning) type name = initial;
-#define PALPATE_STATE_VISIT(type, name, initial, meaning) visit_value(visitor, #name, name);
-#define PALPATE_STATE_LAYOUT(type, name, initial, meaning) hash = layout_with<type>(hash, #name);
 // One row of a table of pools: X(element type, name, capacity for a model, elements in use, meaning).
 #define PALPATE_STATE_POOL(type, name, capacity, used, meaning) Pool<type> name;
 #define PALPATE_STATE_VISIT_POOL(type, name, capacity, used, meaning) visit_pool(visitor, #name, name, used);
@@ -30,18 +27,8 @@ namespace palpate {
 #define PALPATE_STATE_CLEAR(type, name, capacity, used, meaning) name.fill({});
 #define PALPATE_STATE_LIKE(type, name, capacity, used, meaning) &&name.is_like(other.name)
 
-// The members of a table's fields, and visit(): the visitor gets every value in the table's order, with its name.
-#define PALPATE_STATE_FIELDS_OF(FIELDS)                                  \
-  FIELDS(PALPATE_STATE_FIELD)                                            \
-  template <class Visitor>                                               \
-  void visit(Visitor& visitor) const PALPATE_RT_IF(Visitor::kRealTime) { \
-    FIELDS(PALPATE_STATE_VISIT)                                          \
-  }                                                                      \
-  static constexpr std::uint64_t layout(std::uint64_t hash) noexcept {   \
-    FIELDS(PALPATE_STATE_LAYOUT)                                         \
-    return hash;                                                         \
-  }
-// The same with pools, over a struct of fields; and what lays the pools out, resets all and compares two layouts.
+// As PALPATE_STATE_FIELDS_OF, with pools, over a struct of fields; and what lays the pools out, resets all and compares
+// two layouts.
 #define PALPATE_STATE_GROUP_OF(Fields, POOLS)                                                                 \
   POOLS(PALPATE_STATE_POOL)                                                                                   \
   template <class Visitor>                                                                                    \
@@ -260,6 +247,8 @@ struct LateDevice {
   X(Pose, told_w, {}, "of the last accepted sample, as it came")                                        \
   X(Vec3, observed_m_per_s, {}, "velocity with which device_w goes on between the encoder's steps")     \
   X(Vec3, observed_rad_per_s, {}, "and turns")                                                          \
+  X(EdgeMemory, edges_m, {}, "of the encoder's edges, where device_w follows them")                     \
+  X(EdgeMemory, edges_rad, {}, "and where it turns by them")                                            \
   X(Vec3, hand_velocity_m_per_s, {}, "of the handle, smoothed: bridges lost samples")                   \
   X(std::int32_t, unseen_ticks, 0, "consecutive ticks without a sample that tells where the handle is") \
   X(std::int32_t, apart, 0, "1: samples came anew, the coupling's end does not stand at the handle")    \

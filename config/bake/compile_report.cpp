@@ -15,6 +15,11 @@ void line(std::string& text, const char* pattern, Values... values) {
   text += '\n';
 }
 
+const char* smoothing_text(bool smoothed, EncoderLaw law) {
+  if (!smoothed) return "not smoothed";
+  return law == EncoderLaw::kEdges ? "smoothed by its edges" : "smoothed";
+}
+
 void beam_lines(std::string& text, const CompileReport& r) {
   const BeamTableReport& b = r.beams;
   line(text, "beams      %.4g x %.4g mm in walls of at least %.4g mm, released over %.4g mm", 1e3 * b.width_m,
@@ -102,8 +107,9 @@ std::string report_text(const CompileReport& r) {
   line(text, "coupling   %.5g N/m of %.5g admitted (%s); %.4g N m/rad of %.4g (%s)", r.coupling_N_per_m, r.bound.value,
        reason_of(r.bound), r.coupling_Nm_per_rad, r.rotational_bound.value, reason_of(r.rotational_bound));
   line(text, "encoder    %s, which asks for %.3g N of friction and has %.3g; angle %s, for %.3g N m and has %.3g",
-       r.smoothing.position ? "smoothed" : "not smoothed", r.smoothing.friction_N, r.smoothing.has_N,
-       r.smoothing.angle ? "smoothed" : "not smoothed", r.smoothing.friction_Nm, r.smoothing.has_Nm);
+       smoothing_text(r.smoothing.position, r.smoothing.of_position.law), r.smoothing.of_position.friction,
+       r.smoothing.has_N, smoothing_text(r.smoothing.angle, r.smoothing.of_angle.law), r.smoothing.of_angle.friction,
+       r.smoothing.has_Nm);
   line(text, "tool       %d points in %d pieces", r.tool_points, static_cast<int>(r.gap_m.size()));
   for (std::size_t i = 0; i < r.gap_m.size(); ++i)
     line(text, "           piece %d: surface at most %.2f mm from its points' spheres", static_cast<int>(i),

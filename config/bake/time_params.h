@@ -31,17 +31,17 @@ inline double impact_coupling_N_per_m(double local_Hz, double delay_s, double fo
 // Whether the handle is smoothed within the encoder's step: as the scene says, or where the friction that the device is
 // stated to have holds it at rest. A held body's steps are not the handle's.
 struct Smoothing {
-  double friction_N = 0, friction_Nm = 0;  // asked for
+  SmoothingNeed of_position, of_angle;
   double has_N = 0, has_Nm = 0;
   bool position = false, angle = false;
 };
 inline Smoothing smoothing_of(const DeviceDesc& d, double coupling_N_per_m, double coupling_Nm_per_rad) {
-  Smoothing s{friction_to_smooth(kSmoothedPosition, coupling_N_per_m, d.encoder_step_m, d.mass_kg),
-              friction_to_smooth(kSmoothedAngle, coupling_Nm_per_rad, d.encoder_step_rad, d.inertia_kg_m2),
+  Smoothing s{smoothing_need(kSmoothedPosition, coupling_N_per_m, d.encoder_step_m, d.mass_kg, d.friction_N),
+              smoothing_need(kSmoothedAngle, coupling_Nm_per_rad, d.encoder_step_rad, d.inertia_kg_m2, d.friction_Nm),
               d.friction_N, d.friction_Nm};
   const bool own_steps = d.holds == HeldPart::kTool || d.holds == HeldPart::kTwoTools;
-  s.position = own_steps && d.encoder_step_m > 0 && d.smooth_encoder.value_or(d.friction_N >= s.friction_N);
-  s.angle = own_steps && d.encoder_step_rad > 0 && d.smooth_encoder.value_or(d.friction_Nm >= s.friction_Nm);
+  s.position = own_steps && d.encoder_step_m > 0 && d.smooth_encoder.value_or(d.friction_N >= s.of_position.friction);
+  s.angle = own_steps && d.encoder_step_rad > 0 && d.smooth_encoder.value_or(d.friction_Nm >= s.of_angle.friction);
   return s;
 }
 
@@ -69,6 +69,8 @@ inline void set_times(const SceneDesc& scene, ModelParams& p) {
   // A device with a loop of its own smooths by itself, always.
   p.encoder_step_m = smoothing.position || d.local_Hz > 0 ? d.encoder_step_m : 0;
   p.encoder_step_rad = smoothing.angle ? d.encoder_step_rad : 0;
+  p.encoder_law_m = smoothing.position && !(d.local_Hz > 0) ? smoothing.of_position.law : EncoderLaw::kMotion;
+  p.encoder_law_rad = smoothing.angle ? smoothing.of_angle.law : EncoderLaw::kMotion;
   const double late_s = d.local_Hz > 0 ? 0.5 * p.local_period_s : 0.5 * d.period_s + d.delay_s;
   p.coupling_Ns_per_m = is_auto(d.coupling_Ns_per_m) ? p.coupling_N_per_m * late_s : d.coupling_Ns_per_m;
   const Vec3 share = scene.material.relaxation_share, time_s = scene.material.relaxation_s;

@@ -154,18 +154,18 @@ std::string profile_contradictions(const DeviceProfile& profile, const ModelPara
     compare(text, "local_kHz", 1e-3 / scene.local_period_s, 1e-3 * profile.local_Hz, "kHz",
             "evaluates the local contact model with");
   if (!(scene.local_period_s > 0))  // else the device smooths by itself
-    compare_friction(
-        text, "friction_N",
-        friction_to_smooth(kSmoothedPosition, scene.coupling_N_per_m, scene.encoder_step_m, profile.mass_kg / scale),
-        profile.friction_N, "N");
+    compare_friction(text, "friction_N",
+                     friction_to_smooth(scene.encoder_law_m, kSmoothedPosition, scene.coupling_N_per_m,
+                                        scene.encoder_step_m, profile.mass_kg / scale),
+                     profile.friction_N, "N");
   // Without torque the rotational spring moves nothing.
   if (scene.torque_max_Nm > 0)
     compare(text, "coupling_Nm_per_rad", scene.coupling_Nm_per_rad, bounds.rotation.value, "N m/rad",
             "admits, by " + rule_of(bounds.rotation, profile, " times ") + ",");
   if (scene.torque_max_Nm > 0)
     compare_friction(text, "friction_Nm",
-                     friction_to_smooth(kSmoothedAngle, scene.coupling_Nm_per_rad, scene.encoder_step_rad,
-                                        scale * profile.inertia_kg_m2),
+                     friction_to_smooth(scene.encoder_law_rad, kSmoothedAngle, scene.coupling_Nm_per_rad,
+                                        scene.encoder_step_rad, scale * profile.inertia_kg_m2),
                      scale * profile.friction_Nm, "N m");
   return text;
 }

@@ -6,10 +6,10 @@
 #include <cstdint>
 
 #include "hal/device/device.h"
-#include "hal/device/edge_observer.h"
 #include "hal/device/hand_path.h"
 #include "hal/device/kinematics.h"
 #include "hal/loop/clock.h"
+#include "rt_core/safety/edge_observer.h"
 
 namespace palpate {
 

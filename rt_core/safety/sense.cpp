@@ -1,4 +1,5 @@
 #include "rt_core/decay.h"
+#include "rt_core/safety/edge_observer.h"
 #include "rt_core/safety/encoder_observer.h"
 #include "rt_core/safety/hand_velocity.h"
 #include "rt_core/safety/seat.h"
@@ -45,23 +46,48 @@ bool is_plausible(const Model& model, const State& state, const Input& input) PA
   return !(most_m > 0) || norm(way - elapsed_s * state.hand_velocity_m_per_s) <= most_m;
 }
 
-// `pose`, as the encoders told it, to where the handle is between their steps.
-void observe_handle(const Model& model, State& state, Pose& pose) PALPATE_RT {
+// Ends what decays, so that a still hand feels nothing change (rt_core/decay.h).
+Vec3 by_edges(double step, double elapsed_s, Vec3 change, EdgeMemory& memory) PALPATE_RT {
+  const Vec3 apart = between_edges(step, elapsed_s, change, memory);
+  memory.ahead = settled(memory.ahead);
+  memory.eased = settled(memory.eased);
+  return apart;
+}
+
+// Where the handle is within the encoder's steps, from what was told before and is told now, `elapsed_s` later.
+Vec3 observed_position(const ModelParams& p, State& state, double elapsed_s, Vec3 before_m, Vec3 told_m) PALPATE_RT {
+  if (p.encoder_law_m == EncoderLaw::kEdges)
+    return told_m + by_edges(p.encoder_step_m, elapsed_s, told_m - before_m, state.edges_m);
+  const Vec3 expected = state.device_w.position_m + p.period_s * state.observed_m_per_s;
+  return expected + observe(observer_gains(p.encoder_step_m, p.period_s), told_m - expected, state.observed_m_per_s);
+}
+
+Quat observed_orientation(const ModelParams& p, State& state, double elapsed_s, const Quat& before,
+                          const Quat& told) PALPATE_RT {
+  if (p.encoder_law_rad == EncoderLaw::kEdges) {
+    const Vec3 change = small_rotation_vector(told * conjugate(before));
+    const Vec3 apart = by_edges(p.encoder_step_rad, elapsed_s, change, state.edges_rad);
+    return normalised(small_rotation(apart) * told);
+  }
+  const Quat expected = small_rotation(p.period_s * state.observed_rad_per_s) * state.device_w.orientation;
+  const Vec3 ahead = small_rotation_vector(told * conjugate(expected));
+  const Vec3 turn = observe(observer_gains(p.encoder_step_rad, p.period_s), ahead, state.observed_rad_per_s);
+  return normalised(small_rotation(turn) * expected);
+}
+
+// `pose`, as the encoders told it `elapsed_s` after `before`, to where the handle is between their steps.
+void observe_handle(const Model& model, State& state, double elapsed_s, const Pose& before, Pose& pose) PALPATE_RT {
   const ModelParams& p = model.params;
   const Pose told = pose;
   // A device that evaluates the local model smooths by itself, ten times as often, and tells where it evaluated it.
-  if (p.encoder_step_m > 0 && !(p.local_period_s > 0)) {
-    const Vec3 expected = state.device_w.position_m + p.period_s * state.observed_m_per_s;
-    pose.position_m = expected + observe(observer_gains(p.encoder_step_m, p.period_s), told.position_m - expected,
-                                         state.observed_m_per_s);
+  if (p.encoder_step_m > 0 && !(p.local_period_s > 0))
+    pose.position_m = observed_position(p, state, elapsed_s, before.position_m, told.position_m);
+  if (p.encoder_step_rad > 0)
+    pose.orientation = observed_orientation(p, state, elapsed_s, before.orientation, told.orientation);
+  if (!is_finite(pose)) {  // a state spoilt in memory
+    pose = told;
+    state.edges_m = state.edges_rad = {};
   }
-  if (p.encoder_step_rad > 0) {
-    const Quat expected = small_rotation(p.period_s * state.observed_rad_per_s) * state.device_w.orientation;
-    const Vec3 ahead = small_rotation_vector(told.orientation * conjugate(expected));
-    const Vec3 turn = observe(observer_gains(p.encoder_step_rad, p.period_s), ahead, state.observed_rad_per_s);
-    pose.orientation = normalised(small_rotation(turn) * expected);
-  }
-  if (!is_finite(pose)) pose = told;  // a state spoilt in memory
   state.observed_m_per_s = settled(state.observed_m_per_s);
   state.observed_rad_per_s = settled(state.observed_rad_per_s);
 }
@@ -75,9 +101,12 @@ void follow_hand(const Model& model, State& state, Scratch& scratch, const Input
     const Vec3 velocity = (1 / elapsed_s) * (pose.position_m - state.told_w.position_m);
     state.hand_velocity_m_per_s = settled(state.hand_velocity_m_per_s + (1 / velocity_lag_ticks(model.params)) *
                                                                             (velocity - state.hand_velocity_m_per_s));
+    const Pose before = state.told_w;
     state.told_w = pose;
-    return observe_handle(model, state, pose);
+    return observe_handle(model, state, elapsed_s, before, pose);
   }
+  bridge_edges(period_s, state.edges_m);
+  bridge_edges(period_s, state.edges_rad);
   pose = state.device_w;
   state.told_w = pose;
   if (input.stale_ticks > static_cast<std::uint32_t>(model.params.silence_hold_ticks)) {

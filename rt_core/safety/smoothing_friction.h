@@ -15,9 +15,15 @@
 //   0.5 kg            0.9      0.9   1.1   1.25  1
 // The rule: 0.95, or sqrt(K / m) / (158 rad/s) where that is more, with m of 0.1 kg at most: a heavier handle is
 // slower, but what damps it weighs less.
+//
+// Followed by its edges (edge_observer.h) a handle that rests on one is where it is taken to be, and what pushes it
+// across is hardly more than as told. The same play, in eighths of a step, 2026-11-26: 0.5 to 0.62, the most for 0.05
+// kg at 8000 N/m. Heavier handles in the lightest hand, with 0.5 N s/m of damping, take 0.6 at 0.4 kg, 0.76 at 0.5
+// and 1.2 at 0.8. It leaves more of a tremor's staircase, so it is for those whose friction does not hold them by the
+// rule above.
 #pragma once
 
-#include "rt_core/base.h"
+#include "rt_core/laws.h"
 
 namespace palpate {
 
@@ -30,10 +36,26 @@ inline constexpr SmoothedHandle kSmoothedPosition{0.1, 0.95};
 // object is turned by no more than three times the coupling's stiffness, as by tips of 1.7 N/mm 70 mm apart.
 inline constexpr SmoothedHandle kSmoothedAngle{1e-4, 0.6};
 
-inline Real friction_to_smooth(const SmoothedHandle& handle, Real stiffness, Real step, Real inertia) {
+inline Real friction_to_smooth(EncoderLaw law, const SmoothedHandle& handle, Real stiffness, Real step, Real inertia) {
+  constexpr Real kEdgeShare = 0.62, kHeavy = 4;  // times the usual
+  if (law == EncoderLaw::kEdges)
+    return kEdgeShare * max_of(1, inertia / (kHeavy * handle.usual_inertia)) * stiffness * step;
   constexpr Real kHeldBelow_rad_per_s = 158, kMostShare = 2;  // kObserverReach and half a step
   const Real own_rad_per_s = square_root(stiffness / min_of(inertia, handle.usual_inertia));
   return clamp_to(own_rad_per_s / kHeldBelow_rad_per_s, handle.least_share, kMostShare) * stiffness * step;
+}
+
+// How a handle with so much friction is observed if it is smoothed at all, and what that asks for.
+struct SmoothingNeed {
+  EncoderLaw law;
+  Real friction;
+};
+inline SmoothingNeed smoothing_need(const SmoothedHandle& handle, Real stiffness, Real step, Real inertia,
+                                    Real friction) {
+  const Real motion = friction_to_smooth(EncoderLaw::kMotion, handle, stiffness, step, inertia);
+  const Real edges = friction_to_smooth(EncoderLaw::kEdges, handle, stiffness, step, inertia);
+  if (friction >= motion || edges >= motion) return {EncoderLaw::kMotion, motion};
+  return {EncoderLaw::kEdges, edges};
 }
 
 }  // namespace palpate

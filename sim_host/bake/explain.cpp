@@ -37,8 +37,9 @@ std::string stage_note(const Model& model, std::string_view stage) {
   if (stage == "articulate")
     return is_articulated(model) ? fmt::format("{} joints", model.joint.size()) : "nothing: the tool is rigid";
   if (stage == "sense" && (model.params.encoder_step_m > 0 || model.params.encoder_step_rad > 0))
-    return fmt::format("the handle is smoothed within steps of {:.4g} mm, {:.4g} rad",
-                       1e3 * model.params.encoder_step_m, model.params.encoder_step_rad);
+    return fmt::format("the handle is smoothed within steps of {:.4g} mm (by {}), {:.4g} rad (by {})",
+                       1e3 * model.params.encoder_step_m, word_of(model.params.encoder_law_m),
+                       model.params.encoder_step_rad, word_of(model.params.encoder_law_rad));
   if ((stage == "force" || stage == "solve") && carries_over(coupling))
     return fmt::format("a skeleton of {} beams per region{}", model.anchor.size(),
                        coupling == CouplingLaw::kTemporalPaper ? ": coupling is temporal"

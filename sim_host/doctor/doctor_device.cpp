@@ -125,13 +125,14 @@ std::vector<DoctorItem> examine_profile(const std::string& device, const std::st
   if (!found) return {judged("device profile", false, error, "docs/devices.md says what a profile holds")};
   constexpr double kUsualPeriod_s = 1e-3;
   const double admitted = admitted_coupling(*found, kUsualPeriod_s, HeldPart::kTool).translation.value;
-  const double smoothed = friction_to_smooth(kSmoothedPosition, admitted, found->encoder_step_m, found->mass_kg);
-  std::vector<DoctorItem> items{
-      judged("device profile", true,
-             fmt::format("{}: {:.4g} N, {:.4g} N m, admits {:.4g} N/m at 1 kHz; smoothing its encoder there asks for "
-                         "{:.4g} N of friction, it has {:.4g} N",
-                         found->name, found->force_max_N, found->torque_max_Nm, admitted, smoothed, found->friction_N),
-             "")};
+  const SmoothingNeed need =
+      smoothing_need(kSmoothedPosition, admitted, found->encoder_step_m, found->mass_kg, found->friction_N);
+  std::vector<DoctorItem> items{judged(
+      "device profile", true,
+      fmt::format("{}: {:.4g} N, {:.4g} N m, admits {:.4g} N/m at 1 kHz; smoothing its encoder there asks for "
+                  "{:.4g} N of friction, it has {:.4g} N",
+                  found->name, found->force_max_N, found->torque_max_Nm, admitted, need.friction, found->friction_N),
+      "")};
   if (!found->arm) return items;
   const BusVerdict verdict = check_drives_budget(*found->arm, kUsualPeriod_s);
   items.push_back(judged("bus budget of the drives", verdict.fits,

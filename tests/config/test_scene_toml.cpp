@@ -236,16 +236,35 @@ TEST(SceneToml, AMagnifiedProfileIsTheDeviceAsTheSceneHasIt) {
 TEST(SceneToml, TheEncoderIsSmoothedWhereFrictionHoldsTheHandle) {
   const auto smooths = [](const std::string& device) {
     const Smoothing s = compile_scene(parse_scene(kSmall + ("[device]\n" + device), "s.toml")).report.smoothing;
-    return std::string(s.position ? "position " : "") + (s.angle ? "angle" : "");
+    const auto law = [](const SmoothingNeed& need) { return need.law == EncoderLaw::kEdges ? "by edges " : ""; };
+    return (s.position ? std::string("position ") + law(s.of_position) : "") +
+           (s.angle ? std::string("angle ") + law(s.of_angle) : "");
   };
-  EXPECT_EQ(smooths(""), "position angle");  // the shipped device: 0.06 N of 0.057, 0.5 mN m of 0.48
-  EXPECT_EQ(smooths("smooth_encoder = \"auto\"\n"), "position angle");
+  EXPECT_EQ(smooths(""), "position angle ");  // the shipped device: 0.06 N of 0.057, 0.5 mN m of 0.48
+  EXPECT_EQ(smooths("smooth_encoder = \"auto\"\n"), "position angle ");
   EXPECT_EQ(smooths("smooth_encoder = false\n"), "");
-  EXPECT_EQ(smooths("friction_N = 0.055\ncoupling_N_per_m = 2000\n"), "angle");
+  const std::string k2 = "coupling_N_per_m = 2000\n";  // a step is 60 mN
+  EXPECT_EQ(smooths("friction_N = 0.055\n" + k2), "position by edges angle ");
+  EXPECT_EQ(smooths("friction_N = 0.038\n" + k2), "position by edges angle ");
+  EXPECT_EQ(smooths("friction_N = 0.037\n" + k2), "angle ");
+  EXPECT_EQ(smooths("friction_N = 0.037\nsmooth_encoder = true\n" + k2), "position by edges angle ");
+  EXPECT_EQ(smooths("friction_N = 0.055\nmass_kg = 0.7\n" + k2), "angle ");
   EXPECT_EQ(smooths("friction_Nm = 4.5e-4\ncoupling_Nm_per_rad = 0.8\n"), "position ");
-  EXPECT_EQ(smooths("friction_N = 0.055\ncoupling_N_per_m = 2000\nsmooth_encoder = true\n"), "position angle");
-  EXPECT_EQ(smooths("encoder_step_mm = 0\n"), "angle");
+  const std::string stiff_turn = "damping_Nms_per_rad = 0.01\ncoupling_Nm_per_rad = 2.5\n";  // 2.5 mN m a step
+  EXPECT_EQ(smooths("friction_Nm = 2.6e-3\n" + stiff_turn), "position angle ");
+  EXPECT_EQ(smooths("friction_Nm = 1.6e-3\n" + stiff_turn), "position angle by edges ");
+  EXPECT_EQ(smooths("encoder_step_mm = 0\n"), "angle ");
   EXPECT_EQ(smooths("holds = \"body\"\n"), "");
+  // A device with a loop of its own follows its edges by itself: the controller is told the step alone.
+  const auto law = [](const std::string& device) {
+    ModelParams p{};
+    p.coupling_N_per_m = 2000, p.coupling_Nm_per_rad = 0.8;
+    set_times(parse_scene(kSmall + ("[device]\n" + device), "s.toml"), p);
+    return p.encoder_law_m;
+  };
+  EXPECT_EQ(law("friction_N = 0.055\n"), EncoderLaw::kEdges);
+  EXPECT_EQ(law("friction_N = 0.055\nlocal_kHz = 10\n"), EncoderLaw::kMotion);
+  EXPECT_EQ(law("friction_N = 0.037\n"), EncoderLaw::kMotion);
 }
 
 TEST(Schema, DefaultsLieInTheirRanges) {

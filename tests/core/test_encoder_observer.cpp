@@ -110,7 +110,8 @@ TEST(EncoderObserver, LeavesAHandleAtRestThatItsFrictionHolds) {
       for (const auto& hand : kHands) {
         const test::HeldHandle h = held(mass, damping, delay_s, period_s, hand.stiffness, hand.damping, hand.mass);
         const double step_N = h.stiffness_N_per_m * kStep_m;
-        const double friction_N = friction_to_smooth(kSmoothedPosition, h.stiffness_N_per_m, kStep_m, mass);
+        const double friction_N =
+            friction_to_smooth(EncoderLaw::kMotion, kSmoothedPosition, h.stiffness_N_per_m, kStep_m, mass);
         EXPECT_LE(friction_N, 2 * step_N * (1 + 1e-12));  // what takes all that the lag can give
         for (const double aside_m : {6e-5, 3e-4, 1.5e-3})
           for (const double edge : {0.0, 0.5})

@@ -87,11 +87,25 @@ TEST_F(FeelScene, AHoldIsAtRestBecauseFrictionHoldsTheSmoothedHandle) {
   options.device = {"friction_N=0"};
   EXPECT_GT(unrest_N(compiled_.model(), scene_, options), 0.1);
   SceneDesc stated = scene_;
-  stated.device.friction_N = 0.05;
+  stated.device.friction_N = 0.03;
   Model model = compiled_.model();
   set_times(stated, model.params);
   EXPECT_EQ(model.params.encoder_step_m, 0);
   EXPECT_LT(unrest_N(model, scene_, options), 0.05);
+}
+
+// A device with 40 mN where the motion asks for 57 is smoothed by its edges, and comes to rest with them too.
+TEST_F(FeelScene, AHoldIsAtRestWhereEdgesAreFollowed) {
+  scene_.device.friction_N = 0.04;
+  Model model = compiled_.model();
+  set_times(scene_, model.params);
+  ASSERT_GT(model.params.encoder_step_m, 0);
+  ASSERT_EQ(model.params.encoder_law_m, EncoderLaw::kEdges);
+  FeelOptions options;
+  for (const char* hand : {"light", "medium", "firm", "strong"}) {
+    options.hand = hand;
+    EXPECT_LT(unrest_N(model, scene_, options), 1e-3) << hand;
+  }
 }
 
 // A hand that beats the motors presses the object with what they have: before, with 104 N behind motors of 8.5 N.

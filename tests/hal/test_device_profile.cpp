@@ -166,7 +166,15 @@ TEST(DeviceProfile, ASmoothedSceneAsksForTheFrictionThatHoldsTheHandle) {
   EXPECT_EQ(profile_contradictions(profile, asks),
             "device.friction_N: the scene smooths the encoder, which asks for 0.0750541 N of friction, the device has "
             "0.075 N; bake the scene with this profile (--with PROFILE), or with device.smooth_encoder = false");
+  asks.encoder_law_m = EncoderLaw::kEdges;
+  EXPECT_EQ(profile_contradictions(profile, asks), "");
+  profile.friction_N = 0.046;  // 0.62 of 75 mN is 46.5
+  EXPECT_THAT(profile_contradictions(profile, asks),
+              HasSubstr("asks for 0.0465 N of friction, the device has 0.046 N"));
   profile.friction_Nm = 6e-4;
+  asks.encoder_law_rad = EncoderLaw::kEdges;  // 0.62 of 1 mN m, as a stiffer turn's would be less than the motion's
+  EXPECT_THAT(profile_contradictions(profile, asks), HasSubstr("asks for 0.00062 N m of friction"));
+  asks.encoder_law_rad = EncoderLaw::kMotion;
   asks.local_period_s = 1e-4;  // a device that smooths by itself, but not the angle
   profile.local_Hz = 1e4;
   EXPECT_THAT(profile_contradictions(profile, asks),

@@ -1,4 +1,4 @@
-#include "hal/device/edge_observer.h"
+#include "rt_core/safety/edge_observer.h"
 
 namespace palpate {
 
@@ -6,37 +6,38 @@ namespace {
 
 // Searched on 2026-11-26 for little noise of tremors and delay with friction of 0.6 K Delta at most. With 10 ms, 0.4, 6
 // ms and 0.65 the noise is a tenth more, with 20 ms, 0.6, 6 ms and 0.7 a tenth less and the delay twice as long.
-constexpr double kEase_s = 12e-3, kToTold_s = 5e-3;
-constexpr double kOverdueShare = 0.9;  // of a step in the time since the last: how far the speed is believed
-constexpr double kLeastStep = 0.25;    // an axis of a linkage moves by parts of a step; less is no edge
+constexpr Real kEase_s = 12e-3, kToTold_s = 5e-3;
+constexpr Real kOverdueShare = 0.9;  // of a step in the time since the last: how far the speed is believed
+constexpr Real kLeastStep = 0.25;    // an axis of a linkage moves by parts of a step; less is no edge
 
 // One axis. Of a change by more than a step the last one counts: on its edge the handle was within the time that
 // passed.
-double axis(double step, double elapsed_s, double change, double& ahead, double& eased, double& speed, double& since_s,
-            double& last_change) noexcept {
+Real axis(Real step, Real elapsed_s, Real change, Real& ahead, Real& eased, Real& speed, Real& since_s,
+          Real& last_change) PALPATE_RT {
   since_s = min_of(since_s + elapsed_s, 1);
-  const double size = abs_of(change);
+  const Real size = abs_of(change);
   if (size < kLeastStep * step) {
-    const double most = kOverdueShare * step / since_s;
+    const Real most = kOverdueShare * step / since_s;
     speed = clamp_to(speed, -most, most);
-    const double on = ahead - change + elapsed_s * speed;
+    const Real on = ahead - change + elapsed_s * speed;
     ahead = clamp_to(on - min_of(elapsed_s / kToTold_s, 0.5) * on, -0.5 * step, 0.5 * step);
   } else {
-    const double passed = min_of(size, step), sense = change > 0 ? 1 : -1, was = ahead - change + elapsed_s * speed;
+    const Real passed = min_of(size, step), sense = change > 0 ? 1 : -1, was = ahead - change + elapsed_s * speed;
     speed = change * last_change > 0 ? change / since_s : 0;
     ahead = 0.5 * sense * (min_of(abs_of(speed) * elapsed_s, passed) - passed);
-    const double jump = clamp_to(was, -1.5 * step, 1.5 * step) - ahead;
-    eased = clamp_to(eased + jump, -kMostEased * step, kMostEased * step);
+    const Real jump = clamp_to(was, -1.5 * step, 1.5 * step) - ahead;
+    eased += jump;
     since_s = 0;
     last_change = change;
   }
+  eased = clamp_to(eased, -kMostEased * step, kMostEased * step);
   eased -= min_of(elapsed_s / kEase_s, 0.5) * eased;
   return ahead + eased;
 }
 
 }  // namespace
 
-Vec3 between_edges(double step, double elapsed_s, Vec3 change, EdgeMemory& m) noexcept {
+Vec3 between_edges(Real step, Real elapsed_s, Vec3 change, EdgeMemory& m) PALPATE_RT {
   return {axis(step, elapsed_s, change.x, m.ahead.x, m.eased.x, m.speed.x, m.since_s.x, m.change.x),
           axis(step, elapsed_s, change.y, m.ahead.y, m.eased.y, m.speed.y, m.since_s.y, m.change.y),
           axis(step, elapsed_s, change.z, m.ahead.z, m.eased.z, m.speed.z, m.since_s.z, m.change.z)};
