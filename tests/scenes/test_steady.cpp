@@ -67,13 +67,17 @@ TEST_P(EveryScene, DoesNotBuzzInTheHand) {
   std::printf("  longest run of turns: %d ticks; in contact for %d\n", longest, touching);
   EXPECT_GT(touching, 1000);
   EXPECT_LT(longest, 4);
-  if (GetParam() ==
-      "snap_in") {  // the clip keeps the tube: it takes 12.5 N to pull it out, and the hand pulls with 8.4
+  if (GetParam() == "snap_in") {
+    // The clip keeps the tube: it takes 12.5 N to pull it out, and the hand pulls with 8.1. This hand's handle has no
+    // friction, as what observes it between the encoder's steps asks for (150 mN in this scene; without, it swings by
+    // 0.3 N either way), so it is held where it is for the force to come to rest.
     for (int i = 0; i < 1000; ++i) tick(image.model(), *state, *scratch, hand.next(output), output);
+    const Input held = hand.next(output);
+    for (int i = 0; i < 1000; ++i) tick(image.model(), *state, *scratch, held, output);
     const Vec3 kept_N = output.device_w.force_N;
-    for (int i = 0; i < 100; ++i) tick(image.model(), *state, *scratch, hand.next(output), output);
-    EXPECT_LT(kept_N.y, -8);
-    EXPECT_LT(norm(output.device_w.force_N - kept_N), least_N);
+    for (int i = 0; i < 100; ++i) tick(image.model(), *state, *scratch, held, output);
+    EXPECT_LT(kept_N.y, -7.7);
+    EXPECT_LT(norm(output.device_w.force_N - kept_N), 1e-3);
     return;
   }
   EXPECT_EQ(output.contacts, 0);
