@@ -13,11 +13,6 @@ namespace palpate {
 
 namespace {
 
-constexpr int kHeightsTried = 8;
-// Certificates are shrunk by this much, which covers their rounding to single precision.
-constexpr double kShrink = 1 - 1.5e-7;
-// A distance beyond this multiple of the height gains nothing.
-constexpr double kUsefulFactor = 1.5;
 // Slivers are this many times longer than wide: their ring is too narrow for a ball that covers their length.
 constexpr double kSliver = 8;
 // Triangles of a ring that is dearer to look at than what planes prove; in an even mesh it has 13.

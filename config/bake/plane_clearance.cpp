@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "rt_core/surface/closest_point.h"
+#include "rt_core/surface/ring.h"
 #include "rt_core/surface/ring_proof.h"
 #include "rt_core/surface/triangle.h"
 
@@ -11,10 +12,6 @@ namespace palpate {
 
 namespace {
 
-constexpr int kHeightsTried = 8;
-// As in bvh_clearance.cpp: covers the rounding to single precision; a distance beyond this multiple gains nothing.
-constexpr double kShrink = 1 - 1.5e-7;
-constexpr double kUsefulFactor = 1.5;
 // Normals of neighbours that turn farther, by 133 degrees, would let what is in one plane rise 2.5 times kInPlane above
 // the edge's.
 constexpr double kLeastCosine = -0.68;
@@ -181,7 +178,7 @@ bool PlaneClearance::is_flat(std::span<const std::int32_t> fan, std::int32_t mid
   if (!(widest > 0)) return false;
   for (const std::int32_t i : fan) {
     const Triangle& t = bvh_.triangle[static_cast<std::size_t>(i)];
-    const int k = t.vertex[0] == middle ? 0 : t.vertex[1] == middle ? 1 : 2;
+    const int k = corner_at(t, middle);
     const Vec3 u = corner(t, (k + 1) % 3) - hub, v = corner(t, (k + 2) % 3) - hub, area = cross(u, v);
     const double along = dot(area, plane.normal);
     if (!(abs_of(dot(u, plane.normal)) <= in_plane_m_ && along > 0)) return false;
@@ -203,7 +200,7 @@ PlaneClearance::Fan PlaneClearance::look_about(std::int32_t index, int k) const 
     if (i < 0 || static_cast<std::int32_t>(fan.size()) > kMaxVertexTriangles) return out;
     fan.push_back(i);
     const Triangle& t = bvh_.triangle[static_cast<std::size_t>(i)];
-    i = t.adjacent[t.vertex[0] == middle ? 0 : t.vertex[1] == middle ? 1 : 2];
+    i = t.adjacent[corner_at(t, middle)];
   } while (i != index);
   out.triangles = static_cast<std::int32_t>(fan.size());
   out.flat = is_flat(fan, middle);

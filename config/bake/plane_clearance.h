@@ -9,6 +9,13 @@
 
 namespace palpate {
 
+// How clearances are looked for, by a triangle's ring and by planes: so many heights, each half the last ...
+inline constexpr int kHeightsTried = 8;
+// ... a distance beyond this multiple of the height gains nothing ...
+inline constexpr double kUsefulFactor = 1.5;
+// ... and what was found is shrunk by this much, which covers its rounding to single precision.
+inline constexpr double kShrink = 1 - 1.5e-7;
+
 // A triangle is certified by planes (ring_proof.h) when whatever rises above its own plane or that of a neighbour
 // across an edge is as far off as Triangle::clear_radius_m tells. What lies below all four is as near as the triangle
 // to no point that stands over it.

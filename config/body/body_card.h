@@ -54,6 +54,12 @@ std::vector<AnchorPoint> half_shell_anchors(const BodyDesc& body);
 std::vector<AnchorPoint> ring_anchors(const BodyDesc& body);
 std::vector<AnchorPoint> hollow_cylinder_anchors(const BodyDesc& body);
 
+// Outwards at a place `p` from an ellipsoid's middle, not unit.
+inline Vec3 out_of_ellipsoid(Vec3 half_axes_m, Vec3 p) {
+  const Vec3 h = half_axes_m;
+  return {p.x / (h.x * h.x), p.y / (h.y * h.y), p.z / (h.z * h.z)};
+}
+
 // Refuses the one of the three axes that a shape does not have.
 Refusal axis_other_than(const BodyDesc& body, BodyAxis refused);
 // A wall must leave a hole in `room_m`.

@@ -11,10 +11,6 @@ namespace {
 constexpr int after(int k) { return k == 2 ? 0 : k + 1; }
 constexpr int before(int k) { return k == 0 ? 2 : k - 1; }
 
-int corner_at(const Triangle& t, std::int32_t vertex) PALPATE_RT {
-  return t.vertex[0] == vertex ? 0 : t.vertex[1] == vertex ? 1 : 2;
-}
-
 TrianglePoint closest_on(const Surface& surface, Vec3 p, std::int32_t index) PALPATE_RT {
   const Triangle& t = surface.triangle[index];
   return closest_on_triangle(p, surface.vertex[t.vertex[0]], surface.vertex[t.vertex[1]], surface.vertex[t.vertex[2]]);

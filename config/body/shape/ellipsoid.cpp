@@ -22,7 +22,7 @@ std::vector<AnchorPoint> anchors(const BodyDesc& body) { return axis_end_anchors
 
 Vec3 ellipsoid_normal(const BodyDesc& body, Vec3 p, Vec3 face, double) {
   const Vec3 h = body.half_axes_m;
-  return unit_or({p.x / (h.x * h.x), (p.y - h.y) / (h.y * h.y), p.z / (h.z * h.z)}, face);
+  return unit_or(out_of_ellipsoid(h, p - Vec3{0, h.y, 0}), face);
 }
 Vec3 sphere_normal(const BodyDesc& body, Vec3 p, Vec3 face, double) {
   return unit_or(p - Vec3{0, body.radius_m, 0}, face);

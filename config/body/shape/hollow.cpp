@@ -49,31 +49,29 @@ constexpr double kFlat = 0.9;  // of a flat face, along the axis
 Vec3 shell_normal(const BodyDesc& body, Vec3 p, Vec3 face, double) {
   constexpr double kRim_m = 1e-9;
   if (p.y < kRim_m && face.y < -kFlat) return {0, -1, 0};
-  const Vec3 outer = body.half_axes_m,
-             out{p.x / (outer.x * outer.x), p.y / (outer.y * outer.y), p.z / (outer.z * outer.z)};
+  const Vec3 outer = body.half_axes_m, out = out_of_ellipsoid(outer, p);
   if (dot(out, face) > 0) return unit_or(out, face);
-  const Vec3 inner = outer - Vec3{body.wall_m, body.wall_m, body.wall_m};
-  return unit_or({-p.x / (inner.x * inner.x), -p.y / (inner.y * inner.y), -p.z / (inner.z * inner.z)}, face);
+  return unit_or(-out_of_ellipsoid(outer - Vec3{body.wall_m, body.wall_m, body.wall_m}, p), face);
 }
 
-// It lies or stands on the plane y = 0.
-struct RoundAxis {
-  Vec3 along, radial;  // of a point, from the axis
+// It lies or stands on the plane y = 0: from its middle, and off its axis.
+struct RoundPlace {
+  Vec3 axis, from_middle, radial;
 };
-RoundAxis about_axis(const BodyDesc& body, Vec3 p, double height_m) {
-  const Vec3 axis = body.axis == BodyAxis::kZ ? Vec3{0, 0, 1} : Vec3{0, 1, 0};
-  return {axis, tangential_part(p - Vec3{0, 0.5 * height_m, 0}, axis)};
+RoundPlace about_axis(const BodyDesc& body, Vec3 p, double height_m) {
+  const Vec3 axis = body.axis == BodyAxis::kZ ? Vec3{0, 0, 1} : Vec3{0, 1, 0}, from = p - Vec3{0, 0.5 * height_m, 0};
+  return {axis, from, tangential_part(from, axis)};
 }
 
 Vec3 ring_normal(const BodyDesc& body, Vec3 p, Vec3 face, double height_m) {
-  const Vec3 middle{0, 0.5 * height_m, 0}, radial = about_axis(body, p, height_m).radial;
-  return unit_or(p - middle - (body.radius_m - 0.5 * body.wall_m) * unit_or(radial, {}), face);
+  const RoundPlace about = about_axis(body, p, height_m);
+  return unit_or(about.from_middle - (body.radius_m - 0.5 * body.wall_m) * unit_or(about.radial, {}), face);
 }
 
 Vec3 tube_normal(const BodyDesc& body, Vec3 p, Vec3 face, double height_m) {
-  const RoundAxis about = about_axis(body, p, height_m);
-  const double end = dot(face, about.along);
-  if (std::abs(end) > kFlat) return end > 0 ? about.along : -about.along;
+  const RoundPlace about = about_axis(body, p, height_m);
+  const double end = dot(face, about.axis);
+  if (std::abs(end) > kFlat) return end > 0 ? about.axis : -about.axis;
   return unit_or(dot(about.radial, face) > 0 ? about.radial : -about.radial, face);
 }
 
