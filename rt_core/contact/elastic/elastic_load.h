@@ -1,20 +1,13 @@
 // The tips in contact with an elastic body, with their own far fields and the body's, and what accounting asks of them.
 #pragma once
 
+#include "rt_core/contact/elastic/own_field.h"
 #include "rt_core/contact/elastic/pair_lanes.h"
 #include "rt_core/contact/elastic/placed_law.h"
 #include "rt_core/contact/region_load.h"
 #include "rt_core/contact/tips/travel.h"
 
 namespace palpate {
-
-// c and c1 under one place.
-FarField own_field(const ElasticRow& row) PALPATE_RT;
-// How the integral of a far field over its force, at one force, changes with its two coefficients.
-struct FarChange {
-  Real per_c0_N2, per_c1_N3;
-};
-FarChange far_change(const FarField& far, Real force_N) PALPATE_RT;
 
 // What the energy stored under a tip gains, at a held travel, as the place's numbers fall: c, c1, curvature, beta; and
 // the modulus.
@@ -38,7 +31,7 @@ struct ElasticLoad : TipLaws {
   const ElasticRow* placed[kMaxPieces];
   PlacedLaw law[kMaxPieces];
   TipRegion tips_of[kMaxRegions];
-  FarField own[kMaxRegions];     // c and c1 of the region, without the modes
+  OwnField own[kMaxRegions];     // c and c1 of the region, without the modes
   Vec3 pair_aside[kMaxRegions];  // slope along the surface of what the others' forces move under a region
   const Real* before_N;          // the last tick's forces, of all regions
   PairLanes pair;                // of several regions
@@ -50,7 +43,7 @@ struct ElasticLoad : TipLaws {
   // Normal stiffness under region r as if the soft modes held still; of the laws' tangent there the root.
   Real place_N_per_m(std::int32_t r, Real force_N, Real root_tangent) const PALPATE_RT {
     const Real tangent = root_tangent * root_tangent;
-    return tangent / (1.0 + far_slope_m_per_N(own[r], force_N) * tangent);
+    return tangent / (1.0 + far_slope_m_per_N(own[r].far, force_N) * tangent);
   }
   // A part that is hardly touched is told as stiff as one well in contact: from next to no force Newton's step went
   // 0.16 mm into the seat of a clip, and the next tick said 800 N (2026-11-26).
@@ -75,7 +68,7 @@ struct ElasticLoad : TipLaws {
     const Real length = norm(aside), share = length > f ? f / length : 1.0;
     // Where the second order goes on by its tangent, and off the smooth surface, no press of the bake has been.
     const bool is_beyond =
-        e > tip[i].local.tip->depth_max_m || f > own[r].force_max_N || stands.foot.state != FootState::kFound;
+        e > tip[i].local.tip->depth_max_m || f > own[r].far.force_max_N || stands.foot.state != FootState::kFound;
     RowLoad out{point, energy, stands.tip.centre_w(), share * aside, is_beyond};
     if (law[i].is_line) lean(i, e, out);
     return out;
@@ -99,13 +92,10 @@ struct ElasticLoad : TipLaws {
     PlaceForce out{};
     out.by[2] = -here.scale_by_curvature * by_scale;
     out.by[3] = -place.J(here.by_beta);
-    if (stands.c_m_per_N > 0) {
-      const FarChange change = far_change(own[r], force_N);
-      out.by[0] = change.per_c0_N2;
-      out.by[1] = change.per_c1_N3;
-    } else if (stands.c_m_per_N < 0) {
-      out.by[0] = -(alone * here.scale_by_c + place.J(here.by_c));
-    }
+    const FarChange change = far_change(own[r], stands.c_m_per_N, stands.c1_m_per_N2, force_N);
+    out.by[0] = change.per_c0_N2;
+    out.by[1] = change.per_c1_N3;
+    if (stands.c_m_per_N < 0) out.by[0] -= alone * here.scale_by_c + place.J(here.by_c);
     if (stands.modulus_gradient == Vec3{}) return out;
     const Real inverse = 1.0 / stands.modulus;  // the terms' powers of it: rho's by their own, beta's as of m^2
     const PlaceTerms by_modulus = {2 * inverse * here.terms.second_N_per_m2, 3 * inverse * here.terms.between_N_per_m25,
@@ -131,7 +121,7 @@ struct ElasticLoad : TipLaws {
   Real curvature(const Real* force, std::int32_t i, std::int32_t j) const PALPATE_RT {
     return pair.c_m_per_N[i][j] + pair.h_m_per_N2[i][j] * force[i] + pair.h_m_per_N2[j][i] * force[j];
   }
-  Real coupling_J(std::int32_t r, Real force_N, Real) const PALPATE_RT { return far_energy_J(own[r], force_N); }
+  Real coupling_J(std::int32_t r, Real force_N, Real) const PALPATE_RT { return far_energy_J(own[r].far, force_N); }
 };
 
 }  // namespace palpate

@@ -16,11 +16,6 @@ constexpr Real kLeastStiffness = 1e-2;
 constexpr Real kLongestStep = 0.25;
 // Of a step that turned the last one back, what the next tick goes on with.
 constexpr Real kTurnedBack = 0.01;
-// How far c1 may change a place's compliance before the place goes on by its tangent. With c1 < 0 it would turn back.
-// With c1 > 0 it would not; but c is what the soft modes leave of the place, and where they leave little the second
-// order of the whole soon is more than it: with half of c, or four times c, a dome under 51 N was 7.8 or 4.1 % too
-// stiff, with this 0.6 % (2026-11-23).
-constexpr Real kMostStiffening = 0.5, kMostSoftening = 20;
 
 // The lower triangle of h becomes the factor of h + shift; false when a pivot falls below the least stiffness.
 template <class Count>
@@ -118,24 +113,6 @@ void let_go(const Model& model, const SoftEnergy& energy, Real* step) PALPATE_RT
   });
 }
 
-FarField own_field(const ElasticRow& row) PALPATE_RT {
-  const Real c = row.c_m_per_N, c1 = abs_of(row.c1_m_per_N2);
-  if (!(c > 0)) return {};  // in the tip's own law
-  // So much of c of slope to spare, at 2 c1 of it per newton.
-  const Real share = row.c1_m_per_N2 > 0 ? kMostSoftening : kMostStiffening;
-  return {c, row.c1_m_per_N2, c1 * kHuge > c ? share * c / (2 * c1) : kHuge};
-}
-
-FarChange far_change(const FarField& far, Real force_N) PALPATE_RT {
-  const Real f = force_N, square = 0.5 * f * f;
-  if (!(abs_of(far.c1_m_per_N2) > 0)) return {square, 0};
-  const Real end = far.force_max_N;
-  if (f <= end) return {square, f * f * f / 3};
-  // Along the tangent from `end`, which moves with c and 1 / c1.
-  const Real beyond = (f - end) * (f - end) * end;
-  return {square + far.c1_m_per_N2 / far.c0_m_per_N * beyond, end * (f * f - end * f + end * end / 3) - beyond};
-}
-
 template <class Count>
 Linearised<Count>::Linearised(const Model& model, State& state, Scratch& scratch, ElasticLoad& load,
                               Count soft) PALPATE_RT : model_(model),
@@ -170,7 +147,7 @@ template <class Count>
 Real Linearised<Count>::place_ahead(const Real* force_N, std::int32_t r, PlaceForce& place) const PALPATE_RT {
   const std::int32_t i = load_.at(r, 0);
   const ElasticRow& row = *leading_[r];
-  const FarField& own = load_.own[r];
+  const FarField& own = load_.own[r].far;
   Real e = row.travel_m - far_shift_m(own, force_N[r]);
   for (std::int32_t j = 0; j < regions() && regions() > 1; ++j)  // bound: kMaxRegions
     e -= pairs_.linear_m_per_N[r][j] * force_N[j];
@@ -254,8 +231,8 @@ void Linearised<Count>::gather() PALPATE_RT {
   load_.evaluated = &scratch_.work.tip_laws;
   for (std::int32_t r = 0; r < load_.n; ++r) {  // bound: kMaxPieces tips
     const RegionRows rows = rows_of(scratch_, r);
-    load_.own[r] = own_field(*leading_[r]);
-    load_.tips_of[r] = {&load_.tip[next], 0, load_.own[r]};
+    load_.own[r] = own_field(*local_law(model_, rows[0].piece).tip, *leading_[r]);
+    load_.tips_of[r] = {&load_.tip[next], 0, load_.own[r].far};
     for (std::int32_t k = 0; k < rows.count && next < kMaxPieces; ++k) {
       add_tip(rows[k], next++);
       load_.tips_of[r].count += 1;
@@ -270,7 +247,7 @@ void Linearised<Count>::let_give(const Real* before_N) PALPATE_RT {
     const RegionRows rows = rows_of(scratch_, r);
     Real soft = 0;
     for (std::int32_t a = 0; a < n_; ++a) soft += leading_[r]->pull[a] * moved_[a][r];
-    load_.tips_of[r].far.c0_m_per_N = load_.own[r].c0_m_per_N + soft;
+    load_.tips_of[r].far.c0_m_per_N = load_.own[r].far.c0_m_per_N + soft;
     for (std::int32_t k = 0; k < load_.tips_of[r].count; ++k) {
       const ElasticRow& row = *load_.placed[load_.at(r, k)];
       load_.tip[load_.at(r, k)].depth_m = rows[k].depth_m = row.travel_m + dot(row.pull, free_step_, n_);
@@ -402,7 +379,7 @@ void Linearised<Count>::tell_pairs(Size size, const Real* force_N) const PALPATE
       for (std::int32_t a = 0; a < n_; ++a) c -= splat4(leading_[j]->pull[a]) * load4(moved_[a] + b);
       store(system.column[j] + b, splat4(g[j]) * c * load4(g + b));
     }
-    system.column[j][j] = 1.0 + g[j] * (far_slope_m_per_N(load_.own[j], force[j]) + bend[j]) * g[j];
+    system.column[j][j] = 1.0 + g[j] * (far_slope_m_per_N(load_.own[j].far, force[j]) + bend[j]) * g[j];
   }
   if (!system.factor(n)) return;
   ToolTangent::Spring spring[kMaxRegions];
@@ -453,7 +430,7 @@ template <class Count>
 void Linearised<Count>::couple() PALPATE_RT {
   PairLanes& pair = load_.pair;
   for (std::int32_t r = 0; r < load_.n; ++r) {  // bound: kMaxRegions^2 soft / 4
-    const FarField& own = load_.own[r];
+    const FarField& own = load_.own[r].far;
     const Real force = load_.before_N[r], held = force > own.force_max_N ? own.force_max_N / force : 1.0;
     const Double4 second = splat4(2.0 / 3 * held * own.c1_m_per_N2);
     for (std::int32_t b = 0; b < load_.n; b += kRegionLanes) {
