@@ -207,7 +207,7 @@ void add_vertices(const elastic::ElasticBody<3>& body, const Shapes& shapes, con
   }
 }
 
-// The slopes of c, c1, curvature and beta along the surface, from what stands at the vertices.
+// The slopes of c, c1, curvature and beta along the surface, and their own, from what stands at the vertices.
 void add_own_slopes(const elastic::ElasticBody<3>& body, const std::vector<CornerNormals>& normals,
                     ImageContents& image) {
   using namespace elastic_layout;
@@ -219,11 +219,14 @@ void add_own_slopes(const elastic::ElasticBody<3>& body, const std::vector<Corne
       value[v] = static_cast<double>(image.elastic_vertex[stride * v + own + which]);
     std::vector<Vec3> slope = vertex_slopes(image.vertex_m, image.vertex_normal, image.triangle, value);
     stop_at_sharp_edges(image.vertex_m, normals, image.triangle, slope);
+    const std::vector<Bend> bend = vertex_bends(image.vertex_m, image.triangle, value, slope);
     for (std::size_t v = 0; v < value.size(); ++v) {
       float* out = &image.elastic_vertex[stride * v + own + kOwnValues + 3 * which];
       out[0] = static_cast<float>(slope[v].x);
       out[1] = static_cast<float>(slope[v].y);
       out[2] = static_cast<float>(slope[v].z);
+      out = &image.elastic_vertex[stride * v + own + kOwnBends + which];
+      for (std::size_t i = 0; i < bend[v].size(); ++i) out[kOwnSlopes * i] = static_cast<float>(bend[v][i]);
     }
   }
 }

@@ -1,5 +1,6 @@
 #include "config/bake/vertex_slopes.h"
 
+#include <Eigen/Dense>
 #include <array>
 #include <map>
 #include <utility>
@@ -36,6 +37,38 @@ Vec3 gradient_of(const Fit& fit) {
   return ((fit.yy * fit.xv - fit.xy * fit.yv) / determinant) * fit.axis[0] +
          ((fit.xx * fit.yv - fit.xy * fit.xv) / determinant) * fit.axis[1];
 }
+
+// Of the normal equations' trace: what keeps a bend small where no edge tells of it, as across two that cross at right
+// angles.
+constexpr double kLittle = 1e-3;
+
+// Normal equations of a symmetric tensor, its entries off the diagonal times the root of two.
+class BendFit {
+ public:
+  // `twice`: second derivative along the edge times its length squared.
+  void add(Vec3 edge_m, double twice) {
+    constexpr double kRoot = 1.4142135623730951;
+    const double length = norm(edge_m);
+    const Vec3 u = (1 / length) * edge_m;
+    Tensor row;
+    row << u.x * u.x, kRoot * u.x * u.y, kRoot * u.x * u.z, u.y * u.y, kRoot * u.y * u.z, u.z * u.z;
+    system_ += row * row.transpose();
+    load_ += (twice / (length * length)) * row;
+  }
+  Bend bend() const {
+    constexpr double kHalf = 0.70710678118654752;
+    const double trace = system_.trace();
+    if (!(trace > 0)) return {};
+    const Tensor out = (system_ + kLittle * trace * Matrix::Identity()).llt().solve(load_);
+    return {out[0], kHalf * out[1], kHalf * out[2], out[3], kHalf * out[4], out[5]};
+  }
+
+ private:
+  using Tensor = Eigen::Matrix<double, 6, 1>;
+  using Matrix = Eigen::Matrix<double, 6, 6>;
+  Matrix system_ = Matrix::Zero();
+  Tensor load_ = Tensor::Zero();
+};
 
 }  // namespace
 
@@ -92,6 +125,23 @@ void stop_at_sharp_edges(std::span<const Vec3> vertex_m, std::span<const CornerN
     const Vec3 along = unit_or(sharp[v].along, {});
     slope[v] = is_line ? dot(slope[v], along) * along : Vec3{};
   }
+}
+
+std::vector<Bend> vertex_bends(std::span<const Vec3> vertex_m, std::span<const Triangle> triangles,
+                               std::span<const double> value, std::span<const Vec3> slope) {
+  std::vector<BendFit> fit(vertex_m.size());
+  for (const Triangle& t : triangles)
+    for (std::size_t k = 0; k < 3; ++k) {  // every inner edge twice
+      const auto a = static_cast<std::size_t>(t.vertex[k]), b = static_cast<std::size_t>(t.vertex[(k + 1) % 3]);
+      const Vec3 edge = vertex_m[b] - vertex_m[a];
+      if (!(squared_norm(edge) > 0)) continue;
+      const double difference = 6 * (value[b] - value[a]), at_a = dot(slope[a], edge), at_b = dot(slope[b], edge);
+      fit[a].add(edge, difference - 4 * at_a - 2 * at_b);
+      fit[b].add(edge, -difference + 2 * at_a + 4 * at_b);
+    }
+  std::vector<Bend> bend;
+  for (const BendFit& of : fit) bend.push_back(of.bend());
+  return bend;
 }
 
 }  // namespace palpate

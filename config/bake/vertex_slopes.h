@@ -1,6 +1,7 @@
 // How numbers at a mesh's vertices change along its surface.
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -17,5 +18,13 @@ std::vector<Vec3> vertex_slopes(std::span<const Vec3> vertex_m, std::span<const 
 // still across it, so that cubics through values and gradients have no kink there.
 void stop_at_sharp_edges(std::span<const Vec3> vertex_m, std::span<const CornerNormals> normal,
                          std::span<const Triangle> triangles, std::span<Vec3> slope);
+
+// xx, xy, xz, yy, yz, zz.
+using Bend = std::array<double, 6>;
+
+// Second derivatives along the surface at every vertex: what fits best those that the cubics along its edges have
+// there, through values and gradients at both ends.
+std::vector<Bend> vertex_bends(std::span<const Vec3> vertex_m, std::span<const Triangle> triangles,
+                               std::span<const double> value, std::span<const Vec3> slope);
 
 }  // namespace palpate

@@ -54,7 +54,8 @@ TEST(ElasticFriction, DragOnAColumnFeelsItsBending) {
 
 // Without friction the ball's force follows the upper face and acts where the ball touches it, which holds the column
 // beyond its free Euler load: cos z + z (1 + R/L) sin z = 0, P = z^2 EI / L^2 = 4.1 N. With friction the tip holds it
-// until it buckles as a column held at both ends. (Deeper, the slippery tip slides off.)
+// until it buckles as a column held at both ends. (Deeper, the slippery tip slides off, at 1.8 to 2.3 mm: rounding
+// says where.)
 TEST(ElasticFriction, TheTipHoldsASlenderBodyUp) {
   constexpr Vec3 kAside{3e-4, 0, 0};
   const auto press = [&](const BakedScene& scene, double depth_m) {
@@ -63,7 +64,7 @@ TEST(ElasticFriction, TheTipHoldsASlenderBodyUp) {
   };
   const BakedScene slippery = baked_column("none", 0), rough = baked_column("presliding", 0.5);
   EXPECT_GT(press(slippery, 1e-3), 2 * kFreeEuler_N);  // 3.17 N
-  EXPECT_LT(press(slippery, 2.2e-3), kFreeEuler_N);
+  EXPECT_LT(press(slippery, 2.4e-3), kFreeEuler_N);
   EXPECT_GT(press(rough, 2.2e-3), 0.6 * kHeldEuler_N);  // 7.2 N of 10.3
 }
 

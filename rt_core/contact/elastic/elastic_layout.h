@@ -2,7 +2,7 @@
 //   u(x) = sum_t shape_t(x) y_t,   y = p_a, then p_a p_b for the pairs a <= b in the order of pair_place()
 // (a pair's shape has the 1/2 of its square in it). A vertex of the surface is a block of floats:
 //   per term t 12: u, and du_i/dX_j row by row;  c (m/N), c1 (m/N2), mean curvature (1/m), beta (1/(m N)); the
-//   gradients of these four along the surface;
+//   gradients of these four along the surface, and how those change along it, xx xy xz yy yz zz of all four at once;
 //   per linear mode 3: its shape in m/J^1/2. Rounded up to whole lanes of four.
 // After all vertices what is drawn of a body under its tips, of which the tick knows nothing (drawn_shapes.h), and
 // last, where a body has several materials, one float each: the contact modulus E / (1 - nu^2) there over that of the
@@ -16,7 +16,8 @@
 
 namespace palpate::elastic_layout {
 
-inline constexpr std::int32_t kTermFloats = 12, kOwnSlopes = 4, kOwnValues = 4, kOwnFloats = 16;
+inline constexpr std::int32_t kTermFloats = 12, kOwnSlopes = 4, kOwnValues = 4;
+inline constexpr std::int32_t kOwnBends = kOwnValues + 3 * kOwnSlopes, kOwnFloats = kOwnBends + 6 * kOwnSlopes;
 
 inline constexpr Real kLeastModulusRatio = 1e-6, kMostModulusRatio = 1e6;
 

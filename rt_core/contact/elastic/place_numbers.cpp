@@ -58,19 +58,25 @@ struct VertexCubics {
     }
     return value;
   }
-  // Second derivatives, as if the middle coefficient were the same all over the facet.
-  void show_bends(const Real* w, const Double4& mean, ElasticRow& row) const PALPATE_RT {
-    Double4 same[3], mixed[3];     // mixed: of the other two
-    for (int k = 0; k < 3; ++k) {  // bound: 3
-      const int i = (k + 1) % 3, j = (k + 2) % 3;
-      same[k] = w[k] * corner[k] + w[i] * next[k] + w[j] * before[k];
-      mixed[k] = w[j] * before[j] + w[i] * next[i] + w[k] * mean;
-    }
-    store(row.number_bend[0], 6 * (same[1] - 2 * mixed[2] + same[0]));
-    store(row.number_bend[1], 6 * (mixed[0] - mixed[2] - mixed[1] + same[0]));
-    store(row.number_bend[2], 6 * (same[2] - 2 * mixed[1] + same[0]));
-  }
 };
+
+// How the slopes of the four numbers change along the edges from corner 0: straight between what the vertices have of
+// it. Those of the cubics jump at every edge, and with them what a place asks of the modes (place_pull.h).
+void show_bends(const Vec3* edge_m, const float* const* own, ElasticRow& row) PALPATE_RT {
+  Double4 of[6];
+  for (int i = 0; i < 6; ++i) {  // bound: 6 x 3
+    of[i] = Double4{};
+    for (int k = 0; k < 3; ++k) of[i] += splat4(row.foot.weight[k]) * widen4(own[k] + kOwnBends + kOwnSlopes * i);
+  }
+  const Vec3 e = edge_m[0], f = -edge_m[2];
+  const auto along = [&](Vec3 a, Vec3 b) PALPATE_RT {
+    return splat4(a.x * b.x) * of[0] + splat4(a.x * b.y + a.y * b.x) * of[1] + splat4(a.x * b.z + a.z * b.x) * of[2] +
+           splat4(a.y * b.y) * of[3] + splat4(a.y * b.z + a.z * b.y) * of[4] + splat4(a.z * b.z) * of[5];
+  };
+  store(row.number_bend[0], along(e, e));
+  store(row.number_bend[1], along(e, f));
+  store(row.number_bend[2], along(f, f));
+}
 
 void show_modulus(const Model& model, ElasticRow& row) PALPATE_RT {
   row.modulus = 1;
@@ -104,7 +110,7 @@ void show_place_numbers(const Model& model, ElasticRow& row) PALPATE_RT {
   const Double4 value = cubics.at(row.foot.weight, slope, mean);
   if (row.has_slide) {
     for (int k = 0; k < 2; ++k) store(row.number_slope[k], slope[k + 1] - slope[0]);
-    cubics.show_bends(row.foot.weight, mean, row);
+    show_bends(edge_m, own, row);
   }
   Vec3x4 gradient = slope[0] * splat4(row.foot.gradient_per_m[0]);
   for (int k = 1; k < 3; ++k) gradient = gradient + slope[k] * splat4(row.foot.gradient_per_m[k]);  // bound: 2
