@@ -11,7 +11,7 @@ namespace palpate {
 // Edges with a turn sharper than this are sharp: normals are not shared across them.
 inline constexpr double kCrease_rad = 20.0 * 3.14159265358979323846 / 180.0;
 
-// Angle-weighted mean of the faces around each vertex that are connected without crossing a sharp edge; the exact
+// Weighted mean (Max 1999) of the faces around each vertex that are connected without crossing a sharp edge; the exact
 // normal where the body's shape has one (sphere, ellipsoid, side of a cylinder).
 std::vector<CornerNormals> corner_normals(const BodyDesc& body, const std::vector<Vec3>& vertex_m,
                                           const std::vector<Triangle>& triangle);
