@@ -108,6 +108,8 @@ inline Vec3 flat_foot(const Corners& k, const Place& at) PALPATE_RT {
   return k.v[0] + at.b * (k.v[1] - k.v[0]) + at.c * (k.v[2] - k.v[0]);
 }
 
+// kSags: off the facet by the parabola of smooth_foot(); else on it, and the caller adds what it stands off.
+template <bool kSags>
 inline SmoothFoot foot_at(const Corners& k, std::int32_t triangle, const Place& at, const Step& step) PALPATE_RT {
   SmoothFoot foot;
   const Real length = norm(step.normal);
@@ -122,7 +124,7 @@ inline SmoothFoot foot_at(const Corners& k, std::int32_t triangle, const Place& 
   foot.gradient_per_m[0] = -(step.along_b + step.along_c);
   const Vec3 flat = flat_foot(k, at);
   Real sag = 0;
-  for (int i = 0; i < 3; ++i) sag += 0.5 * foot.weight[i] * dot(k.v[i] - flat, k.u[i]);  // bound: 3
+  for (int i = 0; i < 3 && kSags; ++i) sag += 0.5 * foot.weight[i] * dot(k.v[i] - flat, k.u[i]);  // bound: 3
   foot.normal_w = (1.0 / length) * step.normal;
   foot.foot_w = flat + sag * foot.normal_w;
   foot.height_m = -(at.t * length + sag);
@@ -133,7 +135,7 @@ inline SmoothFoot foot_at(const Corners& k, std::int32_t triangle, const Place& 
 // is at most `still_m`; what is left then is its square over the radius of the surface. At most `most_crossed` edges
 // are crossed, and one fan passed round: `at_rest(corner, off)` takes what is off a corner back to the body at rest.
 // `steps`: counts Newton's. `passed`: adds the spokes of the fan.
-template <class CornersOf, class AtRest>
+template <bool kSags = true, class CornersOf, class AtRest>
 SmoothFoot search(const Model& model, const CornersOf& corners_of, const AtRest& at_rest, Vec3 p, std::int32_t triangle,
                   Vec3 near_w, Real still_m = kStill_m, std::int32_t most_crossed = kFootWalk,
                   std::int32_t* steps = nullptr, std::int32_t* passed = nullptr) PALPATE_RT {
@@ -157,7 +159,7 @@ SmoothFoot search(const Model& model, const CornersOf& corners_of, const AtRest&
     if (!still && !outside && on_this < 3) continue;
     const int edge = edge_to_cross(at);
     if (edge < 0 || is_at_flat_vertex(model.triangle[static_cast<std::size_t>(triangle)], at)) {
-      if (still) return foot_at(corners, triangle, at, step);
+      if (still) return foot_at<kSags>(corners, triangle, at, step);
       continue;
     }
     std::int32_t next = walked < most_crossed ? across(model, triangle, edge) : -1;

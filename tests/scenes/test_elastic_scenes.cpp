@@ -110,7 +110,7 @@ struct SlideCase {
 };
 
 // The ring sways aside from under a rod without friction at 2.7 N, which is 1.2 mm deep. The compass slides along its
-// two lobes; across them a leg drops into the cleft between them, which is hollow: 5.7 % at 100 mm/s (2026-11-25).
+// two lobes.
 const SlideCase kSlides[] = {
     {"ellipsoid_mallet", {{8e-3, 0, 0}, {5e-3, 0, 4e-3}}, {1e-3, 2.5e-3}},
     {"half_shell", {{8e-3, 0, 0}, {5e-3, 0, 4e-3}}, {1e-3, 2.5e-3}},
@@ -121,7 +121,7 @@ const SlideCase kSlides[] = {
 
 class ElasticSlides : public testing::TestWithParam<SlideCase> {};
 
-// 0.001 to 0.20 % on 2026-11-25.
+// 0.000 to 0.13 % on 2026-11-26.
 TEST_P(ElasticSlides, ForceHasNoSteps) {
   const SlideCase& given = GetParam();
   Slide slide(given.scene);
@@ -141,6 +141,55 @@ TEST_P(ElasticSlides, ForceHasNoSteps) {
 
 INSTANTIATE_TEST_SUITE_P(Shipped, ElasticSlides, testing::ValuesIn(kSlides),
                          [](const auto& slide) { return std::string(slide.param.scene); });
+
+// Across the lobes a leg drops into the cleft between them, which its mesh hardly resolves: while the surface had kinks
+// between facets, of 0.11 rad there, these slides stepped by 0.54 to 0.94 %, and 6 mm deep by 5.4 (2026-11-26). Off the
+// middle plane: in it the heart sways aside from under legs without friction, from 39 N on.
+TEST(ElasticScenes, TheCompassSlidesIntoTheCleft) {
+  Slide slide("heart_compass");
+  const double top = slide.touches_at_m(0, 0);
+  for (const double mm_per_s : {5.0, 25.0, 100.0}) {
+    double worst = 0;
+    for (const double aside_m : {2e-3, 4e-3}) {
+      const Vec3 from{0, top - 4e-3, aside_m};
+      worst = std::max(worst, step_share(slide, {from, from + Vec3{12e-3, 0, 0}}, mm_per_s));
+    }
+    std::printf("  at %g mm/s: %.3f %%\n", mm_per_s, 100 * worst);
+    EXPECT_LT(worst, 0.005) << mm_per_s;
+  }
+}
+
+// Along the path that the scene scripts for a hand the force does not turn every other tick by more than a share of it.
+void expect_still(const std::string& scene, double most_share) {
+  const ImageFile image(image_path(scene));
+  const auto path = load_scene(std::string(PALPATE_SOURCE_DIR) + "/config/scenes/" + scene + ".toml").path;
+  const StatePtr state = make_state(image.model());
+  std::vector<Vec3> force;
+  press(image.model(), scripted_poses(path, image.model().params.period_s), {path.hand_stiffness_N_per_m}, *state,
+        nullptr, [&](const PressRow& row, const State&, const Scratch&) {
+          force.push_back(row.record.output.contact_w.force_N);
+        });
+  double most_N = 0, largest_N = 0;
+  for (std::size_t i = 3; i < force.size(); ++i) {
+    const Vec3 turn[3] = {force[i - 2] - force[i - 3], force[i - 1] - force[i - 2], force[i] - force[i - 1]};
+    largest_N = std::max(largest_N, norm(force[i]));
+    for (const Vec3 axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) {
+      const double a = dot(turn[0], axis), b = dot(turn[1], axis), c = dot(turn[2], axis);
+      if (a * b < 0 && b * c < 0) most_N = std::max(most_N, std::min({std::abs(a), std::abs(b), std::abs(c)}));
+    }
+  }
+  std::printf("  %.2f mN of %.1f N\n", 1e3 * most_N, largest_N);
+  EXPECT_GT(largest_N, 5);
+  EXPECT_LT(most_N, most_share * largest_N);
+}
+
+// Where the rod crossed a vertex of the ring it turned by 31 mN, and on either side of it the place asked for a force
+// or for none; and by 5.5 mN for a few ticks after it had stuck while the surface had kinks (2026-11-26).
+TEST(ElasticScenes, TheRingsOwnPathDoesNotShake) { expect_still("ring", 1e-4); }
+
+// The rod stands on the dome's pole, a vertex: it shook in 1,387 ticks by more than 2 mN while the surface had kinks
+// (2026-11-26).
+TEST(ElasticScenes, TheDomesOwnPathDoesNotShake) { expect_still("half_shell", 1e-4); }
 
 // Jaws that come down about the block, close, are pressed `down_m` and drag it along their axes.
 class JawsOnABlock {
@@ -222,32 +271,6 @@ TEST(ElasticScenes, ADragThatTurnsBackDoesNotGoToAndFro) {
     EXPECT_GT(along_N, 3);
     EXPECT_LE(turning, 10);
   }
-}
-
-// Along the path that the scene scripts for a hand the force does not turn every other tick, but for a few ticks after
-// the rod has stuck. Where it crossed a vertex of the ring it turned by 31 mN, and on either side of it the place asked
-// for a force or for none (2026-11-26; now by 5.5 mN).
-TEST(ElasticScenes, TheRingsOwnPathDoesNotShake) {
-  const ImageFile image(image_path("ring"));
-  const auto path = load_scene(std::string(PALPATE_SOURCE_DIR) + "/config/scenes/ring.toml").path;
-  const StatePtr state = make_state(image.model());
-  std::vector<Vec3> force;
-  press(image.model(), scripted_poses(path, image.model().params.period_s), {path.hand_stiffness_N_per_m}, *state,
-        nullptr, [&](const PressRow& row, const State&, const Scratch&) {
-          force.push_back(row.record.output.contact_w.force_N);
-        });
-  double most_N = 0, largest_N = 0;
-  for (std::size_t i = 3; i < force.size(); ++i) {
-    const Vec3 turn[3] = {force[i - 2] - force[i - 3], force[i - 1] - force[i - 2], force[i] - force[i - 1]};
-    largest_N = std::max(largest_N, norm(force[i]));
-    for (const Vec3 axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) {
-      const double a = dot(turn[0], axis), b = dot(turn[1], axis), c = dot(turn[2], axis);
-      if (a * b < 0 && b * c < 0) most_N = std::max(most_N, std::min({std::abs(a), std::abs(b), std::abs(c)}));
-    }
-  }
-  std::printf("  %.1f mN of %.1f N\n", 1e3 * most_N, largest_N);
-  EXPECT_GT(largest_N, 8);
-  EXPECT_LT(most_N, 1e-3 * largest_N);
 }
 
 }  // namespace

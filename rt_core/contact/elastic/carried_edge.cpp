@@ -99,7 +99,7 @@ void stand_on(const EdgePlace& on, Vec3 centre_w, const CarriedTriangle& last, S
 
 void find_carried_foot(Vec3 centre_w, Vec3 near_w, CarriedTriangle& last, ElasticRow& row) PALPATE_RT {
   std::int32_t passed = 0;
-  row.foot = foot::search(
+  row.foot = foot::search<false>(
       last.model,
       [&last](std::int32_t t) PALPATE_RT {
         last.move_to(t);

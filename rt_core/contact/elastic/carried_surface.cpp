@@ -4,6 +4,7 @@
 #include "rt_core/contact/elastic/line_place.h"
 #include "rt_core/contact/elastic/place_numbers.h"
 #include "rt_core/surface/closest_point.h"
+#include "rt_core/surface/facet_sag.h"
 
 namespace palpate {
 
@@ -25,10 +26,8 @@ struct CornerTurn {
   Vec3 across[3];  // n x r_i
   Real inverse;    // 1 / |cof(F) n|
 
-  CornerTurn(const CarriedVertex& vertex, Vec3 n) PALPATE_RT {
-    const Vec3* r = vertex.row;
-    for (int i = 0; i < 3; ++i) across[i] = cross(n, r[i]);  // bound: 3
-    inverse = 1.0 / norm(Vec3{dot(r[1], across[2]), dot(r[2], across[0]), dot(r[0], across[1])});
+  CornerTurn(const CarriedVertex& vertex, Vec3 n, Real inverse_length) PALPATE_RT : inverse(inverse_length) {
+    for (int i = 0; i < 3; ++i) across[i] = cross(n, vertex.row[i]);  // bound: 3
   }
   // What changes of the corner's place and of its normal are, in its 12 numbers.
   void show(Vec3 unit_normal, Vec3 by_place, Vec3 by_normal, Real* out) const PALPATE_RT {
@@ -45,34 +44,40 @@ struct CornerTurn {
 using CornerTurns = CornerTurn[3];
 
 // Where the foot holds: the height's derivative in corners and normals, backwards through
-//   sum w_i V_i - t sum w_i U_i = centre,  height = -(t |N| + sag),  N = sum w_i U_i,  sag = sum w_i (V_i - X) . U_i /
-//   2,
-// and the corners' normals. The plain n . sum w_i dV_i misses how the surface bends between its
+//   sum w_i V_i - t sum w_i U_i = centre,  height = -(t |N| + sag),  N = sum w_i U_i,
+// the sag and the corners' normals. The plain n . sum w_i dV_i misses how the surface bends between its
 // vertices: 1 to 3 % of a mode's pull on an arch (2026-11-22), and forces that are no slope of the energy.
 // Returns t.
-Real travel_slope(const CornerTurns& turns, ElasticRow& row, const CarriedTriangle& t, CornerSlope& slope) PALPATE_RT {
+Real travel_slope(const CornerTurns& turns, const FacetSag& sag, ElasticRow& row, const CarriedTriangle& t,
+                  CornerSlope& slope) PALPATE_RT {
   const Vec3 *v = t.corners.v, *u = t.corners.u;
   const Real* w = row.foot.weight;
-  const Vec3 mixed = w[0] * u[0] + w[1] * u[1] + w[2] * u[2], place = w[0] * v[0] + w[1] * v[1] + w[2] * v[2];
-  Real share[3], sag = 0;
-  for (int k = 0; k < 3; ++k) {  // bound: 3
-    share[k] = 0.5 * dot(v[k] - place, u[k]);
-    sag += w[k] * share[k];
-  }
-  const Real length = norm(mixed), below = -(row.foot.height_m + sag) / length, ratio = below / length;
+  const Vec3 mixed = w[0] * u[0] + w[1] * u[1] + w[2] * u[2];
+  const Real length = norm(mixed), below = -(row.foot.height_m + sag.value_m) / length, ratio = below / length;
   const Vec3 e1 = v[1] - v[0], e2 = v[2] - v[0], u1 = u[1] - u[0], u2 = u[2] - u[0];
   const Vec3 xy = cross(e1 - below * u1, e2 - below * u2);
-  const Real along_b = ratio * dot(mixed, u1) + share[1] - share[0] - 0.5 * dot(e1, mixed);
-  const Real along_c = ratio * dot(mixed, u2) + share[2] - share[0] - 0.5 * dot(e2, mixed);
+  const Double4 sags = sag.slope_m();
+  const Real along_b = ratio * dot(mixed, u1) + sags[1] - sags[0];
+  const Real along_c = ratio * dot(mixed, u2) + sags[2] - sags[0];
   const Vec3 moved =
       along_b * row.foot.gradient_per_m[1] + along_c * row.foot.gradient_per_m[2] - (length / dot(xy, mixed)) * xy;
   row.rise = -moved;
-  for (int k = 0; k < 3; ++k) {  // bound: 3
-    const Vec3 by_place = -w[k] * (moved - 0.5 * (u[k] - mixed));
-    const Vec3 by_normal = w[k] * (below * moved + ratio * mixed + 0.5 * (v[k] - place));
-    turns[k].show(u[k], by_place, by_normal, slope.of[k]);
-  }
+  const Double4 weight{w[0], w[1], w[2], w[2]};
+  const Vec3x4 by_place = sag.by_place() - weight * splat4(moved);
+  const Vec3x4 by_normal = sag.by_normal() + weight * splat4(below * moved + ratio * mixed);
+  for (std::uint32_t k = 0; k < 3; ++k) turns[k].show(u[k], by_place[k], by_normal[k], slope.of[k]);  // bound: 3
   return below;
+}
+
+// Moves a foot off its facet.
+FacetSag smooth_sag(const Model& model, const CarriedTriangle& t, SmoothFoot& foot) PALPATE_RT {
+  Vec3 rest[3];
+  const Triangle& triangle = model.triangle[static_cast<std::size_t>(foot.triangle)];
+  for (int k = 0; k < 3; ++k) rest[k] = model.vertex_m[static_cast<std::size_t>(triangle.vertex[k])];  // bound: 3
+  const FacetSag sag(t.corners, rest, foot.weight);
+  foot.foot_w += sag.value_m * foot.normal_w;
+  foot.height_m -= sag.value_m;
+  return sag;
 }
 
 // The same equation differentiated: sum w_i (dV_i - t dU_i) moves the foot along the material as the centre going the
@@ -310,6 +315,7 @@ void CarriedSurface::place(const RoundTip& tip, std::int32_t triangle, Vec3 near
     return;
   }
   if (!found && on.edge < 0 && !place_on_facet(centre_w, triangle, row)) return;
+  const FacetSag sag = found ? smooth_sag(model, last, row.foot) : FacetSag{};
   row.travel_m = tip.margin_m - row.foot.height_m;
   if (!(row.travel_m + nearer_m > 0)) {
     // Newton's steps to a foot that is too far; with the terms below they count themselves (24,962 instructions against
@@ -322,8 +328,10 @@ void CarriedSurface::place(const RoundTip& tip, std::int32_t triangle, Vec3 near
   Real step_m = 0;
   if (found) {
     const Vec3* n = model.corner_normal[static_cast<std::size_t>(row.foot.triangle)].normal;
-    const CornerTurns turns = {{last.vertex[0], n[0]}, {last.vertex[1], n[1]}, {last.vertex[2], n[2]}};
-    const Real below = travel_slope(turns, row, last, slopes.travel);
+    const Real* inverse = last.normal_inverse;
+    const CornerTurns turns = {
+        {last.vertex[0], n[0], inverse[0]}, {last.vertex[1], n[1], inverse[1]}, {last.vertex[2], n[2], inverse[2]}};
+    const Real below = travel_slope(turns, sag, row, last, slopes.travel);
     show_place_numbers(model, row);
     if (!tip.is_ball()) step_m = stand_on_line(model, box, height_bend(last.corners, row), force_N, row);
     if (row.has_slide) slide_slopes(turns, row, last, below, slopes.slide);

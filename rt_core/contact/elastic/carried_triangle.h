@@ -54,6 +54,7 @@ struct CarriedTriangle {
   std::int32_t triangle = -1;
   CarriedVertex vertex[3];
   foot::Corners corners;
+  Real normal_inverse[3] = {};  // of the carried normals' lengths, after turn_normals()
 
   void move_to(std::int32_t next) PALPATE_RT {
     if (next == triangle) return;
@@ -72,7 +73,10 @@ struct CarriedTriangle {
   void turn_normals() PALPATE_RT {
     for (int k = 0; k < 3; ++k) {  // bound: 3
       const Vec3 normal = model.corner_normal[static_cast<std::size_t>(triangle)].normal[k];
-      corners.u[k] = unit_or(vertex[k].carried(normal), normal);
+      const Vec3 carried = vertex[k].carried(normal);
+      const Real length = norm(carried);
+      normal_inverse[k] = length > 1e-300 && length < kHuge ? 1.0 / length : 0.0;
+      corners.u[k] = normal_inverse[k] > 0 ? normal_inverse[k] * carried : normal;
     }
   }
   // Over the facets to the one that the centre is above, as flat ones tell: a triangle so left behind costs a fifth of

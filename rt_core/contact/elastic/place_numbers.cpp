@@ -68,14 +68,11 @@ void show_bends(const Vec3* edge_m, const float* const* own, ElasticRow& row) PA
     of[i] = Double4{};
     for (int k = 0; k < 3; ++k) of[i] += splat4(row.foot.weight[k]) * widen4(own[k] + kOwnBends + kOwnSlopes * i);
   }
-  const Vec3 e = edge_m[0], f = -edge_m[2];
-  const auto along = [&](Vec3 a, Vec3 b) PALPATE_RT {
-    return splat4(a.x * b.x) * of[0] + splat4(a.x * b.y + a.y * b.x) * of[1] + splat4(a.x * b.z + a.z * b.x) * of[2] +
-           splat4(a.y * b.y) * of[3] + splat4(a.y * b.z + a.z * b.y) * of[4] + splat4(a.z * b.z) * of[5];
-  };
-  store(row.number_bend[0], along(e, e));
-  store(row.number_bend[1], along(e, f));
-  store(row.number_bend[2], along(f, f));
+  const Vec3x4 x{of[0], of[1], of[2]}, y{of[1], of[3], of[4]}, z{of[2], of[4], of[5]};
+  const Vec3x4 e = splat4(edge_m[0]), f = splat4(-edge_m[2]), turned{dot(x, e), dot(y, e), dot(z, e)};
+  store(row.number_bend[0], dot(turned, e));
+  store(row.number_bend[1], dot(turned, f));
+  store(row.number_bend[2], dot({dot(x, f), dot(y, f), dot(z, f)}, f));
 }
 
 void show_modulus(const Model& model, ElasticRow& row) PALPATE_RT {
