@@ -11,6 +11,10 @@ namespace palpate {
 
 namespace {
 
+// A smooth surface goes on where corners have the same normal: those of each part are longer by so much, so that it
+// ends between two of them, too. Far above rounding, far below what any force tells.
+constexpr double kSeam = 1e-12;
+
 std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
 Vec3 middle_of(const std::vector<Vec3>& vertex_m, const Triangle& t) {
@@ -68,8 +72,8 @@ void touch_by_parts(const SceneDesc& scene, ImageContents& image) {
                       std::to_string(kMaxPieces));
   image.tool_point = std::move(points);
   for (std::size_t t = 0; t < part.size(); ++t)
-    if (part[t] == 0)
-      for (Vec3& normal : image.corner_normal[t].normal) normal = face_of(image.vertex_m, image.triangle[t]);
+    for (Vec3& normal : image.corner_normal[t].normal)
+      normal = part[t] == 0 ? face_of(image.vertex_m, image.triangle[t]) : (1 + kSeam * part[t]) * normal;
 }
 
 std::vector<std::int32_t> part_of(const Model& model, std::int32_t triangle) {

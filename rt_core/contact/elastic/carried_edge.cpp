@@ -13,6 +13,12 @@ constexpr std::int32_t kMostCrossed = 5;
 constexpr std::int32_t kSpokesPerTerm = 2;
 // Ends of edges that a foot passes.
 constexpr std::int32_t kMostEnds = 2;
+// Triangles looked at about such an end.
+constexpr std::int32_t kMostRound = 8;
+// Of a capsule and an edge the square of the angle between them, at least: more parallel ones come along by parts.
+constexpr Real kLeastAcross = 0.01;
+// Normals on both sides of a seam between two parts: its square.
+constexpr Real kSame = 1e-18;
 
 const Triangle& triangle_of(const CarriedTriangle& t) PALPATE_RT {
   return t.model.triangle[static_cast<std::size_t>(t.triangle)];
@@ -33,7 +39,6 @@ EdgePlace nearest_edge(const CarriedTriangle& t, Vec3 centre_w) PALPATE_RT {
 
 // Round an edge's end to the triangle in which a sharp edge goes on; -1: none of the first few has one.
 std::int32_t round_end(const Model& model, std::int32_t triangle, int edge, std::int32_t vertex) PALPATE_RT {
-  constexpr std::int32_t kMostRound = 8;
   for (std::int32_t i = 0; i < kMostRound; ++i) {  // bound: kMostRound x 3
     const Triangle& t = model.triangle[static_cast<std::size_t>(triangle)];
     int other = -1;
@@ -95,6 +100,42 @@ void stand_on(const EdgePlace& on, Vec3 centre_w, const CarriedTriangle& last, S
   foot.foot_w = on.place_w;
 }
 
+// Whether another part goes on there, whose place it is then: of its corners about one end of the edge, or about both
+// where the place is between them.
+bool meets_part(const Model& model, std::int32_t triangle, std::int32_t vertex) PALPATE_RT {
+  std::int32_t at = triangle;
+  Vec3 own;
+  for (std::int32_t i = 0; i < kMostRound && at >= 0; ++i) {  // bound: kMostRound x 3
+    const Triangle& t = model.triangle[static_cast<std::size_t>(at)];
+    const int corner = t.vertex[0] == vertex ? 0 : t.vertex[1] == vertex ? 1 : 2;
+    const Vec3 normal = model.corner_normal[static_cast<std::size_t>(at)].normal[corner];
+    if (i == 0) own = normal;
+    if (!(normal == own) && squared_norm(normal - own) < kSame) return true;
+    at = t.adjacent[corner];
+    if (at == triangle) break;
+  }
+  return false;
+}
+bool goes_on_smooth(const Model& model, std::int32_t triangle, const EdgePlace& on) PALPATE_RT {
+  const std::int32_t* v = model.triangle[static_cast<std::size_t>(triangle)].vertex;
+  return (on.share == 1 || meets_part(model, triangle, v[on.edge])) &&
+         (on.share == 0 || meets_part(model, triangle, v[(on.edge + 1) % 3]));
+}
+
+// A capsule to where its axis is nearest to the edge: foot by foot it would take a dozen ticks where both are about
+// parallel, and a tube across a clip's arm was 0.5 mm deep until then (2026-11-26).
+EdgePlace come_along(const EdgePlace& on, CarriedTriangle& last, ElasticRow& row) PALPATE_RT {
+  RoundTip& tip = row.tip;
+  const Real square = squared_norm(on.along_w);
+  if (tip.is_ball() || !(square > 0)) return on;
+  const Vec3 axis = unit_or(tip.half_axis_w, {}), edge = (1.0 / square) * on.along_w;
+  const Real across = max_of(1 - dot(axis, edge) * dot(axis, on.along_w), kLeastAcross);
+  const Real half = norm(tip.half_axis_w), step = dot(on.place_w - row.placed_w, axis) / across;
+  tip.along = clamp_to(tip.along + step / half, -1.0, 1.0);
+  row.placed_w = tip.centre_w();
+  return follow_edge(row.placed_w, last);
+}
+
 }  // namespace
 
 void find_carried_foot(Vec3 centre_w, Vec3 near_w, CarriedTriangle& last, ElasticRow& row) PALPATE_RT {
@@ -115,16 +156,18 @@ EdgePlace place_on_edge(Vec3 centre_w, CarriedTriangle& last, ElasticRow& row) P
   const EdgePlace on = follow_edge(centre_w, last);
   if (on.edge < 0 || !(on.square_m2 > kStillCarried_m * kStillCarried_m)) return {};
   const std::int32_t here = last.triangle, other = triangle_of(last).adjacent[on.edge];
-  if (row.tip.is_of_part) {
-    stand_on(on, centre_w, last, row.foot);
-    return on;
-  }
   if (other < 0) return {};
   const Vec3* v = last.corners.v;
   const Vec3 edge = v[(on.edge + 1) % 3] - v[on.edge], out = centre_w - on.place_w;
   const Vec3 over = beyond_edge(last, last.model.triangle[static_cast<std::size_t>(other)], on.edge) - v[on.edge];
   const Vec3 up = cross(v[1] - v[0], v[2] - v[0]);
   const bool is_hollow = !(dot(over, up) < 0), is_inside = !(dot(out, up) > 0 || dot(out, cross(over, edge)) > 0);
+  if (row.tip.is_of_part) {
+    EdgePlace nearest = is_inside ? on : come_along(on, last, row);
+    nearest.is_behind = is_inside || goes_on_smooth(last.model, last.triangle, nearest);
+    stand_on(nearest, row.placed_w, last, row.foot);
+    return nearest;
+  }
   if (is_hollow || is_inside) return {};
   if (dot(out, over - (dot(over, edge) / squared_norm(edge)) * edge) > 0) {
     last.move_to(other);

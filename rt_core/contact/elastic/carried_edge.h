@@ -11,6 +11,7 @@ struct EdgePlace {
   Real share = 0;
   Vec3 place_w, along_w;  // the edge; zero at its end
   Real square_m2 = kHuge;
+  bool is_behind = false;  // of a part: what is above it there is inside the body, or above another part
 };
 
 // Foot of a tip's centre on the smooth surface, begun on the triangle that `last` stands on; `last` follows it.
@@ -20,7 +21,7 @@ void find_carried_foot(Vec3 centre_w, Vec3 near_w, CarriedTriangle& last, Elasti
 // else on the edge or its end as the body carries it. A facet at rest, moved as one of its corners is, was up to a
 // millimetre off on a ring that had turned, and another one on either side of the edge: the ring jumped between the two
 // (2026-11-23). Of hollow edges, and from inside, nothing: edge -1. A tip of a part stands on its edges whatever is
-// beyond. Bound: two ends, two searches.
+// beyond but another part, a capsule where its axis is nearest. Bound: two ends, two searches.
 EdgePlace place_on_edge(Vec3 centre_w, CarriedTriangle& last, ElasticRow& row) PALPATE_RT;
 
 }  // namespace palpate

@@ -269,7 +269,7 @@ ImageResult check_data(const Model& model) noexcept {
 
 std::size_t work_bytes(const Model&) noexcept { return sizeof(ElasticWork); }
 
-// The shapes' reaches. Nothing else is read before the tick has written it.
+// The shapes' reaches and the parts' seeds. Nothing else is read before the tick has written it.
 void create_work(const Model& model, void* block) noexcept {
   ElasticWork& work = *static_cast<ElasticWork*>(block);
   const std::int32_t count = terms(model.params.elastic_soft);
@@ -282,6 +282,8 @@ void create_work(const Model& model, void* block) noexcept {
     }
     work.reach_m[t] = square_root(most);
   }
+  for (std::size_t i = 0; i < model.tool_point.size(); ++i)
+    if (model.tool_point[i].begins_at > 0) work.seeds[i] = spread_over_part(model, model.tool_point[i].begins_at);
 }
 
 // A tip stands on the carried surface after kFootWalk triangles and a turn about a fan (twice at an edge, at half a

@@ -42,6 +42,7 @@ struct ElasticRow {
   LineLaw::Point told;                   // at the depth kTold, whatever leans
   Real dent_m;                           // how deep about the line is under the force that it had; 0: had none
   Real travel_m;                         // how far the carried surface and the tip overlap; < 0 apart
+  Real leads_m;                          // of a part: how much sooner than that a capsule touches that leans; else 0
   Real pull[kMaxSoftModes];              // d travel / d p
   Real turn[elastic_layout::kMaxPairs];  // d2 travel / d p2, with the foot's slide
   Vec3 sweep_w[kMaxSoftModes];           // of the material at the foot, by each amplitude

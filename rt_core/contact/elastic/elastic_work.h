@@ -2,6 +2,7 @@
 #pragma once
 
 #include "rt_core/contact/elastic/body_rub.h"
+#include "rt_core/contact/elastic/part_search.h"
 #include "rt_core/contact/elastic/tool_tangent.h"
 
 namespace palpate {
@@ -12,6 +13,7 @@ struct ElasticWork {
   Real y[elastic_layout::kMaxTerms];        // products of the amplitudes: those the rows were placed with, then the new
   Real y_begun[elastic_layout::kMaxTerms];  // as the tick found it
   Real reach_m[elastic_layout::kMaxTerms];  // largest displacement of each shape; written when the Scratch is made
+  PartSeeds seeds[kMaxPieces];              // by tool point, of the part that it touches; likewise
   BodyRub rub[kMaxRegions];                 // by region of the tick
   ToolTangent tangent;                      // of the normals' springs, then of all
 };

@@ -15,6 +15,8 @@ using namespace elastic_layout;
 constexpr Real kFollowed_m = 4e-3;
 // Walks to a part's foot that was lost: a tip that is thrown.
 constexpr std::int32_t kFurtherWalks = 1;
+// Between a facet and a capsule's axis, to where it is right above.
+constexpr std::int32_t kTurnsOfAxis = 3;
 // Of half a capsule's axis.
 constexpr Real kThird = 1.0 / 3;
 // Another place on the axis is looked for where it is nearer by more. Of a jaw that comes down along a block's edge all
@@ -68,8 +70,8 @@ class Finder {
     PointState& point = state_.point[index];
     const bool touched = point.triangle >= 0 && point.gap_m < 0;
     RoundTip tip = round_tip(model_, index, carrier_w(model_, state_, piece_of(index)));
-    if (!touched && is_far(index, tip)) return;
     if (tip.is_of_part) return visit_part(index, tip, touched);
+    if (!touched && is_far(index, tip)) return;
     ElasticRow& row = work_.row[index];
     if (touched) tip.come_near(point.closest_w);
     const bool followed = touched && has_stayed(point, tip);
@@ -94,28 +96,54 @@ class Finder {
   // begin, over as many facets a tick as a walk takes. Until it is there the part does not touch.
   void visit_part(std::int32_t index, RoundTip& tip, bool touched) PALPATE_RT {
     PointState& point = state_.point[index];
-    if (point.triangle < 0) point.triangle = model_.tool_point[static_cast<std::size_t>(index)].begins_at;
-    const Vec3 near = touched ? point.closest_w : tip.centre_w();
-    tip.come_near(touched ? near + tip.margin_m * point.normal_w : displaced(point.triangle));
+    if (touched)
+      tip.come_near(point.closest_w + tip.margin_m * point.normal_w);
+    else if (!come_near_part(index, tip, point))
+      return let_be(point);
     ElasticRow& row = work_.row[index];
+    const Vec3 near = touched ? point.closest_w : tip.centre_w();
     const Real force_N = point.region >= 0 ? state_.region[point.region].normal_force_N : 0.0;
     nearer_m_ = let_go_there_m(point.triangle);
     surface_.place(tip, point.triangle, near, nearer_m_, box_, row, force_N);
     for (std::int32_t i = 0; i < kFurtherWalks && row.foot.state == FootState::kFar; ++i)
       surface_.place(tip, row.foot.triangle, tip.centre_w(), nearer_m_, box_, row, force_N);
+    point.triangle = row.foot.triangle;
+    point.closest_w = row.foot.foot_w;
     if (row.foot.state == FootState::kFar) {
-      point.triangle = row.foot.triangle;
       hold(point);
-      point.gap_m = kHuge;
-      return;
+      point.closest_w = displaced(point.triangle);
+      return let_be(point);
     }
+    // From behind: another part is in between.
+    if (!touched && row.foot.height_m < 0) return let_be(point);
     if (free_depth(row) > 0) {
       keep(index, row);
-      point.gap_bound_m = -row.travel_m;
+      point.gap_bound_m = -(row.travel_m + row.leads_m);
       return;
     }
     let_lift(point, row, kHuge);
-    point.gap_m = -row.travel_m;
+    point.gap_m = -(row.travel_m + row.leads_m);
+  }
+  static void let_be(PointState& point) PALPATE_RT { point.gap_m = point.gap_bound_m = kHuge; }
+  // To the facet of a part that the tip apart from it is above. Returns whether it is there, and may be near.
+  bool come_near_part(std::int32_t index, RoundTip& tip, PointState& point) PALPATE_RT {
+    if (point.triangle < 0) {
+      point.triangle = model_.tool_point[static_cast<std::size_t>(index)].begins_at;
+      point.closest_w = displaced(point.triangle);
+    }
+    tip.come_near(point.closest_w);
+    const Vec3 moved_m = displaced(point.triangle) - vertex(point.triangle, 0);
+    const PartPlace place = come_down(model_, work_.seeds[index], tip.centre_w() - moved_m, point.triangle);
+    point.triangle = place.triangle;
+    const Vec3 a = vertex(place.triangle, 0), b = vertex(place.triangle, 1), c = vertex(place.triangle, 2);
+    const Vec3 up = unit_or(cross(b - a, c - a), {});
+    for (std::int32_t i = 0; i < kTurnsOfAxis; ++i) {  // bound: kTurnsOfAxis
+      const Vec3 centre = tip.centre_w() - moved_m, closest = closest_on_triangle(centre, a, b, c).point;
+      point.closest_w = closest + moved_m;
+      tip.come_near(point.closest_w + max_of(dot(centre - closest, up), 0.0) * up);
+    }
+    return place.is_there &&
+           !(distance_to(box_, tip.middle_w) - tip.margin_m - norm(tip.half_axis_w) - moved_m_ > kSearchMargin_m);
   }
   // As most_let_go_m(), about a triangle: the seat of a clip hardly moves with its arms.
   Real let_go_there_m(std::int32_t triangle) const PALPATE_RT {
@@ -127,6 +155,10 @@ class Finder {
       }
     return most_let_go_m(model_, work_, reach, let_go_);
   }
+  Vec3 vertex(std::int32_t triangle, int corner) const PALPATE_RT {
+    const std::int32_t v = model_.triangle[static_cast<std::size_t>(triangle)].vertex[corner];
+    return model_.vertex_m[static_cast<std::size_t>(v)];
+  }
   Vec3 displaced(std::int32_t triangle) const PALPATE_RT {
     const std::int32_t vertex = model_.triangle[static_cast<std::size_t>(triangle)].vertex[0];
     return model_.vertex_m[static_cast<std::size_t>(vertex)] + surface_.displacement(vertex);
@@ -137,8 +169,9 @@ class Finder {
   }
   // On the body let go; or as it stands, where friction or another finger holds it towards the tip.
   Real free_depth(const ElasticRow& row) const PALPATE_RT {
-    if (!(row.travel_m + nearer_m_ > 0)) return row.travel_m + nearer_m_;
-    return row.travel_m + max_of(dot(row.pull, let_go_, model_.params.elastic_soft), 0.0);
+    const Real depth = row.travel_m + row.leads_m;
+    if (!(depth + nearer_m_ > 0)) return depth + nearer_m_;
+    return depth + max_of(dot(row.pull, let_go_, model_.params.elastic_soft), 0.0);
   }
 
   // About where its foot was.

@@ -73,7 +73,10 @@ Real stand_on_line(const Model& model, const Box& box, Real bend_1_per_m, Real f
   line.left_end = cut(reach.left_m - radius * lean, radius, line.left_m);
   line.right_end = cut(reach.right_m + radius * lean, radius, line.right_m);
   line.right_m = max_of(line.right_m, -line.left_m);
+  // On a part's edge that it crosses: a ball.
+  if (row.tip.is_of_part && row.foot.state == FootState::kEdge) line.left_m = line.right_m = line.lean = 0;
   const LineLaw law(line, row.tip.modulus_Pa * row.modulus, kHuge);
+  if (row.tip.is_of_part) row.leads_m = max_of(-law.touches_at_m(), 0.0);
   const Real told_m = kTold * row.tip.depth_max_m;
   row.told = law.at(told_m + law.touches_at_m());
   const bool had = force_N > 0 && row.told.force_N > 0;

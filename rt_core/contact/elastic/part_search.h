@@ -1,0 +1,29 @@
+// Which facet of a part of the surface a tip apart from it is above.
+#pragma once
+
+#include <cstdint>
+
+#include "rt_core/model.h"
+
+namespace palpate {
+
+// Places spread over a part, from any of which a foot may come down: on a clip's arm, whose round end hides its outside
+// from what lies below it, nearness alone leaves a foot on the inner edge of that end.
+inline constexpr std::int32_t kPartSeeds = 4;
+struct PartSeeds {
+  std::int32_t triangle[kPartSeeds];
+};
+
+// The first is where the bake has the foot begin, each next one the farthest from those before. When a Scratch is made.
+PartSeeds spread_over_part(const Model& model, std::int32_t begins_at) noexcept;
+
+struct PartPlace {
+  std::int32_t triangle;
+  bool is_there;  // no facet beside it is nearer; else the next tick goes on
+};
+// From `triangle` on over facets while they come nearer to a place on the body at rest, from those that look away from
+// it to those that do not first; or from a seed that is nearer. Newton's steps may lead a foot to where a part is
+// farthest. Bound: kMostDown facets.
+PartPlace come_down(const Model& model, const PartSeeds& seeds, Vec3 place_m, std::int32_t triangle) PALPATE_RT;
+
+}  // namespace palpate
