@@ -16,7 +16,9 @@ constexpr Real kFollowed_m = 4e-3;
 // Walks to a part's foot that was lost: a tip that is thrown.
 constexpr std::int32_t kFurtherWalks = 1;
 // Between a facet and a capsule's axis, to where it is right above.
-constexpr std::int32_t kTurnsOfAxis = 3;
+constexpr std::int32_t kTurnsOfAxis = 2;
+// A part that is farther off than so, let go, is not placed.
+constexpr Real kNearPart_m = 4e-3;
 // Of half a capsule's axis.
 constexpr Real kThird = 1.0 / 3;
 // Another place on the axis is looked for where it is nearer by more. Of a jaw that comes down along a block's edge all
@@ -99,11 +101,11 @@ class Finder {
     if (touched)
       tip.come_near(point.closest_w + tip.margin_m * point.normal_w);
     else if (!come_near_part(index, tip, point))
-      return let_be(point);
+      return;
     ElasticRow& row = work_.row[index];
     const Vec3 near = touched ? point.closest_w : tip.centre_w();
     const Real force_N = point.region >= 0 ? state_.region[point.region].normal_force_N : 0.0;
-    nearer_m_ = let_go_there_m(point.triangle);
+    if (touched) nearer_m_ = let_go_there_m(point.triangle);
     surface_.place(tip, point.triangle, near, nearer_m_, box_, row, force_N);
     for (std::int32_t i = 0; i < kFurtherWalks && row.foot.state == FootState::kFar; ++i)
       surface_.place(tip, row.foot.triangle, tip.centre_w(), nearer_m_, box_, row, force_N);
@@ -125,7 +127,8 @@ class Finder {
     point.gap_m = -(row.travel_m + row.leads_m);
   }
   static void let_be(PointState& point) PALPATE_RT { point.gap_m = point.gap_bound_m = kHuge; }
-  // To the facet of a part that the tip apart from it is above. Returns whether it is there, and may be near.
+  // To the facet of a part that the tip apart from it is above. Returns whether it is there, and may touch: farther off
+  // the facet tells how far it is, which is what a tool that comes to it asks (Landing).
   bool come_near_part(std::int32_t index, RoundTip& tip, PointState& point) PALPATE_RT {
     if (point.triangle < 0) {
       point.triangle = model_.tool_point[static_cast<std::size_t>(index)].begins_at;
@@ -142,8 +145,15 @@ class Finder {
       point.closest_w = closest + moved_m;
       tip.come_near(point.closest_w + max_of(dot(centre - closest, up), 0.0) * up);
     }
-    return place.is_there &&
-           !(distance_to(box_, tip.middle_w) - tip.margin_m - norm(tip.half_axis_w) - moved_m_ > kSearchMargin_m);
+    const Vec3 out = tip.centre_w() - point.closest_w;
+    const Real apart_m = norm(out) - tip.margin_m;
+    nearer_m_ = let_go_there_m(place.triangle);
+    if (place.is_there && !(apart_m - nearer_m_ > kNearPart_m)) return true;
+    let_be(point);
+    if (!(place.is_there && dot(out, up) > 0)) return false;
+    point.gap_m = apart_m;
+    point.normal_w = unit_or(out, up);
+    return false;
   }
   // As most_let_go_m(), about a triangle: the seat of a clip hardly moves with its arms.
   Real let_go_there_m(std::int32_t triangle) const PALPATE_RT {
