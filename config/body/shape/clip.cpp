@@ -56,11 +56,11 @@ Vec3 normal(const BodyDesc&, Vec3 p, Vec3 face, double) {
   return dot(out, face) > 0 ? out : -out;
 }
 
-// Either arm's outside with its round end and its half of the foot, the seat, and either arm's inside. Bent open, the
-// ends stand off a tube between the two.
+// Either arm's outside with its round end and its half of the foot, the seat, either arm's inside, and the flanks.
+// Bent open, the ends stand off a tube between the two.
 int part(Vec3 middle, Vec3 face) {
   const ClipShape shape;
-  if (std::abs(face.z) > 0.5) return 0;
+  if (std::abs(face.z) > 0.5) return face.z > 0 ? 6 : 7;
   if (is_of_seat(middle)) return 3;
   if (is_on_pad(middle)) return middle.x < 0 ? 4 : 5;
   const bool is_end = math::atan2(std::abs(middle.x), -middle.y) > kPi - shape.half_opening_rad;

@@ -17,6 +17,9 @@ constexpr std::int32_t kMostEnds = 2;
 constexpr std::int32_t kMostRound = 8;
 // Of a capsule and an edge the square of the angle between them, at least: more parallel ones come along by parts.
 constexpr Real kLeastAcross = 0.01;
+constexpr Real kLeast_m6 = 1e-60;
+// A part's corner normals are longer than one by 2e-12 and more, squared.
+constexpr Real kPartLonger = 5e-13;
 // Normals on both sides of a seam between two parts: its square.
 constexpr Real kSame = 1e-18;
 
@@ -122,6 +125,15 @@ bool goes_on_smooth(const Model& model, std::int32_t triangle, const EdgePlace& 
          (on.share == 0 || meets_part(model, triangle, v[(on.edge + 1) % 3]));
 }
 
+// The cosine by which a facet with that normal looks along `out`.
+Real looks_to(Vec3 out, Vec3 up) PALPATE_RT {
+  return dot(out, up) / square_root(max_of(squared_norm(out) * squared_norm(up), kLeast_m6));
+}
+// Of a part the corner normals' last bits are more than one (config/bake/surface_parts.cpp).
+bool is_part(const Model& model, std::int32_t triangle) PALPATE_RT {
+  return squared_norm(model.corner_normal[static_cast<std::size_t>(triangle)].normal[0]) > 1 + kPartLonger;
+}
+
 // A capsule to where its axis is nearest to the edge: foot by foot it would take a dozen ticks where both are about
 // parallel, and a tube across a clip's arm was 0.5 mm deep until then (2026-11-26).
 EdgePlace come_along(const EdgePlace& on, CarriedTriangle& last, ElasticRow& row) PALPATE_RT {
@@ -161,13 +173,15 @@ EdgePlace place_on_edge(Vec3 centre_w, CarriedTriangle& last, ElasticRow& row) P
   const Vec3 edge = v[(on.edge + 1) % 3] - v[on.edge], out = centre_w - on.place_w;
   const Vec3 over = beyond_edge(last, last.model.triangle[static_cast<std::size_t>(other)], on.edge) - v[on.edge];
   const Vec3 up = cross(v[1] - v[0], v[2] - v[0]);
-  const bool is_hollow = !(dot(over, up) < 0), is_inside = !(dot(out, up) > 0 || dot(out, cross(over, edge)) > 0);
   if (row.tip.is_of_part) {
-    EdgePlace nearest = is_inside ? on : come_along(on, last, row);
-    nearest.is_behind = is_inside || goes_on_smooth(last.model, last.triangle, nearest);
+    const bool is_above =
+        looks_to(out, up) > max_of(kGrazing, is_part(last.model, other) ? looks_to(out, cross(over, edge)) : 0.0);
+    EdgePlace nearest = is_above ? come_along(on, last, row) : on;
+    nearest.is_behind = !is_above || goes_on_smooth(last.model, last.triangle, nearest);
     stand_on(nearest, row.placed_w, last, row.foot);
     return nearest;
   }
+  const bool is_hollow = !(dot(over, up) < 0), is_inside = !(dot(out, up) > 0 || dot(out, cross(over, edge)) > 0);
   if (is_hollow || is_inside) return {};
   if (dot(out, over - (dot(over, edge) / squared_norm(edge)) * edge) > 0) {
     last.move_to(other);

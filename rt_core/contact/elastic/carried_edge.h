@@ -5,6 +5,10 @@
 
 namespace palpate {
 
+// The cosine by which a facet of a part must look at what touches it or its edge; and more than the facet across the
+// edge does, where that is of another part. A tube through a clip's hollow does not touch the flanks' rims.
+inline constexpr Real kGrazing = 0.3;
+
 // The nearest place of a sharp edge or its end, where the smooth surface stops.
 struct EdgePlace {
   int edge = -1;  // from this corner to the next

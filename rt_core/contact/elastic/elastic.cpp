@@ -294,7 +294,8 @@ void add_most_work(const Model& model, const SceneSizes& n, Work& work) noexcept
   add_most_points(model, n, work);
   work.queries += 2 * n.points;  // a capsule asks three times
   add_most_regions(n, kSolvesOfFriction * TipLaws::kIterations, work);
-  work.shown += n.points * (2 * place + terms(soft));
+  const bool in_parts = !model.tool_point.empty() && model.tool_point[0].begins_at > 0;
+  work.shown += n.points * (2 * place + terms(soft) + (in_parts ? kMostPartLooks * kPartLookTerms : 0));
   work.soft_pairs += soft_work(pair);
   work.tip_laws += kLineLaws * kSolvesOfFriction *
                        (kSeriesIterations + 1 + TipLaws::kIterations * (kStepHalvings + 1)) * n.contacts +

@@ -1,4 +1,5 @@
 // Which tips may touch an elastic body, and where.
+#include "rt_core/contact/elastic/carried_edge.h"
 #include "rt_core/contact/elastic/linearised.h"
 #include "rt_core/contact/regions.h"
 #include "rt_core/surface/body_box.h"
@@ -17,6 +18,8 @@ constexpr Real kFollowed_m = 4e-3;
 constexpr std::int32_t kFurtherWalks = 1;
 // Between a facet and a capsule's axis, to where it is right above.
 constexpr std::int32_t kTurnsOfAxis = 2;
+// How far the tool goes before a part is looked at again that it is behind.
+constexpr Real kBehind_m = 5e-4;
 constexpr Real kLeastLean = 0.01;
 // A part that is farther off than so, let go, is not placed.
 constexpr Real kNearPart_m = 4e-3;
@@ -95,10 +98,11 @@ class Finder {
   }
 
  private:
-  // A part of the surface is never looked for: its foot is followed from where it was, or from where the bake has it
-  // begin, over as many facets a tick as a walk takes. Until it is there the part does not touch.
+  // A part of the surface is not looked for among all facets: a foot that touches is followed from where it was, over
+  // as many as a walk takes, one that is apart comes near (part_search.h). Until it is there the part does not touch.
   void visit_part(std::int32_t index, RoundTip& tip, bool touched) PALPATE_RT {
     PointState& point = state_.point[index];
+    if (!touched && stays_apart(index, tip, point)) return;
     if (touched)
       stand_above(point.closest_w, point.normal_w, tip);
     else if (!come_near_part(index, tip, point))
@@ -124,7 +128,7 @@ class Finder {
       point.gap_bound_m = -(row.travel_m + row.leads_m);
       return;
     }
-    let_lift(point, row, kHuge);
+    let_lift(point, row, 0);
     point.gap_m = -(row.travel_m + row.leads_m);
   }
   // A capsule's place right above one of a part; one that leans more stands over the rim that it leans to, where its
@@ -135,7 +139,21 @@ class Finder {
     const Real lean = dot(normal_w, axis);
     tip.come_near(place_w + (abs_of(lean) < kLeastLean ? tip.margin_m * lean : 0.0) * axis);
   }
-  static void let_be(PointState& point) PALPATE_RT { point.gap_m = point.gap_bound_m = kHuge; }
+  // Farther off than tool and body have moved since its foot was looked for.
+  bool stays_apart(std::int32_t index, const RoundTip& tip, PointState& point) const PALPATE_RT {
+    const Real moved = tool_moved_m(index, tip) + state_.elastic.swept_m;
+    point.gap_bound_m -= moved;
+    point.gap_m -= moved;
+    return point.triangle >= 0 && point.gap_bound_m > 0;
+  }
+  Real tool_moved_m(std::int32_t index, const RoundTip& tip) const PALPATE_RT {
+    const RoundTip before = round_tip(model_, index, carrier_previous_w(model_, state_, piece_of(index)));
+    return norm(tip.middle_w - before.middle_w) + norm(tip.half_axis_w - before.half_axis_w);
+  }
+  static void let_be(PointState& point, Real apart_m = 0) PALPATE_RT {
+    point.gap_m = kHuge;
+    point.gap_bound_m = apart_m;
+  }
   // To the facet of a part that the tip apart from it is above. Returns whether it is there, and may touch: farther off
   // the facet tells how far it is, which is what a tool that comes to it asks (Landing).
   bool come_near_part(std::int32_t index, RoundTip& tip, PointState& point) PALPATE_RT {
@@ -147,6 +165,7 @@ class Finder {
     const Vec3 moved_m = displaced(point.triangle) - vertex(point.triangle, 0);
     const PartPlace place = come_down(model_, work_.seeds[index], tip.centre_w() - moved_m, point.triangle);
     point.triangle = place.triangle;
+    *surface_.shown += kPartLookTerms * place.looked;
     const Vec3 a = vertex(place.triangle, 0), b = vertex(place.triangle, 1), c = vertex(place.triangle, 2);
     const Vec3 up = unit_or(cross(b - a, c - a), {});
     for (std::int32_t i = 0; i < kTurnsOfAxis; ++i) {  // bound: kTurnsOfAxis
@@ -157,9 +176,13 @@ class Finder {
     const Vec3 out = tip.centre_w() - point.closest_w;
     const Real apart_m = norm(out) - tip.margin_m;
     nearer_m_ = let_go_there_m(place.triangle);
-    if (place.is_there && !(apart_m - nearer_m_ > kNearPart_m)) return true;
-    let_be(point);
-    if (!(place.is_there && dot(out, up) > 0)) return false;
+    const bool is_above = place.is_there && dot(out, up) > kGrazing * norm(out);
+    if (is_above && !(apart_m - nearer_m_ > kNearPart_m)) return true;
+    if (!is_above) {
+      let_be(point, place.is_there ? kBehind_m : 0.0);
+      return false;
+    }
+    point.gap_bound_m = 0;
     point.gap_m = apart_m;
     point.normal_w = unit_or(out, up);
     return false;
@@ -203,9 +226,8 @@ class Finder {
   // of it.
   bool is_far(std::int32_t index, const RoundTip& tip) PALPATE_RT {
     PointState& point = state_.point[index];
-    const RoundTip before = round_tip(model_, index, carrier_previous_w(model_, state_, piece_of(index)));
     const Real half = norm(tip.half_axis_w);
-    const Real tool_m = norm(tip.middle_w - before.middle_w) + norm(tip.half_axis_w - before.half_axis_w);
+    const Real tool_m = tool_moved_m(index, tip);
     const Real box = distance_to(box_, tip.middle_w) - tip.margin_m - half - moved_m_;
     const Real bound = max_of(point.gap_bound_m - tool_m - state_.elastic.swept_m, box);
     if (!(bound > kSearchMargin_m)) return false;

@@ -2,14 +2,14 @@
 
 #include "rt_core/math.h"
 #include "rt_core/surface/foot_search.h"
+#include "rt_core/surface/triangle.h"
 
 namespace palpate {
 
 namespace {
 
-// Facets that a foot comes down over in a tick.
-constexpr std::int32_t kMostDown = 16;
 constexpr Real kLeast_m6 = 1e-60;
+constexpr Real kMiddle = 1e-3;
 // Corner normals of a part are as long as one another (config/bake/surface_parts.cpp) but for rounding; squared.
 constexpr Real kAsLong = 1e-13;
 
@@ -25,22 +25,35 @@ Real length2(const Model& model, std::int32_t triangle) PALPATE_RT {
   return squared_norm(model.corner_normal[static_cast<std::size_t>(triangle)].normal[0]);
 }
 
-// A facet from a place: how far, squared, and the cosine by which it looks there.
+// A facet from a place: how far, squared, and the cosine by which it looks there. Its middle counts a little: it
+// decides about those that share what is nearest. Alone it left a foot on a needle whose neighbours' middles are
+// farther along.
 struct Seen {
   std::int32_t triangle;
   Real square_m2, facing;
+  bool is_above;  // of its inside
 
   Seen(const Model& model, std::int32_t t, Vec3 place) PALPATE_RT : triangle(t) {
     const std::int32_t* v = triangle_of(model, t).vertex;
-    const Vec3 a = vertex(model, v[0]), out = place - middle(model, t),
-               up = cross(vertex(model, v[1]) - a, vertex(model, v[2]) - a);
-    square_m2 = squared_norm(out);
-    facing = dot(out, up) / square_root(max_of(square_m2 * squared_norm(up), kLeast_m6));
+    const Vec3 a = vertex(model, v[0]), b = vertex(model, v[1]), c = vertex(model, v[2]);
+    const Vec3 out = place - middle(model, t), up = cross(b - a, c - a);
+    const Real square = squared_norm(out);
+    facing = dot(out, up) / square_root(max_of(square * squared_norm(up), kLeast_m6));
+    const TrianglePoint nearest = closest_on_triangle(place, a, b, c);
+    square_m2 = squared_norm(place - nearest.point) + kMiddle * square;
+    is_above = facing >= 0 && nearest.feature == Feature::kFace;
   }
   bool is_better_than(const Seen& other) const PALPATE_RT {
     return other.facing < 0 ? facing > other.facing : facing >= 0 && square_m2 < other.square_m2;
   }
 };
+
+void take(const Model& model, std::int32_t triangle, Vec3 place, Seen& best, std::int32_t& looked) PALPATE_RT {
+  if (triangle < 0 || triangle == best.triangle) return;
+  looked += 1;
+  const Seen there(model, triangle, place);
+  if (there.is_better_than(best)) best = there;
+}
 
 }  // namespace
 
@@ -65,21 +78,23 @@ PartSeeds spread_over_part(const Model& model, std::int32_t begins_at) noexcept 
 
 PartPlace come_down(const Model& model, const PartSeeds& seeds, Vec3 place_m, std::int32_t triangle) PALPATE_RT {
   Seen best(model, triangle, place_m);
-  for (const std::int32_t seed : seeds.triangle) {  // bound: kPartSeeds
-    const Seen there(model, seed, place_m);
-    if (there.is_better_than(best)) best = there;
-  }
-  for (std::int32_t i = 0; i < kMostDown; ++i) {  // bound: kMostDown x 3
+  std::int32_t looked = 1;
+  for (const std::int32_t seed : seeds.triangle) take(model, seed, place_m, best, looked);  // bound: kPartSeeds
+  for (std::int32_t i = 0; i < kMostDown; ++i) {                                            // bound: kMostDown x 9
     const std::int32_t here = best.triangle;
+    if (best.is_above) return {here, true, looked};
+    std::int32_t beside[3];
     for (int edge = 0; edge < 3; ++edge) {
-      const std::int32_t next = foot::across(model, here, edge);
-      if (next < 0) continue;
-      const Seen beside(model, next, place_m);
-      if (beside.is_better_than(best)) best = beside;
+      beside[edge] = foot::across(model, here, edge);
+      take(model, beside[edge], place_m, best, looked);
     }
-    if (best.triangle == here) return {here, true};
+    // A corner may be what is nearest of those beside, too, and not of those beyond them.
+    for (int edge = 0; edge < 3 && best.triangle == here; ++edge)
+      for (int beyond = 0; beyond < 3 && beside[edge] >= 0; ++beyond)
+        take(model, foot::across(model, beside[edge], beyond), place_m, best, looked);
+    if (best.triangle == here) return {here, true, looked};
   }
-  return {best.triangle, false};
+  return {best.triangle, false, looked};
 }
 
 }  // namespace palpate

@@ -19,8 +19,12 @@ PartSeeds spread_over_part(const Model& model, std::int32_t begins_at) noexcept;
 
 struct PartPlace {
   std::int32_t triangle;
-  bool is_there;  // no facet beside it is nearer; else the next tick goes on
+  bool is_there;        // no facet beside it is nearer; else the next tick goes on
+  std::int32_t looked;  // facets looked at
 };
+// Facets that come_down() goes over, with what is beside and beyond each, and what one costs in terms of a vertex.
+inline constexpr std::int32_t kMostDown = 6;
+inline constexpr std::int32_t kMostPartLooks = 1 + kPartSeeds + 9 * kMostDown, kPartLookTerms = 4;
 // From `triangle` on over facets while they come nearer to a place on the body at rest, from those that look away from
 // it to those that do not first; or from a seed that is nearer. Newton's steps may lead a foot to where a part is
 // farthest. Bound: kMostDown facets.
