@@ -77,7 +77,7 @@ inline constexpr double kRegionMemoryDistance_m = 2e-3;
 // Largest change of the rendered force (and torque) in one tick, as a share of its limit: whatever happens to samples,
 // commands or numbers, the hand gets no impulse above it. At the coupling's 1.5 N/mm and 0.2 kg of hand and handle
 // (14 Hz) a swing needs 9.9 N before its slope meets 0.85 N a millisecond; a snap is faster where the coupling
-// is stiffer than the device holds: snap_in, thrown into its seat at 0.5 m/s, meets it for 10 ticks (2026-11-22).
+// is stiffer than the device holds: snap_in_paper, thrown into its seat at 0.5 m/s, meets it for 10 ticks (2026-11-22).
 // What is promised is a tenth; the rest is margin for rounding, here, on the wire and in whoever measures it.
 inline constexpr double kOutputStepShare = 0.098;
 // A hand that holds the tool by the coupling moves it in one tick by its own motion and this share of the coupling's

@@ -14,8 +14,8 @@ namespace {
 constexpr std::int32_t kDof = 6;
 
 // After one swing of the force (safety/hand_energy.h) the tool may go a fifth as far by itself, after two a ninth: two
-// states of contact that throw it to and fro lose it within a few ticks. Without this snap_in, dragged sideways in its
-// seat, alternated by 0.8 N for as long as it was dragged (2026-11-22).
+// states of contact that throw it to and fro lose it within a few ticks. Without this snap_in_paper, dragged sideways
+// in its seat, alternated by 0.8 N for as long as it was dragged (2026-11-22).
 constexpr Real kSwingCalm = 4;
 
 // How far the tool may go by itself, of the coupling's longest stretch, when the hand goes `hand` of it. Friction that

@@ -46,13 +46,13 @@ void balance_tool(const Model& model, const State& state, Scratch& scratch) PALP
 Pose held_end(const Model& model, const Pose& device_w, const Pose& tool_w, std::uint32_t& status) PALPATE_RT;
 
 // Share of the coupling's largest stretch F_max / K by which the tool may move in a tick beyond the handle's own
-// motion: what a slip or a snap makes of the force in one. 8 % left steps of 4.7 % (slips) to 8.8 % (snap_in) on the
-// scenes' own paths; 1 % leaves 1.0 % and 1.0 %, and a snap takes some ten ticks (2026-11-23). The laws of friction
+// motion: what a slip or a snap makes of the force in one. 8 % left steps of 4.7 % (slips) to 8.8 % (snap_in_paper) on
+// the scenes' own paths; 1 % leaves 1.0 % and 1.0 %, and a snap takes some ten ticks (2026-11-23). The laws of friction
 // that give energy back keep kToolStepShare.
 inline constexpr Real kCalmStepShare = 0.01;
 // A fast hand's tool may go by itself as far as this share of the hand's way, up to kToolStepShare: with 1 % alone a
-// tool pushed at 0.5 m/s through the thin clip of snap_in lay up to 2 mm in it without contact, with a tenth 0.5 mm
-// (scenes.PushedThrough); with 0.4 the force alternated once in three scenes' pushes (2026-11-23).
+// tool pushed at 0.5 m/s through the thin clip of snap_in_paper lay up to 2 mm in it without contact, with a tenth 0.5
+// mm (scenes.PushedThrough); with 0.4 the force alternated once in three scenes' pushes (2026-11-23).
 inline constexpr Real kFollowShare = 0.25;
 
 // The same as `tool_w`, or as far from where the last tick left the tool as it may go in one: by the handle's own

@@ -29,7 +29,7 @@ budget_of() {
   echo "$budget"
 }
 # The scenes in which a path reaches states that the scripted hand does not: a tube seated in its clip, a block tugged at.
-path_scenes='snap_in pinch_block pinch_block_nodal'
+path_scenes='snap_in snap_in_paper pinch_block pinch_block_nodal'
 # Every tool on the softest and the stiffest material in the two tool scenes, but for the layer of rubber, on which every
 # tool takes 700 to 3,500 instructions less than on the layer of liver (seven of seven, 2026-11-25), and two thirds of a
 # minute together. 21,166 that day: the account of energy costs about 1,200 of it, the smoothed encoder 1,000.

@@ -390,7 +390,7 @@ TEST_F(FeelScene, RefusesWhatItDoesNotKnow) {
 // The clip snaps over its tube, and a slip drops from the static to the sliding limit: both were one step of 9 and 5 %.
 // The tool's own step is 1 %; what is left to the hand's motion and the encoder is as much again.
 TEST(FeelPath, ASnapAndASlipAreNoStep) {
-  for (const char* name : {"snap_in", "ellipsoid_mallet_springs"}) {
+  for (const char* name : {"snap_in", "snap_in_paper", "ellipsoid_mallet_springs"}) {
     const SceneModel compiled(std::string(PALPATE_SOURCE_DIR "/config/scenes/") + name + ".toml");
     const TouchPlace place = touch_place_of(compiled.model(), *compiled.scene());
     const FeelFigures path = run_feel(compiled.model(), *compiled.scene(), place, Manoeuvre::kPath, {}, {}).figures;

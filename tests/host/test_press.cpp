@@ -197,7 +197,7 @@ TEST(Press, HandSpringSettlesInEquilibrium) {
 // A tube slides between the arms of a clip, with friction along its axis and across. Held by a hand's spring it must
 // neither swing from one sense of sliding to the other nor be thrown into the clip.
 TEST(Press, HandOnANodalBodyIsSteadyAndInEquilibrium) {
-  const SceneModel scene(scene_path("snap_in"));
+  const SceneModel scene(scene_path("snap_in_paper"));
   auto poses = scripted_poses(scene.scene()->path, scene.model().params.period_s);
   poses.resize(2300);  // pressing in, before the clip snaps
   const double hand_N_per_m = scene.scene()->path.hand_stiffness_N_per_m;

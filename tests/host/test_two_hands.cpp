@@ -22,7 +22,7 @@ constexpr Vec3 kGrip_m{0, -0.012, 0};
 constexpr double kUp_m = 0.006;  // of the 14.5 mm the clip's hand does, upwards
 
 SceneDesc snap_between() {
-  SceneDesc scene = load_scene(PALPATE_SOURCE_DIR "/config/scenes/snap_in.toml");
+  SceneDesc scene = load_scene(PALPATE_SOURCE_DIR "/config/scenes/snap_in_paper.toml");
   scene.device.holds = HeldPart::kBoth;
   scene.device.grip_m = kGrip_m;
   scene.device.coupling_N_per_m = 4500;  // two of these devices admit 5,000 between them

@@ -256,12 +256,12 @@ TEST_F(ExitCodeOf, AClampedRunFailsAndMayBeAllowed) {
   EXPECT_EQ((*this)(run("--allow clamped=100")), kExitOk) << text_;
 }
 
-// One sweep is too few for 51 % of the poses of snap_in's path (2026-11-22); pivoting solves them all.
+// One sweep is too few for 51 % of the poses of snap_in_paper's path (2026-11-22); pivoting solves them all.
 TEST_F(ExitCodeOf, APressThatDoesNotConvergeFails) {
   const std::string sweep = (folder_ / "one_sweep.toml").string();
   std::ofstream(sweep) << "[contact.nodal]\nsolver = \"gauss_seidel\"\nsweeps = 1\n";
   const std::string press = std::string("press ") + PALPATE_SOURCE_DIR +
-                            "/config/scenes/snap_in.toml --path demo --out " + (folder_ / "forces.csv").string();
+                            "/config/scenes/snap_in_paper.toml --path demo --out " + (folder_ / "forces.csv").string();
   EXPECT_EQ((*this)(press), kExitOk) << text_;
   EXPECT_EQ((*this)(press + " --with " + sweep), kExitFailed) << text_;
   EXPECT_THAT(text_, testing::HasSubstr("verdict FAIL unconverged"));

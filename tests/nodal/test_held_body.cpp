@@ -14,8 +14,8 @@ namespace {
 
 constexpr Vec3 kGrip_m{0.002, -0.012, 0.004};
 
-SceneDesc snap_in(HeldPart holds) {
-  SceneDesc scene = load_scene(PALPATE_SOURCE_DIR "/config/scenes/snap_in.toml");
+SceneDesc clip_scene(HeldPart holds) {
+  SceneDesc scene = load_scene(PALPATE_SOURCE_DIR "/config/scenes/snap_in_paper.toml");
   scene.device.holds = holds;
   if (holds != HeldPart::kTool) scene.device.grip_m = kGrip_m;
   scene.device.local_Hz = 5000;         // so that the stiffness felt is told too
@@ -25,7 +25,7 @@ SceneDesc snap_in(HeldPart holds) {
 
 // Hands at the devices, armed in the free.
 struct Hands {
-  explicit Hands(HeldPart holds) : scene(snap_in(holds)) { reset(*state); }
+  explicit Hands(HeldPart holds) : scene(clip_scene(holds)) { reset(*state); }
   const Output& at(const Pose& tool, const Pose& second_w = {}) {
     Input input;
     input.pose_w = handle_for(scene.model(), tool, second_w);

@@ -52,7 +52,7 @@ class Clip {
     o.poisson = 0;
     o.carry = carry;
     o.mu = mu;
-    o.coupling_N_per_m = 5000;  // as snap_in
+    o.coupling_N_per_m = 5000;  // as snap_in_paper
     return o;
   }
   TetMesh mesh_;
@@ -98,7 +98,7 @@ TEST(Snap, FollowsTheReferenceOnThreeMeshes) {
 // The scene as it is shipped, but for its friction, which the reference does not have; and without finite rotation.
 TEST(Snap, TheShippedSceneFollowsTheReference) {
   for (const bool shipped : {false, true}) {
-    BakedScene scene(load_scene(PALPATE_SOURCE_DIR "/config/scenes/snap_in.toml"));
+    BakedScene scene(load_scene(PALPATE_SOURCE_DIR "/config/scenes/snap_in_paper.toml"));
     scene.model().params.friction_law = FrictionLaw::kNone;
     if (!shipped) scene.model().params.nodal_carry = NodalCarry::kFarField;
     Bench bench(scene.model());
@@ -154,7 +154,7 @@ TEST(Snap, FrictionlessInsertionReturnsItsWork) {
 // tick's friction counted as sliding: 0.15 N for a tick with mu = 0.2, 2.3 N in every other tick with 0.4.
 TEST(Snap, SlidesWithoutSticking) {
   for (const double mu : {0.2, 0.4}) {
-    BakedScene scene(load_scene(PALPATE_SOURCE_DIR "/config/scenes/snap_in.toml"));
+    BakedScene scene(load_scene(PALPATE_SOURCE_DIR "/config/scenes/snap_in_paper.toml"));
     scene.model().params.friction_mu_dynamic = mu;
     Bench bench(scene.model());
     double last = 0, largest = 0;

@@ -163,22 +163,22 @@ a=$("$palpate" bake tools_on_cylinder.toml --with laws/mahvash_hayward_2002.toml
 stated "20 numbers a vertex" "%s" "$a"
 
 echo "== Duriez, Andriot & Kheddar 2003"
-press snap_in --out "$out/2003_snap.csv" --plot "$out/2003_snap.svg" --png "$out/2003_snap.png"
+press snap_in_paper --out "$out/2003_snap.csv" --plot "$out/2003_snap.svg" --png "$out/2003_snap.png"
 low=$(column "$out/2003_snap.csv" fy_N | sort -g | head -1) high=$(largest "$out/2003_snap.csv" fy_N)
 claim "the snap: pushes with up to $high N, then pulls with up to $low N" "$high > 2 && $low < -2"
 stated "Figs. 5, 6: the snap" "%.2f N, then %.2f N" "$high" "$low"
 # Drawn at the largest force of the path, which is one place.
 for y in 13 11 6 0; do
   awk -v y="$y" 'BEGIN { print "x_mm,y_mm,z_mm"; for (i = 0; i < 100; i++) printf "0,%g,0\n", y }' >"$out/2003_frame_path.csv"
-  press snap_in --path "$out/2003_frame_path.csv" --out "$out/2003_fig5_$y.csv" --png "$out/2003_fig5_$y.png"
+  press snap_in_paper --path "$out/2003_frame_path.csv" --out "$out/2003_fig5_$y.csv" --png "$out/2003_fig5_$y.png"
 done
 arms() { tail -1 "$out/2003_fig5_$1.csv" | cut -d, -f21; }
 a=$(arms 13) b=$(arms 11) c=$(arms 6)
 claim "Fig. 5: two arms touch the tube as they open and close: $a, $b, $c regions" "$a == 2 && $b == 2 && $c == 2"
 # Between its flats the prism is 2 % slimmer than the tube and spreads the arms by 7 % less: 0.86 of the energy, or more.
 awk 'BEGIN { print "x_mm,y_mm,z_mm"; for (i = 0; i <= 2800; i++) printf "0,%g,0\n", 14.5 - 0.005 * i; }' >"$out/2003_in_path.csv"
-press snap_in --with tubes/prism_16.toml --set friction.law=none --path "$out/2003_in_path.csv" --out "$out/2003_prism.csv"
-press snap_in --set friction.law=none --path "$out/2003_in_path.csv" --out "$out/2003_tube.csv"
+press snap_in_paper --with tubes/prism_16.toml --set friction.law=none --path "$out/2003_in_path.csv" --out "$out/2003_prism.csv"
+press snap_in_paper --set friction.law=none --path "$out/2003_in_path.csv" --out "$out/2003_tube.csv"
 far=$(largest "$out/2003_tube.csv" residual_m)
 claim "Fig. 1: no node inside the tool, none pushed that does not touch, to $far m" "$far < 1e-7"
 a=$(largest "$out/2003_prism.csv" energy_J) b=$(largest "$out/2003_tube.csv" energy_J)

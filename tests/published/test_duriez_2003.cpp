@@ -181,7 +181,8 @@ TEST(Duriez2003, PushByItsXComponentWhereItIsDefined) {
 // Why no scene can choose the printed form: on the clip of section 5 it would pull one arm. Its normals point to both
 // sides, across the tube, and along the way in they turn round; no axis has a > 0 for all pushes of the snap.
 TEST(Duriez2003, OnTheClipThePrintedFormPullsAnArm) {
-  const SceneModel scene(std::string(PALPATE_SOURCE_DIR) + "/config/scenes/snap_in.toml", {{}, {"friction.law=none"}});
+  const SceneModel scene(std::string(PALPATE_SOURCE_DIR) + "/config/scenes/snap_in_paper.toml",
+                         {{}, {"friction.law=none"}});
   std::vector<TimedPose> poses;
   for (int i = 0; i <= 280; ++i) poses.push_back({1e-3 * i, {{0, 14.5e-3 - 5e-5 * i, 0}, {}}, {}});
   int pushes = 0, positive[3] = {};

@@ -23,8 +23,9 @@ namespace palpate::test {
 namespace {
 
 constexpr int kTicks = 100000;
-constexpr const char* kScenes[] = {"ellipsoid_mallet",  "heart_compass",    "tools_on_cylinder", "snap_in",
-                                   "pinch_block_nodal", "grasp_cylinder_5", "hollow_cylinder",   "ring_two_tools"};
+constexpr const char* kScenes[] = {"ellipsoid_mallet", "heart_compass",   "tools_on_cylinder",
+                                   "snap_in",          "snap_in_paper",   "pinch_block_nodal",
+                                   "grasp_cylinder_5", "hollow_cylinder", "ring_two_tools"};
 
 std::string image_path(const std::string& scene) {
   if (scene == "ring_two_tools") return PALPATE_TWO_TOOLS_IMAGE;

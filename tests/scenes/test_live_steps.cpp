@@ -64,7 +64,7 @@ TEST_P(LiveSteps, StayBelowOnePercentOfTheLargestForce) {
       worst_N = std::max(worst_N, norm(output.device_w.force_N - before_N));
     }
     std::printf("  %-18s %.4f N, %.2f %%\n", wish.what, worst_N, 100 * worst_N / model.params.force_max_N);
-    // Measured 2026-11-25: 0.45 % at most, 0.96 % where snap_in's clip slips off as the coupling softens.
+    // Measured 2026-11-25: 0.45 % at most, 0.96 % where snap_in_paper's clip slips off as the coupling softens.
     EXPECT_LT(worst_N, wish.lets_go ? calm_N : most_N) << wish.what;
     EXPECT_EQ(output.fault, 0u);
     EXPECT_EQ(state->live.moves, 0) << "it has arrived";

@@ -67,7 +67,7 @@ TEST_P(EveryScene, DoesNotBuzzInTheHand) {
   std::printf("  longest run of turns: %d ticks; in contact for %d\n", longest, touching);
   EXPECT_GT(touching, 1000);
   EXPECT_LT(longest, 4);
-  if (GetParam() == "snap_in") {
+  if (GetParam() == "snap_in_paper") {
     // The clip keeps the tube: it takes 12.5 N to pull it out, and the hand pulls with 8.1 on the mean. Its handle has
     // no friction, as what observes it between the encoder's steps asks for (150 mN in this scene; without, it swings
     // by 0.3 N either way), so that for the force to come to rest it is held where it is.

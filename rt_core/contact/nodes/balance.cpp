@@ -75,8 +75,8 @@ class Balance {
 
   // A contact that slipped is remembered without its bend (remember() in nodes.cpp), which follows the last tick's
   // forces: with the bend of then, the change of the bend would count as sliding to and fro. It did until 2026-11-23:
-  // whole rows stuck and slipped in turn, and snap_in lost 0.43 N for a tick at 8.17 mm, 2.3 N in every other tick with
-  // mu = 0.4.
+  // whole rows stuck and slipped in turn, and snap_in_paper lost 0.43 N for a tick at 8.17 mm, 2.3 N in every other
+  // tick with mu = 0.4.
   void bend_anchor(const ContactNode& node, NodalContact& was) const PALPATE_RT {
     const Pose carrier = carrier_previous_at(model_, state_, before_, node.piece);
     was.anchor_tool_m += rotate(conjugate(carrier.orientation), node.bend_w);

@@ -90,7 +90,7 @@ Canvas transition() {
 
 Sheet duriez_2003(const std::string& folder) {
   Sheet sheet(3);
-  const SceneModel snap = shipped("snap_in");
+  const SceneModel snap = shipped("snap_in_paper");
   const struct {
     double height_mm;
     const char* words;
