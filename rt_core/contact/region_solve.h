@@ -26,6 +26,7 @@ struct RegionSolution {
   Real residual_m = 0;    // largest |shift_r - dW/dF_r|
   bool singular = false;  // a linear system could not be factorised; the last good shift is kept
   std::int32_t steps = 0, evaluations = 0;
+  bool foreseen = false;  // the forces are those that the laws' tangents tell after the last step
 };
 
 // Laws: the local laws of n regions and the potential W(F) of what couples them.
@@ -36,6 +37,9 @@ struct RegionSolution {
 //   shift_under(force, r)        dW/dF_r
 //   curvature(force, i, j)       d2W/dF_i dF_j
 // or, of many regions at once, instead of all but the constants: start(), evaluate() and newton_step() themselves.
+//   foresees(system, most)       if any: takes a step if it is so short, `most` of the depths, that the tangents of the
+//                                laws tell the forces after it; kForeseen, kKnown: such shares; kOffTangents: what of
+//                                the residual is left after it; kKnown_m: enough of that
 namespace region_solve {
 
 template <class Laws>
@@ -107,13 +111,27 @@ bool newton_step(const Laws& laws, std::int32_t, RegionSystem& s) PALPATE_RT req
   return laws.newton_step(s);
 }
 
+// Whether a step has been taken by the laws' tangents, after which nothing is to be looked at again.
+template <class Laws>
+bool foresees(const Laws& laws, RegionSystem& s, bool roughly, RegionSolution& result) PALPATE_RT {
+  if constexpr (requires { laws.foresees(s, 0.0); }) {
+    const Real left_m = Laws::kOffTangents * result.residual_m;
+    if (!(roughly || left_m <= Laws::kKnown_m)) return false;
+    if (!laws.foresees(s, roughly ? Laws::kForeseen : Laws::kKnown)) return false;
+    result.residual_m = left_m;
+    result.foreseen = true;
+    return true;
+  }
+  return false;
+}
+
 }  // namespace region_solve
 
-// Goes on with a solution until no more than enough_m is left, or after a step as little as the laws have for it.
-// Bound: Laws::kIterations steps.
+// Goes on with a solution until no more than enough_m is left, or after a step as little as the laws have for it, or a
+// step is foreseen: `roughly`, a longer one. Bound: Laws::kIterations steps.
 template <class Laws>
-void refine_regions(const Laws& laws, std::int32_t n, RegionSystem& system, Real enough_m,
-                    RegionSolution& result) PALPATE_RT {
+void refine_regions(const Laws& laws, std::int32_t n, RegionSystem& system, Real enough_m, RegionSolution& result,
+                    bool roughly = false) PALPATE_RT {
   constexpr Real stepped_m = region_solve::enough_stepped_m<Laws>();
   for (std::int32_t k = 0; k < Laws::kIterations; ++k) {  // bound: Laws::kIterations
     if (result.residual_m <= (result.steps > 0 ? max_of(enough_m, stepped_m) : enough_m)) break;
@@ -122,6 +140,7 @@ void refine_regions(const Laws& laws, std::int32_t n, RegionSystem& system, Real
       result.singular = true;
       break;
     }
+    if (region_solve::foresees(laws, system, roughly, result)) break;
     const Real before = result.residual_m;
     Real share = 1.0;
     for (std::int32_t h = 0; h <= kStepHalvings; ++h) {  // bound: kStepHalvings
@@ -143,13 +162,13 @@ void refine_regions(const Laws& laws, std::int32_t n, RegionSystem& system, Real
 // tests/force/test_coupled_regions.cpp. Leaves shift_m and force_N in `system`. Bound: Laws::kIterations steps of
 // regions^3/6 multiply-adds and kStepHalvings + 1 evaluations.
 template <class Laws>
-RegionSolution solve_regions(const Laws& laws, std::int32_t n, RegionSystem& system,
-                             Real enough_m = Laws::kEnough_m) PALPATE_RT {
+RegionSolution solve_regions(const Laws& laws, std::int32_t n, RegionSystem& system, Real enough_m = Laws::kEnough_m,
+                             bool roughly = false) PALPATE_RT {
   RegionSolution result;
   region_solve::start(laws, n, system);
   result.residual_m = region_solve::evaluate(laws, n, system.shift_m, system);
   result.evaluations = 1;
-  refine_regions(laws, n, system, enough_m, result);
+  refine_regions(laws, n, system, enough_m, result, roughly);
   return result;
 }
 

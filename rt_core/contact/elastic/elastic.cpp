@@ -26,7 +26,8 @@ constexpr Real kElasticTolerance_m = 2e-5;
 // body would go, the answer was one tick late, and ring and tube let a resting hand buzz for 35 ticks (2026-11-22).
 constexpr std::int32_t kSolvesOfFriction = 2;
 // How exactly the first tells who slips: a thousandth or less of what friction's spring is stretched by where it does.
-constexpr Real kEnoughToSlip_m = 1e-7;
+// Of lines the tangents' forces after a short step do, too: a thousandth of the force.
+constexpr Real kEnoughToSlip_m = 1e-9;
 
 // What the places ask of the modes, in tip laws evaluated: two of them, and sums over numbers and modes.
 constexpr std::int32_t kPlaceLaws = 5;
@@ -40,12 +41,12 @@ std::int32_t laws_in(const ElasticLoad& load, std::int32_t tips) PALPATE_RT {
   return sum;
 }
 
-// Shifts and forces of the regions, to `enough_m` where there are several.
-RegionSolution solve_forces(const ElasticLoad& load, std::int32_t laws, Scratch& scratch, Real enough_m,
+// Shifts and forces of the regions; of several, where another solve may follow, as exactly as to tell who slips.
+RegionSolution solve_forces(const ElasticLoad& load, std::int32_t laws, Scratch& scratch, bool is_last,
                             Real* force_N) PALPATE_RT {
   RegionSolution result;
   if (load.n > 1) {
-    result = solve_regions(load, load.n, scratch.system, enough_m);
+    result = solve_regions(load, load.n, scratch.system, is_last ? ElasticLoad::kEnough_m : kEnoughToSlip_m, !is_last);
   } else {
     const TravelResult alone = solve_travel(load.region[0], load.shift_alone_m(0));
     scratch.work.tip_laws += alone.evaluations * laws;
@@ -61,7 +62,14 @@ RegionSolution solve_forces(const ElasticLoad& load, std::int32_t laws, Scratch&
 
 // And to the end, where the first solve is the last.
 void finish_forces(const ElasticLoad& load, Scratch& scratch, RegionSolution& result, Real* force_N) PALPATE_RT {
-  if (load.n > 1) refine_regions(load, load.n, scratch.system, ElasticLoad::kEnough_m, result);
+  if (load.n > 1) {
+    if (result.foreseen) {
+      result.foreseen = false;
+      result.residual_m = load.evaluate(scratch.system.shift_m, scratch.system);
+      result.evaluations += 1;
+    }
+    refine_regions(load, load.n, scratch.system, ElasticLoad::kEnough_m, result);
+  }
   for (std::int32_t r = 0; r < load.n; ++r) force_N[r] = scratch.system.force_N[r];  // bound: kMaxRegions
 }
 
@@ -91,8 +99,9 @@ template <class Count>
 void solve_pressed(const Model& model, State& state, Scratch& scratch, Count soft) PALPATE_RT {
   const std::int32_t regions = scratch.rows.regions;
   ElasticLoad load;
-  Real own_bend_m_per_N[kMaxRegions];
+  Real own_bend_m_per_N[kMaxRegions], change_N[kMaxRegions];
   load.own_bend_m_per_N = own_bend_m_per_N;
+  load.change_N = change_N;
   Linearised<Count> body(model, state, scratch, load, soft);
   Real before_N[kMaxRegions];
   for (std::int32_t r = 0; r < regions; ++r) before_N[r] = state.region[scratch.rows.slot[r]].normal_force_N;
@@ -103,14 +112,14 @@ void solve_pressed(const Model& model, State& state, Scratch& scratch, Count sof
   for (std::int32_t i = 0; i < kSolvesOfFriction; ++i) {  // bound: kSolvesOfFriction
     body.let_give(i == 0 ? before_N : force_N);
     const bool is_last = i + 1 == kSolvesOfFriction;
-    RegionSolution result =
-        solve_forces(load, laws, scratch, is_last ? ElasticLoad::kEnough_m : kEnoughToSlip_m, force_N);
+    RegionSolution result = solve_forces(load, laws, scratch, is_last, force_N);
     scratch.work.linearised += regions;
     scratch.work.linked += regions * (regions + 1) / 2 * (model.params.elastic_linear + model.params.elastic_soft);
     const bool goes_on = !is_last && body.slips(force_N);
     if (!goes_on && !is_last) finish_forces(load, scratch, result, force_N);
     judge_solution(load, laws, result, !goes_on, scratch);
     if (!goes_on) break;
+    load.go_on_from(scratch.system.shift_m);
   }
   const Real left_m = body.step(force_N);
   scratch.work.soft_pairs_again += soft_work(pairs(model.params.elastic_soft)) / 2;

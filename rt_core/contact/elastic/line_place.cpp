@@ -58,6 +58,13 @@ Real dent_m(const LineLaw::Point& told, Real depth_m, Real force_N) PALPATE_RT {
   return depth_m * (ratio + share * (root - ratio));
 }
 
+// The same a Newton step nearer, for the solver to begin with: 5 % off it took a law more.
+Real nearer_dent_m(const LineLaw& law, Real dent_m, Real force_N) PALPATE_RT {
+  const LineLaw::Point& there = law.at(law.touches_at_m() + dent_m);
+  const Real by = (force_N - there.force_N) / (there.tangent_N_per_m * dent_m);
+  return abs_of(by) < 1 ? dent_m * (1 + by) : dent_m;
+}
+
 }  // namespace
 
 Real stand_on_line(const Model& model, const Box& box, Real bend_1_per_m, Real force_N, ElasticRow& row) PALPATE_RT {
@@ -82,6 +89,7 @@ Real stand_on_line(const Model& model, const Box& box, Real bend_1_per_m, Real f
   const bool had = force_N > 0 && row.told.force_N > 0;
   row.dent_m = had ? dent_m(row.told, told_m, force_N) : 0.0;
   const Real deep = max_of(had ? row.dent_m : row.travel_m - law.touches_at_m(), kLeastDepth * radius);
+  if (had && row.tip.is_of_part) row.dent_m = nearer_dent_m(law, row.dent_m, force_N);
   const LineLaw::Lean stands = law.lean_at(law.touches_at_m() + deep);
   row.arm_m = stands.arm_m * min_of(deep / (kLeastArmDepth * radius), 1.0);
   Real way_m = stands.to_pressure_m;

@@ -61,6 +61,7 @@ void place_line(const TipLaw& law, const ElasticRow& row, PlacedLaw& out) PALPAT
   out.line = LineLaw(shape, row.tip.modulus_Pa * row.modulus, law.depth_max_m);
   out.scale = row.modulus;
   add_line_terms(law, row, out);
+  if (abs_of(out.terms.between_N_per_m25) > 0 || abs_of(out.terms.third_N_per_m3) > 0) out.line.tell_root();
 }
 
 }  // namespace

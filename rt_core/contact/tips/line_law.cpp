@@ -78,15 +78,11 @@ LineLaw::Spans LineLaw::spans_at(Real e) const PALPATE_RT {
   s.to = Double4{max_of(far[0], near[0]), max_of(far[1], near[1]), max_of(right, left), left};
   s.depth = Double4{at_end[0], at_end[1], here, 0};
   const Double4 half = 0.5 * (s.to - s.from), middle = 0.5 * (s.to + s.from);
-  Double4 first{}, square{};
-  const auto add = [&](Real share, const Double4&, const Double4& d) PALPATE_RT {
-    const Double4 w = share * d;
-    first += w;
-    square += w * d;
-  };
-  at_gauss_places(half, middle, s.depth, rises_, falls_, add);
-  s.first = sum(half * first);
-  s.square = sum(half * square);
+  // From the middle of a span the depth is d0 + d1 x + d2 x^2, x from -1 to 1.
+  const Double4 bent = falls_ * middle, d0 = s.depth + middle * (rises_ + bent), d1 = half * (rises_ + 2 * bent);
+  const Double4 d2 = half * half * falls_;
+  s.first = sum(half * (2 * d0 + (2.0 / 3) * d2));
+  s.square = sum(half * (2 * d0 * d0 + (2.0 / 3) * (d1 * d1 + 2 * d0 * d2) + 0.4 * d2 * d2));
   s.length = 2 * sum(half);
   const Double4 inverse = 1.0 / at_least(root, kLeast);
   const bool straight = s.to[2] > s.from[2];
@@ -142,7 +138,7 @@ void LineLaw::keep(Real e_m) const PALPATE_RT {
   const Real unit = modulus_Pa_ * radius_m_, force = l.energy * by, tangent = l.energy * (by * by + by2);
   out.tangent_N_per_m = unit * tangent;
   out.force_N = unit * radius_m_ * (force + tangent * beyond);
-  out.root_force = math::cbrt(out.force_N);
+  if (needs_root_) out.root_force = math::cbrt(out.force_N);
   out.energy_J = unit * radius_m_ * radius_m_ * (l.energy + beyond * (force + 0.5 * tangent * beyond));
 }
 

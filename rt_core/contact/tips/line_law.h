@@ -20,6 +20,8 @@ namespace palpate {
 // (1 + k R) of it, so that one that leans far is the ball at its end, wherever it stands.
 class LineLaw {
  public:
+  // Of how deep it is: so near to a depth its tangent there tells the force within 1e-10 of it.
+  static constexpr Real kNear = 1e-5;
   struct Shape {
     Real radius_m, left_m, right_m;      // straight so far on either side of where the tip stands
     Real left_end, right_end;            // c
@@ -44,7 +46,19 @@ class LineLaw {
     if (!(e_m == kept_at_m_)) keep(e_m);
     return kept_;
   }
+  // The same, but kNear to the last by its tangent: what a last step of Newton's asks.
+  Point near(Real e_m) const PALPATE_RT {
+    if (!is_near(e_m)) return at(e_m);
+    const Real more = e_m - kept_at_m_;
+    const Point& p = kept_;
+    return {p.force_N + more * p.tangent_N_per_m, p.tangent_N_per_m,
+            p.energy_J + more * (p.force_N + 0.5 * more * p.tangent_N_per_m),
+            p.root_force * (1.0 + more * p.tangent_N_per_m / (3.0 * p.force_N))};
+  }
   Lean lean_at(Real e_m) const PALPATE_RT;
+  Lean lean_near(Real e_m) const PALPATE_RT { return lean_at(is_near(e_m) ? kept_at_m_ : e_m); }
+  // Has Point::root_force, which is 0 otherwise.
+  void tell_root() PALPATE_RT { needs_root_ = true; }
   // e at which the deepest place of the line touches.
   Real touches_at_m() const PALPATE_RT { return radius_m_ * touches_at_; }
 
@@ -61,6 +75,9 @@ class LineLaw {
     Real falls, bends;  // -d ln C / d ln L, and its slope
     Real circle, left;  // X, 1 / (1 - X)
   };
+  bool is_near(Real e_m) const PALPATE_RT {
+    return abs_of(e_m - kept_at_m_) <= kNear * (kept_at_m_ - touches_at_m()) && kept_.force_N > 0;
+  }
   void keep(Real e_m) const PALPATE_RT;
   bool measure(Real e) const PALPATE_RT;  // false: nothing touches
   Spans spans_at(Real e) const PALPATE_RT;
@@ -72,6 +89,7 @@ class LineLaw {
   Real lowered_, touches_at_;
   Double4 beyond_, slope_, bend_, inverse_bend_;
   Double4 rises_, falls_;  // of the depth along a cap and the straight part: slope and half of the bend
+  bool needs_root_ = false;
   mutable Real kept_at_m_, measured_at_;
   mutable Point kept_;
   mutable Spans spans_;

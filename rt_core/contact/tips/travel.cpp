@@ -25,7 +25,7 @@ Real h_of(const TipCoupling& coupling, std::int32_t i, std::int32_t j, std::int3
 
 // Slopes of line_energies in the line's force; its stiffness' slope is that of a power of the depth.
 LawPoint line_at(const Tip& tip, Real e_m) PALPATE_RT {
-  const LineLaw::Point& line = tip.line->at(e_m);
+  const LineLaw::Point line = tip.line->near(e_m);
   const PlaceTerms& add = *tip.place;
   const Real f = line.force_N, k = line.tangent_N_per_m, root = line.root_force, depth = e_m - tip.line->touches_at_m();
   if (!(f > 0 && depth > 0)) return {};
@@ -38,7 +38,7 @@ LawPoint line_at(const Tip& tip, Real e_m) PALPATE_RT {
 }  // namespace
 
 PlaceEnergies line_energies(const LineLaw& line, Real e_m) PALPATE_RT {
-  const LineLaw::Point& at = line.at(e_m);
+  const LineLaw::Point at = line.near(e_m);
   const Real root = at.root_force, square = at.force_N * at.force_N;
   return {{0.5 * square, square * root, square * root * root, 0}};
 }
@@ -52,7 +52,7 @@ LawPoint tip_at(const Tip& tip, Real e_m) PALPATE_RT {
 }
 
 Real tip_energy_J(const Tip& tip, Real e_m) PALPATE_RT {
-  if (tip.kind == TipKind::kLine) return tip.line->at(e_m).energy_J + line_energies(*tip.line, e_m).J(*tip.place);
+  if (tip.kind == TipKind::kLine) return tip.line->near(e_m).energy_J + line_energies(*tip.line, e_m).J(*tip.place);
   if (tip.kind != TipKind::kTable) {
     const Real energy = tip.scale * local_energy_J(tip.local, e_m);
     return tip.place == nullptr ? energy : energy + place_energy_J(*tip.place, tip.local.tip->depth_max_m, e_m);

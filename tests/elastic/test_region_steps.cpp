@@ -1,0 +1,105 @@
+// Steps of the region solver that know how laws bend: two lines in one body against bisection, and how soon they end.
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include "rt_core/contact/elastic/elastic_load.h"
+#include "rt_core/contact/region_solve.h"
+
+namespace palpate {
+namespace {
+
+constexpr double kRadius_m = 0.01, kModulus_Pa = 2e9, kMostDeep_m = 2e-5;
+// What a clip's arm gives under a tube that slips on it, and under the other arm's newton.
+constexpr double kOwn_m_per_N = 1.4e-4, kOther_m_per_N = -4e-5;
+
+// Two tubes' sides, of which the second leans, and with `apart` a third that is a millimetre off.
+struct Sides {
+  ElasticLoad load;
+  std::array<ElasticRow, 3> row{};
+  std::array<Real, kMaxRegions> before{}, bend{}, change{};
+  RegionSystem system{};
+
+  Sides(double depth_m, double other_m, double before_N, bool apart) {
+    load.n = apart ? 3 : 2;
+    load.region = load.tips_of;
+    load.before_N = before.data();
+    load.own_bend_m_per_N = bend.data();
+    load.change_N = change.data();
+    load.pair = {};
+    load.pair.c_m_per_N[0][1] = load.pair.c_m_per_N[1][0] = kOther_m_per_N;
+    const std::array<double, 3> depth = {depth_m, other_m, -1e-3};
+    for (std::int32_t r = 0; r < load.n; ++r) {
+      const auto i = static_cast<std::size_t>(r);
+      load.law[r] = PlacedLaw{};
+      load.law[r].is_line = true;
+      load.law[r].line =
+          LineLaw({kRadius_m, 0.03, 0.03, 1, 1, r == 1 ? 1e-5 : 0.0, 0, 0, true}, kModulus_Pa, kMostDeep_m);
+      row[i].told = load.law[r].line.at(kTold * kMostDeep_m + load.law[r].line.touches_at_m());
+      load.placed[r] = &row[i];
+      load.tip[r] = Tip{};
+      load.tip[r].place = &load.law[r].terms;
+      load.tip[r].become(load.law[r].line);
+      load.tip[r].depth_m = depth[i];
+      load.own[r] = {kOwn_m_per_N, 0, kHuge};
+      load.tips_of[r] = {&load.tip[r], 1, load.own[r]};
+      before[i] = r < 2 ? before_N : 0.0;
+    }
+  }
+  RegionSolution solve() { return solve_regions(load, load.n, system); }
+  double law_N(std::int32_t r, double e_m) const { return load.law[r].line.at(e_m).force_N; }
+
+  // The force of one under the other's: e + c F + c' F' = depth.
+  double under_N(std::int32_t r, double other_N) const {
+    double low = load.law[r].line.touches_at_m(), high = load.tip[r].depth_m - kOther_m_per_N * other_N;
+    if (!(high > low)) return 0;
+    const double room = high;
+    for (int i = 0; i < 200; ++i) {
+      const double e = 0.5 * (low + high);
+      (e + kOwn_m_per_N * law_N(r, e) > room ? high : low) = e;
+    }
+    return law_N(r, low);
+  }
+  // Each pushes the other out: the more one has, the more has the other, by a seventh.
+  std::array<double, 2> by_bisection() const {
+    double low = 0, high = 100;
+    for (int i = 0; i < 200; ++i) {
+      const double f = 0.5 * (low + high);
+      (under_N(0, under_N(1, f)) > f ? low : high) = f;
+    }
+    return {low, under_N(1, low)};
+  }
+};
+
+// From a touch that begins, and from forces far from the answer: 3 to 6 looks at the laws; Newton's own steps, halved
+// where they went too far, took 6 to 29 (2026-11-26).
+TEST(RegionSteps, FindTheForcesInAFewSteps) {
+  for (const double depth : {1e-7, 1e-6, 1e-5, 1e-4, 1e-3}) {
+    for (const double part : {0.0, 0.01, 0.5, 1.0, 3.0}) {
+      Sides sides(depth, 0.8 * depth, 0, false);
+      const std::array<double, 2> asked = sides.by_bisection();
+      Sides begun(depth, 0.8 * depth, part * asked[0], false);
+      const RegionSolution found = begun.solve();
+      EXPECT_LE(found.residual_m, kTravelTolerance_m) << depth << " " << part;
+      EXPECT_LE(found.evaluations, 6) << depth << " " << part;
+      // A step of 1e-5 of the dent by tangents errs by the square of that; a solve ends at a picometre.
+      for (std::size_t r = 0; r < 2; ++r)
+        EXPECT_NEAR(begun.system.force_N[r], asked[r], 1e-7 * asked[r] + 1e-12 / kOwn_m_per_N) << depth << " " << part;
+    }
+  }
+}
+
+// Two regions are written out, three are taken by lanes.
+TEST(RegionSteps, AThirdThatIsApartChangesNothing) {
+  for (const double depth : {1e-6, 1e-4}) {
+    Sides two(depth, 0.7 * depth, 0.1, false), three(depth, 0.7 * depth, 0.1, true);
+    two.solve();
+    three.solve();
+    EXPECT_EQ(three.system.force_N[2], 0);
+    for (int r = 0; r < 2; ++r)
+      EXPECT_NEAR(two.system.force_N[r], three.system.force_N[r], 1e-9 * two.system.force_N[r]) << depth << " " << r;
+  }
+}
+
+}  // namespace
+}  // namespace palpate
