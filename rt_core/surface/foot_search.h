@@ -11,8 +11,13 @@ namespace palpate::foot {
 // An area coordinate this far below zero still counts as on the edge.
 inline constexpr Real kOutside = 1e-9;
 // One this far below zero will not come back in two more steps: the triangle is left at once. A tip that crosses five
-// triangles in a tick took a fifth less (ring, thrown about: 50,500 -> 46,800 instructions, 2026-11-23).
-inline constexpr Real kFarOutside = -0.25;
+// triangles in a tick took a fifth less (ring, thrown about: 50,500 -> 46,800 instructions, 2026-11-23). Nor will one
+// that is outside by so much of the last step's square, of which the next is: a clip's arm that springs back crosses
+// two triangles in four steps instead of eight (2026-11-26).
+inline constexpr Real kFarOutside = -0.25, kOutsideOfSquare = -0.25;
+// A foot this far outside a triangle that it has just come to is passed on without a step. Both where corners are dear:
+// on the body at rest a step is what a tick counts.
+inline constexpr Real kPassed = -0.05;
 // An area coordinate this near to one: at a vertex, on all the triangles that meet there. Where they lie in one plane
 // any of them is as good, and Newton's steps would be sent on round the vertex.
 inline constexpr Real kAtVertex = 1e-6;
@@ -96,16 +101,42 @@ inline int corner_to_turn_about(const Triangle& t, int edge) PALPATE_RT {
   return ring_proof::is_flat_about(t, edge) ? edge : ring_proof::is_flat_about(t, end) ? end : -1;
 }
 
-// Area coordinates on another triangle of the point nearest to `foot` in its plane.
-inline Place place_on(const Corners& k, Vec3 foot, Real t) PALPATE_RT {
-  const Vec3 e1 = k.v[1] - k.v[0], e2 = k.v[2] - k.v[0], d = foot - k.v[0], n = cross(e1, e2);
+// Area coordinates on another triangle of the point nearest to `foot` in its plane. `v`: its corners.
+inline Place place_on(const Vec3* v, Vec3 foot, Real t) PALPATE_RT {
+  const Vec3 e1 = v[1] - v[0], e2 = v[2] - v[0], d = foot - v[0], n = cross(e1, e2);
   const Real square = squared_norm(n);
   if (!(square > 0)) return {1.0 / 3, 1.0 / 3, t};
   return {dot(cross(d, e2), n) / square, dot(cross(e1, d), n) / square, t};
 }
 
-inline Vec3 flat_foot(const Corners& k, const Place& at) PALPATE_RT {
-  return k.v[0] + at.b * (k.v[1] - k.v[0]) + at.c * (k.v[2] - k.v[0]);
+inline Place place_on(const Corners& k, Vec3 foot, Real t) PALPATE_RT { return place_on(k.v, foot, t); }
+
+inline Vec3 flat_foot(const Vec3* v, const Place& at) PALPATE_RT {
+  return v[0] + at.b * (v[1] - v[0]) + at.c * (v[2] - v[0]);
+}
+inline Vec3 flat_foot(const Corners& k, const Place& at) PALPATE_RT { return flat_foot(k.v, at); }
+
+// A triangle's corners on the body at rest.
+struct RestCorners {
+  Vec3 v[3];
+  RestCorners(const Model& model, std::int32_t triangle) PALPATE_RT {
+    const Triangle& t = model.triangle[static_cast<std::size_t>(triangle)];
+    for (int k = 0; k < 3; ++k) v[k] = model.vertex_m[static_cast<std::size_t>(t.vertex[k])];  // bound: 3
+  }
+};
+
+// Over the triangles that a foot is clearly beyond, as flat ones at rest tell, which need neither be carried along nor
+// have normals. `triangle`: the first, then where it ends. Returns the place there.
+inline Place pass(const Model& model, Vec3 rest_foot, Real t, std::int32_t most, std::int32_t& walked,
+                  std::int32_t& triangle) PALPATE_RT {
+  Place at = place_on(RestCorners(model, triangle).v, rest_foot, t);
+  for (; walked < most && least_coordinate(at) < kPassed; ++walked) {  // bound: most
+    const std::int32_t next = across(model, triangle, edge_to_cross(at));
+    if (next < 0) break;
+    triangle = next;
+    at = place_on(RestCorners(model, triangle).v, rest_foot, t);
+  }
+  return at;
 }
 
 // kSags: off the facet by the parabola of smooth_foot(); else on it, and the caller adds what it stands off.
@@ -134,8 +165,9 @@ inline SmoothFoot foot_at(const Corners& k, std::int32_t triangle, const Place& 
 // As smooth_foot(), on the surface whose corners `corners_of(triangle)` gives, from the foot of `near_w`. The last step
 // is at most `still_m`; what is left then is its square over the radius of the surface. At most `most_crossed` edges
 // are crossed, and one fan passed round: `at_rest(corner, off)` takes what is off a corner back to the body at rest.
-// `steps`: counts Newton's. `passed`: adds the spokes of the fan.
-template <bool kSags = true, class CornersOf, class AtRest>
+// `steps`: counts Newton's. `passed`: adds the spokes of the fan. kCarried: its corners are not those at rest, and the
+// foot is on the facet, off which the caller moves it.
+template <bool kCarried, class CornersOf, class AtRest>
 SmoothFoot search(const Model& model, const CornersOf& corners_of, const AtRest& at_rest, Vec3 p, std::int32_t triangle,
                   Vec3 near_w, Real still_m = kStill_m, std::int32_t most_crossed = kFootWalk,
                   std::int32_t* steps = nullptr, std::int32_t* passed = nullptr) PALPATE_RT {
@@ -150,16 +182,18 @@ SmoothFoot search(const Model& model, const CornersOf& corners_of, const AtRest&
     if (steps != nullptr) *steps = i + 1;
     if (!step.usable) return {};
     const Real size = norm(corners.v[1] - corners.v[0]) + norm(corners.v[2] - corners.v[0]);
-    const bool still = size * (abs_of(step.db) + abs_of(step.dc)) + abs_of(step.dt) <= still_m;
+    const Real went = abs_of(step.db) + abs_of(step.dc);
+    const bool still = size * went + abs_of(step.dt) <= still_m;
     at.b += step.db;
     at.c += step.dc;
     at.t += step.dt;
     on_this += 1;
-    const bool outside = least_coordinate(at) < kFarOutside;
+    const Real far = kCarried ? max_of(kFarOutside, kOutsideOfSquare * went * went) : kFarOutside;
+    const bool outside = least_coordinate(at) < far;
     if (!still && !outside && on_this < 3) continue;
     const int edge = edge_to_cross(at);
     if (edge < 0 || is_at_flat_vertex(model.triangle[static_cast<std::size_t>(triangle)], at)) {
-      if (still) return foot_at<kSags>(corners, triangle, at, step);
+      if (still) return foot_at<!kCarried>(corners, triangle, at, step);
       continue;
     }
     std::int32_t next = walked < most_crossed ? across(model, triangle, edge) : -1;
@@ -168,20 +202,21 @@ SmoothFoot search(const Model& model, const CornersOf& corners_of, const AtRest&
       lost.state = walked < most_crossed ? FootState::kEdge : FootState::kFar;
       return lost;
     }
-    const Vec3 foot = flat_foot(corners, at);
+    const Vec3 rest_foot = flat_foot(RestCorners(model, triangle).v, at);
     const Triangle& here = model.triangle[static_cast<std::size_t>(triangle)];
     const int corner = turned ? -1 : corner_to_turn_about(here, edge);
     if (corner >= 0) {
-      const Turn turn = turn_about({model.triangle.data(), model.vertex_m.data()},
-                                   at_rest(corner, foot - corners.v[corner]), triangle, here.vertex[corner]);
+      const Vec3 off = flat_foot(corners, at) - corners.v[corner];
+      const Turn turn = turn_about({model.triangle.data(), model.vertex_m.data()}, at_rest(corner, off), triangle,
+                                   here.vertex[corner]);
       if (turn.triangle >= 0 && turn.triangle != triangle) next = turn.triangle;
       if (passed != nullptr) *passed += turn.passed;
       turned = true;
     }
     triangle = next;
-    corners = corners_of(triangle);
-    at = place_on(corners, foot, at.t);
     walked += 1;
+    at = pass(model, rest_foot, at.t, kCarried ? most_crossed : walked, walked, triangle);
+    corners = corners_of(triangle);
     on_this = 0;
   }
   return {};

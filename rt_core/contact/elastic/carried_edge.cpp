@@ -152,7 +152,7 @@ EdgePlace come_along(const EdgePlace& on, CarriedTriangle& last, ElasticRow& row
 
 void find_carried_foot(Vec3 centre_w, Vec3 near_w, CarriedTriangle& last, ElasticRow& row) PALPATE_RT {
   std::int32_t passed = 0;
-  row.foot = foot::search<false>(
+  row.foot = foot::search<true>(
       last.model,
       [&last](std::int32_t t) PALPATE_RT {
         last.move_to(t);

@@ -58,17 +58,23 @@ struct CarriedTriangle {
 
   void move_to(std::int32_t next) PALPATE_RT {
     if (next == triangle) return;
+    with_mode_count(model.params.elastic_soft, [&](auto soft) PALPATE_RT { carry_on(soft, next); });
+    triangle = next;
+  }
+  template <class Count>
+  void carry_on(Count soft, std::int32_t next) PALPATE_RT {
     const Triangle& t = model.triangle[static_cast<std::size_t>(next)];
-    CarriedVertex old[3] = {vertex[0], vertex[1], vertex[2]};
-    for (int k = 0; k < 3; ++k) {  // bound: 3 x 3
+    const Triangle* from = triangle < 0 ? nullptr : &model.triangle[static_cast<std::size_t>(triangle)];
+    CarriedVertex old[3];
+    for (int k = 0; from != nullptr && k < 3; ++k) old[k] = vertex[k];  // bound: 3
+    for (int k = 0; k < 3; ++k) {                                       // bound: 3 x 3
       const CarriedVertex* known = nullptr;
-      for (int i = 0; triangle >= 0 && i < 3; ++i)
-        if (model.triangle[static_cast<std::size_t>(triangle)].vertex[i] == t.vertex[k]) known = old + i;
-      vertex[k] = known != nullptr ? *known : carry(model, y, t.vertex[k]);
-      *shown += known != nullptr ? 0 : elastic_layout::terms(model.params.elastic_soft);
+      for (int i = 0; from != nullptr && i < 3; ++i)
+        if (from->vertex[i] == t.vertex[k]) known = old + i;
+      vertex[k] = known != nullptr ? *known : carry(model, soft, y, t.vertex[k]);
+      *shown += known != nullptr ? 0 : elastic_layout::terms(soft);
       corners.v[k] = vertex[k].position_w;
     }
-    triangle = next;
   }
   void turn_normals() PALPATE_RT {
     for (int k = 0; k < 3; ++k) {  // bound: 3

@@ -110,7 +110,7 @@ class Finder {
     ElasticRow& row = work_.row[index];
     const Vec3 near = touched ? point.closest_w : tip.centre_w();
     const Real force_N = point.region >= 0 ? state_.region[point.region].normal_force_N : 0.0;
-    if (touched) nearer_m_ = let_go_there_m(point.triangle);
+    if (touched) nearer_m_ = kHuge;  // asks how far the body let go comes only when it has lifted off
     surface_.place(tip, point.triangle, near, nearer_m_, box_, row, force_N);
     for (std::int32_t i = 0; i < kFurtherWalks && row.foot.state == FootState::kFar; ++i)
       surface_.place(tip, row.foot.triangle, tip.centre_w(), nearer_m_, box_, row, force_N);
@@ -121,6 +121,7 @@ class Finder {
       point.closest_w = displaced(point.triangle);
       return let_be(point);
     }
+    if (touched && !(row.travel_m > 0)) nearer_m_ = let_go_there_m(point.triangle);
     // From behind: another part is in between.
     if (!touched && row.foot.height_m < 0) return let_be(point);
     if (free_depth(row) > 0) {
@@ -193,8 +194,9 @@ class Finder {
     for (const std::int32_t v : model_.triangle[static_cast<std::size_t>(triangle)].vertex)  // bound: 3 kMaxTerms
       for (std::int32_t t = 0; t < terms(model_.params.elastic_soft); ++t) {
         const Double4 u = widen4(vertex_block(model_, v) + kTermFloats * t);
-        reach[t] = max_of(reach[t], norm(Vec3{u[0], u[1], u[2]}));
+        reach[t] = max_of(reach[t], squared_norm(Vec3{u[0], u[1], u[2]}));
       }
+    for (std::int32_t t = 0; t < terms(model_.params.elastic_soft); ++t) reach[t] = square_root(reach[t]);
     return most_let_go_m(model_, work_, reach, let_go_);
   }
   Vec3 vertex(std::int32_t triangle, int corner) const PALPATE_RT {

@@ -75,6 +75,23 @@ void show_bends(const Vec3* edge_m, const float* const* own, ElasticRow& row) PA
   store(row.number_bend[2], dot({dot(x, f), dot(y, f), dot(z, f)}, f));
 }
 
+// Of a part of the surface there is one set of numbers (config/bake/surface_parts.h), and nothing between the vertices.
+bool are_even(const float* const* own) PALPATE_RT {
+  Mask4 differ{};
+  for (int k = 0; k < 3; ++k) {  // bound: 3 x 4
+    differ |= widen4(own[k]) != widen4(own[0]);
+    for (int i = kOwnValues; i < kOwnBends; i += 4) differ |= widen4(own[k] + i) != Double4{};
+  }
+  return bits_of(differ) == 0;
+}
+void show_even(const Double4& value, ElasticRow& row) PALPATE_RT {
+  row.c_m_per_N = value[0];
+  row.c1_m_per_N2 = value[1];
+  row.curvature_1_per_m = value[2];
+  row.beta_1_per_mN = value[3];
+  row.c_gradient = row.c1_gradient = row.curvature_gradient = row.beta_gradient = {};
+}
+
 void show_modulus(const Model& model, ElasticRow& row) PALPATE_RT {
   row.modulus = 1;
   row.modulus_gradient = {};
@@ -101,6 +118,10 @@ void show_place_numbers(const Model& model, ElasticRow& row) PALPATE_RT {
     own[k] = own_terms(model, triangle.vertex[k]);
     edge_m[k] = model.vertex_m[static_cast<std::size_t>(triangle.vertex[(k + 1) % 3])] -
                 model.vertex_m[static_cast<std::size_t>(triangle.vertex[k])];
+  }
+  if (row.tip.is_of_part && !row.has_slide && are_even(own)) {
+    show_even(widen4(own[0]), row);
+    return show_modulus(model, row);
   }
   const VertexCubics cubics(edge_m, model.corner_normal[index], own);
   Double4 slope[3], mean;
