@@ -41,8 +41,8 @@ struct Sides {
       load.tip[r].place = &load.law[r].terms;
       load.tip[r].become(load.law[r].line);
       load.tip[r].depth_m = depth[i];
-      load.own[r] = {kOwn_m_per_N, 0, kHuge};
-      load.tips_of[r] = {&load.tip[r], 1, load.own[r]};
+      load.own[r].far = {kOwn_m_per_N, 0, kHuge};
+      load.tips_of[r] = {&load.tip[r], 1, load.own[r].far};
       before[i] = r < 2 ? before_N : 0.0;
     }
   }
