@@ -71,9 +71,6 @@ bool add_reversals(const State& state, const Twist& motion, ContactStiffness& st
 // the coupling, of 237 N/m, the arms that a tube has snapped through pressed it 16 um into a seat of 7 kN/mm, and the
 // model said 110 N (2026-11-26).
 constexpr Real kLanding_N_per_m = 1e8;
-// What is turned aside by one part may come to another: a tube that met an arm's inside was pressed .2 mm into the seat
-// by the arms, and the model said 2,000 N (2026-11-26).
-constexpr std::int32_t kLandings = 3;
 static_assert(2 * kMaxPieces <= 64, "a bit for either end of every point");
 
 // Which parts of an elastic body a motion of the tool, from `from`, would bring it into: springs that begin where it

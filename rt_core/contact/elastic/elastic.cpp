@@ -12,6 +12,7 @@
 #include "rt_core/image_check.h"
 #include "rt_core/surface/closest_point.h"
 #include "rt_core/surface/plane_proof.h"
+#include "rt_core/tool/virtual_coupling.h"
 
 namespace palpate {
 
@@ -32,7 +33,7 @@ constexpr Real kEnoughToSlip_m = 1e-9;
 // What the places ask of the modes, in tip laws evaluated: two of them, and sums over numbers and modes.
 constexpr std::int32_t kPlaceLaws = 5;
 // A line's law, in tip laws.
-constexpr std::int32_t kLineLaws = 4;
+constexpr std::int32_t kLineLaws = 2;
 
 // Tip laws in one evaluation of all.
 std::int32_t laws_in(const ElasticLoad& load, std::int32_t tips) PALPATE_RT {
@@ -304,7 +305,9 @@ void add_most_work(const Model& model, const SceneSizes& n, Work& work) noexcept
   work.queries += 2 * n.points;  // a capsule asks three times
   add_most_regions(n, kSolvesOfFriction * TipLaws::kIterations, work);
   const bool in_parts = !model.tool_point.empty() && model.tool_point[0].begins_at > 0;
-  work.shown += n.points * (2 * place + terms(soft) + (in_parts ? kMostPartLooks * kPartLookTerms : 0));
+  work.shown +=
+      n.points * (2 * place + terms(soft) + (in_parts ? kMostPartLooks * kPartLookTerms + kPartVisitTerms : 0));
+  work.rubbed += in_parts ? 2 * kLandings : 0;
   work.soft_pairs += soft_work(pair);
   work.tip_laws += kLineLaws * kSolvesOfFriction *
                        (kSeriesIterations + 1 + TipLaws::kIterations * (kStepHalvings + 1)) * n.contacts +

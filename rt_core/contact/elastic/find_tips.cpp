@@ -5,6 +5,7 @@
 #include "rt_core/surface/body_box.h"
 #include "rt_core/surface/closest_point.h"
 #include "rt_core/tool/two_tools.h"
+#include "rt_core/tool/virtual_coupling.h"
 
 namespace palpate {
 
@@ -111,6 +112,7 @@ class Finder {
     const Vec3 near = touched ? point.closest_w : tip.centre_w();
     const Real force_N = point.region >= 0 ? state_.region[point.region].normal_force_N : 0.0;
     if (touched) nearer_m_ = kHuge;  // asks how far the body let go comes only when it has lifted off
+    *surface_.shown += kPartVisitTerms;
     surface_.place(tip, point.triangle, near, nearer_m_, box_, row, force_N);
     for (std::int32_t i = 0; i < kFurtherWalks && row.foot.state == FootState::kFar; ++i)
       surface_.place(tip, row.foot.triangle, tip.centre_w(), nearer_m_, box_, row, force_N);
@@ -361,6 +363,8 @@ void find_elastic_tips(const Model& model, State& state, Scratch& scratch) PALPA
   scratch.work.points += points > pieces ? points : pieces;
   scratch.work.found += scratch.contact_count;
   scratch.work.looks = scratch.surface_work;
+  // A tool that comes to parts is balanced once more for each landing, for what the friction of two regions takes.
+  if (!model.tool_point.empty() && model.tool_point[0].begins_at > 0) scratch.work.rubbed += 2 * kLandings;
   group_points(model, state, scratch, nullptr);
 }
 
