@@ -34,7 +34,8 @@ TEST_P(JawsOnABlock, PressAsLargeStrainElementsDo) {
       const double error = std::abs(region.wrench_w.force_N.x) / state.force_N - 1;
       RecordProperty("at_" + std::to_string(std::lround(1e6 * state.closed_m)) + "_um",
                      std::to_string(100 * error) + " %");
-      EXPECT_LT(std::abs(error), 0.05) << state.closed_m;
+      // -0.4 and 1.0 % with three soft modes; 2.9 and 5.0 with two, which leave the twist out (2026-11-26).
+      EXPECT_LT(std::abs(error), std::string(GetParam()) == "3" ? 0.02 : 0.06) << state.closed_m;
     }
   }
   EXPECT_LT(bench.output.residual_m, 1e-12);
