@@ -430,4 +430,9 @@ struct Model {
 #undef PALPATE_FIELD
 };
 
+// Whether every tool point touches one part of the body's surface (ToolPoint::begins_at).
+inline bool touches_in_parts(const Model& model) PALPATE_RT {
+  return !model.tool_point.empty() && model.tool_point[0].begins_at > 0;
+}
+
 }  // namespace palpate

@@ -6,6 +6,7 @@
 #include "config/body/body_card.h"
 #include "config/body/body_pose.h"
 #include "rt_core/math.h"
+#include "rt_core/surface/ring.h"
 
 namespace palpate {
 
@@ -28,12 +29,6 @@ double corner_weight(const std::vector<Vec3>& vertex, const Triangle& t, int k) 
   const Vec3 u = vertex[at(t.vertex[(k + 1) % 3])] - p, v = vertex[at(t.vertex[(k + 2) % 3])] - p;
   const double squares = squared_norm(u) * squared_norm(v);
   return squares > 0 ? norm(cross(u, v)) / squares : 0;
-}
-
-int corner_of(const Triangle& t, std::int32_t vertex) {
-  for (int k = 0; k < 3; ++k)
-    if (t.vertex[k] == vertex) return k;
-  return -1;
 }
 
 // Of a body where its shape is made.
@@ -70,7 +65,7 @@ std::vector<CornerNormals> own_normals(const BodyDesc& body, const std::vector<V
       std::sort(fan.begin(), fan.end());
       Vec3 sum;
       for (const std::int32_t f : fan)
-        sum += corner_weight(vertex_m, triangle[at(f)], corner_of(triangle[at(f)], vertex)) * face[at(f)];
+        sum += corner_weight(vertex_m, triangle[at(f)], corner_at(triangle[at(f)], vertex)) * face[at(f)];
       result[t].normal[k] = unit_or(sum, face[t]);
     }
   }

@@ -202,21 +202,22 @@ SmoothFoot search(const Model& model, const CornersOf& corners_of, const AtRest&
       lost.state = walked < most_crossed ? FootState::kEdge : FootState::kFar;
       return lost;
     }
-    const Vec3 rest_foot = flat_foot(RestCorners(model, triangle).v, at);
+    const Vec3 foot = flat_foot(corners, at);
+    const Vec3 rest_foot = kCarried ? flat_foot(RestCorners(model, triangle).v, at) : foot;
     const Triangle& here = model.triangle[static_cast<std::size_t>(triangle)];
     const int corner = turned ? -1 : corner_to_turn_about(here, edge);
     if (corner >= 0) {
-      const Vec3 off = flat_foot(corners, at) - corners.v[corner];
-      const Turn turn = turn_about({model.triangle.data(), model.vertex_m.data()}, at_rest(corner, off), triangle,
-                                   here.vertex[corner]);
+      const Turn turn = turn_about({model.triangle.data(), model.vertex_m.data()},
+                                   at_rest(corner, foot - corners.v[corner]), triangle, here.vertex[corner]);
       if (turn.triangle >= 0 && turn.triangle != triangle) next = turn.triangle;
       if (passed != nullptr) *passed += turn.passed;
       turned = true;
     }
     triangle = next;
     walked += 1;
-    at = pass(model, rest_foot, at.t, kCarried ? most_crossed : walked, walked, triangle);
+    if constexpr (kCarried) at = pass(model, rest_foot, at.t, most_crossed, walked, triangle);
     corners = corners_of(triangle);
+    if constexpr (!kCarried) at = place_on(corners, rest_foot, at.t);
     on_this = 0;
   }
   return {};

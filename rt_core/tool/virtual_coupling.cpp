@@ -161,7 +161,7 @@ bool answer(const Model& model, const State& state, const Pose& from, const Wren
   ContactStiffness further;
   Wrench with_landings = wrench;
   const bool turns = add_reversals(state, forwards, further);
-  const bool in_parts = !model.tool_point.empty() && model.tool_point[0].begins_at > 0;
+  const bool in_parts = touches_in_parts(model);
   Landing landing(model, state, from, with_landings, further);
   motion = forwards;
   for (std::int32_t i = 0; i < (in_parts ? kLandings : 1); ++i) {  // bound: kLandings

@@ -1,5 +1,8 @@
 #include "rt_core/contact/elastic/carried_edge.h"
 
+#include "rt_core/contact/elastic/part_search.h"
+#include "rt_core/surface/ring.h"
+
 namespace palpate {
 
 namespace {
@@ -17,7 +20,6 @@ constexpr std::int32_t kMostEnds = 2;
 constexpr std::int32_t kMostRound = 8;
 // Of a capsule and an edge the square of the angle between them, at least: more parallel ones come along by parts.
 constexpr Real kLeastAcross = 0.01;
-constexpr Real kLeast_m6 = 1e-60;
 // A part's corner normals are longer than one by 2e-12 and more, squared.
 constexpr Real kPartLonger = 5e-13;
 // Normals on both sides of a seam between two parts: its square.
@@ -110,7 +112,7 @@ bool meets_part(const Model& model, std::int32_t triangle, std::int32_t vertex) 
   Vec3 own;
   for (std::int32_t i = 0; i < kMostRound && at >= 0; ++i) {  // bound: kMostRound x 3
     const Triangle& t = model.triangle[static_cast<std::size_t>(at)];
-    const int corner = t.vertex[0] == vertex ? 0 : t.vertex[1] == vertex ? 1 : 2;
+    const int corner = corner_at(t, vertex);
     const Vec3 normal = model.corner_normal[static_cast<std::size_t>(at)].normal[corner];
     if (i == 0) own = normal;
     if (!(normal == own) && squared_norm(normal - own) < kSame) return true;
@@ -125,10 +127,6 @@ bool goes_on_smooth(const Model& model, std::int32_t triangle, const EdgePlace& 
          (on.share == 0 || meets_part(model, triangle, v[(on.edge + 1) % 3]));
 }
 
-// The cosine by which a facet with that normal looks along `out`.
-Real looks_to(Vec3 out, Vec3 up) PALPATE_RT {
-  return dot(out, up) / square_root(max_of(squared_norm(out) * squared_norm(up), kLeast_m6));
-}
 // Of a part the corner normals' last bits are more than one (config/bake/surface_parts.cpp).
 bool is_part(const Model& model, std::int32_t triangle) PALPATE_RT {
   return squared_norm(model.corner_normal[static_cast<std::size_t>(triangle)].normal[0]) > 1 + kPartLonger;

@@ -71,25 +71,18 @@ Real travel_slope(const CornerTurns& turns, const FacetSag& sag, ElasticRow& row
 
 // Moves a foot off its facet.
 FacetSag smooth_sag(const Model& model, const CarriedTriangle& t, SmoothFoot& foot) PALPATE_RT {
-  Vec3 rest[3];
-  const Triangle& triangle = model.triangle[static_cast<std::size_t>(foot.triangle)];
-  for (int k = 0; k < 3; ++k) rest[k] = model.vertex_m[static_cast<std::size_t>(triangle.vertex[k])];  // bound: 3
-  const FacetSag sag(t.corners, rest, foot.weight);
+  const FacetSag sag(t.corners, foot::RestCorners(model, foot.triangle).v, foot.weight);
   foot.foot_w += sag.value_m * foot.normal_w;
   foot.height_m -= sag.value_m;
   return sag;
 }
 
 // The same equation differentiated: sum w_i (dV_i - t dU_i) moves the foot along the material as the centre going the
-// other way does. Along a capsule's axis the place goes with the material as far as the line follows it.
+// other way does.
 void slide_slopes(const CornerTurns& turns, const ElasticRow& row, const CarriedTriangle& t, Real below,
                   CornerSlope (&slide)[2]) PALPATE_RT {
-  const Vec3 axis = row.tip.half_axis_w;
-  const Real square = squared_norm(axis);
-  const Real follows = row.arm_m * row.line.along_1_per_m / (1 + row.line.along_1_per_m * row.tip.margin_m);
-  const Real held = square > 0 ? min_of(follows, 1.0) / square : 0.0;
   for (int i = 0; i < 2; ++i) {  // bound: 2 x 3
-    const Vec3 any = row.foot.gradient_per_m[i + 1], to = any - (held * dot(any, axis)) * axis;
+    const Vec3 to = row.foot.gradient_per_m[i + 1];
     for (int k = 0; k < 3; ++k) {
       const Vec3 by_place = row.foot.weight[k] * to;
       turns[k].show(t.corners.u[k], by_place, -below * by_place, slide[i].of[k]);

@@ -304,7 +304,7 @@ void add_most_work(const Model& model, const SceneSizes& n, Work& work) noexcept
   add_most_points(model, n, work);
   work.queries += 2 * n.points;  // a capsule asks three times
   add_most_regions(n, kSolvesOfFriction * TipLaws::kIterations, work);
-  const bool in_parts = !model.tool_point.empty() && model.tool_point[0].begins_at > 0;
+  const bool in_parts = touches_in_parts(model);
   work.shown +=
       n.points * (2 * place + terms(soft) + (in_parts ? kMostPartLooks * kPartLookTerms + kPartVisitTerms : 0));
   work.rubbed += in_parts ? 2 * kLandings : 0;

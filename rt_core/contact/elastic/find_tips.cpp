@@ -165,14 +165,14 @@ class Finder {
       point.closest_w = displaced(point.triangle);
     }
     tip.come_near(point.closest_w);
-    const Vec3 moved_m = displaced(point.triangle) - vertex(point.triangle, 0);
+    const Vec3 moved_m = displaced(point.triangle) - foot::RestCorners(model_, point.triangle).v[0];
     const PartPlace place = come_down(model_, work_.seeds[index], tip.centre_w() - moved_m, point.triangle);
     point.triangle = place.triangle;
     *surface_.shown += kPartLookTerms * place.looked;
-    const Vec3 a = vertex(place.triangle, 0), b = vertex(place.triangle, 1), c = vertex(place.triangle, 2);
-    const Vec3 up = unit_or(cross(b - a, c - a), {});
+    const foot::RestCorners facet(model_, place.triangle);
+    const Vec3 *v = facet.v, up = unit_or(cross(v[1] - v[0], v[2] - v[0]), {});
     for (std::int32_t i = 0; i < kTurnsOfAxis; ++i) {  // bound: kTurnsOfAxis
-      const Vec3 centre = tip.centre_w() - moved_m, closest = closest_on_triangle(centre, a, b, c).point;
+      const Vec3 centre = tip.centre_w() - moved_m, closest = closest_on_triangle(centre, v[0], v[1], v[2]).point;
       point.closest_w = closest + moved_m;
       stand_above(point.closest_w, up, tip);
     }
@@ -200,10 +200,6 @@ class Finder {
       }
     for (std::int32_t t = 0; t < terms(model_.params.elastic_soft); ++t) reach[t] = square_root(reach[t]);
     return most_let_go_m(model_, work_, reach, let_go_);
-  }
-  Vec3 vertex(std::int32_t triangle, int corner) const PALPATE_RT {
-    const std::int32_t v = model_.triangle[static_cast<std::size_t>(triangle)].vertex[corner];
-    return model_.vertex_m[static_cast<std::size_t>(v)];
   }
   Vec3 displaced(std::int32_t triangle) const PALPATE_RT {
     const std::int32_t vertex = model_.triangle[static_cast<std::size_t>(triangle)].vertex[0];
@@ -364,7 +360,7 @@ void find_elastic_tips(const Model& model, State& state, Scratch& scratch) PALPA
   scratch.work.found += scratch.contact_count;
   scratch.work.looks = scratch.surface_work;
   // A tool that comes to parts is balanced once more for each landing, for what the friction of two regions takes.
-  if (!model.tool_point.empty() && model.tool_point[0].begins_at > 0) scratch.work.rubbed += 2 * kLandings;
+  if (touches_in_parts(model)) scratch.work.rubbed += 2 * kLandings;
   group_points(model, state, scratch, nullptr);
 }
 

@@ -8,19 +8,12 @@ namespace palpate {
 
 namespace {
 
-constexpr Real kLeast_m6 = 1e-60;
 constexpr Real kMiddle = 1e-3;
 // Corner normals of a part are as long as one another (config/bake/surface_parts.cpp) but for rounding; squared.
 constexpr Real kAsLong = 1e-13;
 
-const Triangle& triangle_of(const Model& model, std::int32_t t) PALPATE_RT {
-  return model.triangle[static_cast<std::size_t>(t)];
-}
-Vec3 vertex(const Model& model, std::int32_t v) PALPATE_RT { return model.vertex_m[static_cast<std::size_t>(v)]; }
-Vec3 middle(const Model& model, std::int32_t triangle) PALPATE_RT {
-  const std::int32_t* v = triangle_of(model, triangle).vertex;
-  return (1.0 / 3) * (vertex(model, v[0]) + vertex(model, v[1]) + vertex(model, v[2]));
-}
+Vec3 middle(const foot::RestCorners& at) PALPATE_RT { return (1.0 / 3) * (at.v[0] + at.v[1] + at.v[2]); }
+Vec3 middle(const Model& model, std::int32_t triangle) PALPATE_RT { return middle({model, triangle}); }
 Real length2(const Model& model, std::int32_t triangle) PALPATE_RT {
   return squared_norm(model.corner_normal[static_cast<std::size_t>(triangle)].normal[0]);
 }
@@ -34,13 +27,11 @@ struct Seen {
   bool is_above;  // of its inside
 
   Seen(const Model& model, std::int32_t t, Vec3 place) PALPATE_RT : triangle(t) {
-    const std::int32_t* v = triangle_of(model, t).vertex;
-    const Vec3 a = vertex(model, v[0]), b = vertex(model, v[1]), c = vertex(model, v[2]);
-    const Vec3 out = place - middle(model, t), up = cross(b - a, c - a);
-    const Real square = squared_norm(out);
-    facing = dot(out, up) / square_root(max_of(square * squared_norm(up), kLeast_m6));
-    const TrianglePoint nearest = closest_on_triangle(place, a, b, c);
-    square_m2 = squared_norm(place - nearest.point) + kMiddle * square;
+    const foot::RestCorners at(model, t);
+    const Vec3 out = place - middle(at);
+    facing = looks_to(out, cross(at.v[1] - at.v[0], at.v[2] - at.v[0]));
+    const TrianglePoint nearest = closest_on_triangle(place, at.v[0], at.v[1], at.v[2]);
+    square_m2 = squared_norm(place - nearest.point) + kMiddle * squared_norm(out);
     is_above = facing >= 0 && nearest.feature == Feature::kFace;
   }
   bool is_better_than(const Seen& other) const PALPATE_RT {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "rt_core/math.h"
 #include "rt_core/model.h"
 
 namespace palpate {
@@ -16,6 +17,12 @@ struct PartSeeds {
 
 // The first is where the bake has the foot begin, each next one the farthest from those before. When a Scratch is made.
 PartSeeds spread_over_part(const Model& model, std::int32_t begins_at) noexcept;
+
+// The cosine by which a facet with that normal, of any length, looks along `out`.
+inline Real looks_to(Vec3 out, Vec3 up) PALPATE_RT {
+  constexpr Real kLeast_m6 = 1e-60;
+  return dot(out, up) / square_root(max_of(squared_norm(out) * squared_norm(up), kLeast_m6));
+}
 
 struct PartPlace {
   std::int32_t triangle;

@@ -42,12 +42,12 @@ struct VertexCubics {
       middle[k] = slope + 0.25 * (corner[i] + corner[j]) + 0.75 * (next[i] + before[j]) - 0.5 * (before[i] + next[j]);
     }
   }
-  // And their derivatives in the area coordinates. `mean`: the middle coefficient there.
-  Double4 at(const Real* w, Double4 (&slope)[3], Double4& mean) const PALPATE_RT {
+  // And their derivatives in the area coordinates.
+  Double4 at(const Real* w, Double4 (&slope)[3]) const PALPATE_RT {
     const Real in[3] = {max_of(w[0], 0.0), max_of(w[1], 0.0), max_of(w[2], 0.0)};
     const Real q[3] = {in[1] * in[2], in[2] * in[0], in[0] * in[1]}, sum = q[0] + q[1] + q[2];
     const Real inverse = sum > kCorner ? 1.0 / sum : 0.0, turn = in[0] * q[0] * inverse;
-    mean = inverse * (q[0] * middle[0] + q[1] * middle[1] + q[2] * middle[2]);
+    const Double4 mean = inverse * (q[0] * middle[0] + q[1] * middle[1] + q[2] * middle[2]);
     Double4 value{};
     for (int k = 0; k < 3; ++k) {  // bound: 3
       const int i = (k + 1) % 3, j = (k + 2) % 3;
@@ -84,12 +84,12 @@ bool are_even(const float* const* own) PALPATE_RT {
   }
   return bits_of(differ) == 0;
 }
-void show_even(const Double4& value, ElasticRow& row) PALPATE_RT {
+
+void show_values(const Double4& value, ElasticRow& row) PALPATE_RT {
   row.c_m_per_N = value[0];
   row.c1_m_per_N2 = value[1];
   row.curvature_1_per_m = value[2];
   row.beta_1_per_mN = value[3];
-  row.c_gradient = row.c1_gradient = row.curvature_gradient = row.beta_gradient = {};
 }
 
 void show_modulus(const Model& model, ElasticRow& row) PALPATE_RT {
@@ -120,22 +120,19 @@ void show_place_numbers(const Model& model, ElasticRow& row) PALPATE_RT {
                 model.vertex_m[static_cast<std::size_t>(triangle.vertex[k])];
   }
   if (row.tip.is_of_part && !row.has_slide && are_even(own)) {
-    show_even(widen4(own[0]), row);
+    show_values(widen4(own[0]), row);
+    row.c_gradient = row.c1_gradient = row.curvature_gradient = row.beta_gradient = {};
     return show_modulus(model, row);
   }
   const VertexCubics cubics(edge_m, model.corner_normal[index], own);
-  Double4 slope[3], mean;
-  const Double4 value = cubics.at(row.foot.weight, slope, mean);
+  Double4 slope[3];
+  show_values(cubics.at(row.foot.weight, slope), row);
   if (row.has_slide) {
     for (int k = 0; k < 2; ++k) store(row.number_slope[k], slope[k + 1] - slope[0]);
     show_bends(edge_m, own, row);
   }
   Vec3x4 gradient = slope[0] * splat4(row.foot.gradient_per_m[0]);
   for (int k = 1; k < 3; ++k) gradient = gradient + slope[k] * splat4(row.foot.gradient_per_m[k]);  // bound: 2
-  row.c_m_per_N = value[0];
-  row.c1_m_per_N2 = value[1];
-  row.curvature_1_per_m = value[2];
-  row.beta_1_per_mN = value[3];
   row.c_gradient = gradient[0];
   row.c1_gradient = gradient[1];
   row.curvature_gradient = gradient[2];
