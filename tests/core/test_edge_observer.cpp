@@ -80,6 +80,18 @@ TEST(EdgeObserver, FollowsAJumpAndForgetsIt) {
   EXPECT_NEAR(estimate, 400 * kStep_m, 1e-6 * kStep_m);
 }
 
+// A jump carries the estimate along, and an edge soon after it is not a handle that goes on by as much: without speed
+// the estimate comes to it and stays, but for what it goes to what is told in a millisecond (5 and 12 ms): 0.12 steps.
+TEST(EdgeObserver, HasNoSpeedFromAJump) {
+  Follower follower(0);
+  for (int i = 0; i < 100; ++i) follower.next(0);
+  follower.next(-400 * kStep_m);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(follower.next(-400 * kStep_m), -400 * kStep_m);
+  const double on_edge = follower.next(-401 * kStep_m);
+  EXPECT_NEAR(on_edge, -400.25 * kStep_m, 0.26 * kStep_m);
+  for (int i = 0; i < 8; ++i) EXPECT_NEAR(follower.next(-401 * kStep_m), on_edge, 0.15 * kStep_m);
+}
+
 TEST(EdgeObserver, WithoutStepsIsWhatIsTold) {
   EdgeMemory memory;
   EXPECT_EQ(between_edges(0, kPeriod_s, {1e-3, -2e-3, 0}, memory).x, 0);
