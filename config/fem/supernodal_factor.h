@@ -5,6 +5,7 @@
 #pragma once
 
 #include <Eigen/SparseCore>
+#include <cstdint>
 #include <vector>
 
 namespace palpate::fem {
@@ -27,13 +28,13 @@ class SupernodalFactor {
   struct Node {
     int first = 0, columns = 0;  // eliminated together
     int parent = -1;
-    std::vector<int> rows;              // columns, then the rows below that they reach, sorted
-    std::size_t panel = 0;              // rows x columns in panel_, column by column
-    std::vector<std::size_t> entry;     // places in the matrix's values ...
-    std::vector<std::size_t> entry_at;  // ... and where they go in the front
-    std::vector<std::size_t> diagonal_at;
+    std::vector<int> rows;                // columns, then the rows below that they reach, sorted
+    std::size_t panel = 0;                // in panel_: its columns, each from its own row on
+    std::vector<std::uint32_t> entry;     // places in the matrix's values ...
+    std::vector<std::uint32_t> entry_at;  // ... and where they go in the front
+    std::vector<std::uint32_t> diagonal_at;
   };
-  void find_nodes(const std::vector<std::vector<int>>& below, const std::vector<int>& parent);
+  void find_nodes(std::vector<std::vector<int>> below);
   void place_entries(const Eigen::SparseMatrix<double>& lower);
   static constexpr Eigen::Index kLanes = 8;
   template <int kWide>

@@ -58,7 +58,7 @@ set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA "${debian}/python/prerm")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libpalpate-dev)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SHLIBDEPS OFF)
-set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "libccd-dev, libeigen3-dev, libassimp-dev, libpugixml-dev, libcli11-dev, libfmt-dev, nlohmann-json3-dev, libpng-dev, zlib1g-dev")
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "libccd-dev, libeigen3-dev, libassimp-dev, libmetis-dev, libpugixml-dev, libcli11-dev, libfmt-dev, nlohmann-json3-dev, libpng-dev, zlib1g-dev")
 
 include(CPack)
 cpack_add_component(core GROUP library)

@@ -4,9 +4,9 @@
 # not know a second processor. Usage: libraries.sh FOLDER
 set -euo pipefail
 folder=$(mkdir -p "${1:?usage: libraries.sh FOLDER}" && cd "$1" && pwd)
-[ ! -e "$folder/complete" ] || exit 0
-packages='libccd2 libccd-dev libfmt9 libfmt-dev libassimp5 libassimp-dev libminizip1 libdraco7 zlib1g zlib1g-dev libpng16-16
+packages='libccd2 libccd-dev libfmt9 libfmt-dev libassimp5 libassimp-dev libmetis5 libmetis-dev libminizip1 libdraco7 zlib1g zlib1g-dev libpng16-16
   libpng-dev libpugixml1v5 libpugixml-dev libgtest-dev libgmock-dev'
+[ "$(cat "$folder/complete" 2> /dev/null)" != "$packages" ] || exit 0
 
 apt=$folder/apt
 rm -rf "$folder"/* && mkdir -p "$apt/lists/partial" "$apt/cache/archives/partial" "$apt/packages"
@@ -28,4 +28,4 @@ for package in "$apt"/packages/*.deb; do dpkg -x "$package" "$folder"; done
 rm -rf "$apt"
 # Links to the root of the machine they were packed for, now to this folder.
 find "$folder" -type l -lname '/*' | while read -r link; do ln -sfn "$folder$(readlink "$link")" "$link"; done
-touch "$folder/complete"
+printf '%s\n' "$packages" > "$folder/complete"
