@@ -2,9 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/SparseCore>
+#include <algorithm>
 #include <cmath>
 #include <random>
+#include <thread>
 
+#include "config/fem/fill_order.h"
 #include "config/fem/supernodal_factor.h"
 
 namespace palpate::fem {
@@ -71,6 +74,28 @@ TEST(SupernodalFactor, SolvesColumnsTogetherAsAlone) {
     ASSERT_EQ(x.cols(), columns);
     for (Eigen::Index i = 0; i < columns; ++i) EXPECT_TRUE(x.col(i) == factor.solve(b.col(i))) << i;
   }
+}
+
+// Large enough for nested dissection, which draws random numbers from one place: the same in every thread.
+TEST(SupernodalFactor, OrdersLargeBodiesAlikeInEveryThread) {
+  std::mt19937 random(5);
+  const Sparse lower = grid(14, 3, -1, random);
+  ASSERT_GT(lower.cols(), 8000);
+  const std::vector<int> order = fill_order(lower);
+  std::vector<int> sorted = order;
+  std::sort(sorted.begin(), sorted.end());
+  for (int i = 0; i < lower.cols(); ++i) ASSERT_EQ(sorted[static_cast<std::size_t>(i)], i);
+  std::vector<std::vector<int>> others(4);
+  std::vector<std::thread> threads;
+  for (std::vector<int>& other : others) threads.emplace_back([&] { other = fill_order(lower); });
+  for (std::thread& thread : threads) thread.join();
+  for (const std::vector<int>& other : others) EXPECT_TRUE(other == order);
+  SupernodalFactor factor;
+  factor.analyse(lower);
+  ASSERT_TRUE(factor.factorise(lower, 0));
+  EXPECT_GT(factor.negative_pivots(), 0);
+  const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(lower.cols(), -1, 2);
+  EXPECT_LT(residual(lower, 0, factor.solve(b), b), 1e-12);
 }
 
 TEST(SupernodalFactor, TakesUnknownsThatNothingConnects) {
