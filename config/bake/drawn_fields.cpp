@@ -154,6 +154,7 @@ void DrawnFields::add(const elastic::PressedPlace& place) {
   const double ratio = place.sigma_m[1] / place.sigma_m[0];
   Eigen::VectorXd first = narrow + kToNoWidth / (ratio * ratio - 1) * (narrow - wide),
                   second = at_vertices(place.second_mpN2);
+  first += (1 - kToNoWidth) * at_vertices(place.bent_mpN);  // it grows as the square of the width
   smooth_core(place, first);
   smooth_core(place, second);
   kept.first_mpN = first.cast<float>();

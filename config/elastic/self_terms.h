@@ -61,13 +61,15 @@ struct PatchOptions {
 struct PressedPlace {
   int node = 0;
   double sigma_m[2] = {}, give_mpN = 0;  // of the two patches; where the first presses, all of it
-  Eigen::VectorXd u_mpN[2];              // under a newton
-  Eigen::VectorXd second_mpN2;           // -1/2 K^-1 K2(u, u) of the first: what F^2 adds
+  Eigen::VectorXd u_mpN[2];              // under a newton along the place's normal
+  // Of the first: what a newton along the surface's own normals adds, and what F^2 adds, which is that of the material,
+  // -1/2 K^-1 K2(u, u), and of the normals' turn.
+  Eigen::VectorXd bent_mpN, second_mpN2;
 };
 using PlaceListener = std::function<void(const PressedPlace&)>;
 
 // At the given surface nodes. `probe_m`: largest displacement of the second order's difference. With `listen` each
-// place costs one more solve.
+// place costs two more solves.
 template <int kDim>
 std::vector<SelfSample> self_samples(const RestBody<kDim>& body, const std::vector<int>& nodes, double probe_m,
                                      const PatchOptions& patch, const PlaceListener& listen = {});

@@ -131,6 +131,21 @@ Vector<kDim> Surface<kDim>::normal(const Facet& facet, const FacetShape& shape) 
   return facet.side * area_normal<kDim>(tangent).normalized();
 }
 
+// The parallelogram of the tangents stays across both: n . t = 0 along either, differentiated.
+template <int kDim>
+Vector<kDim> Surface<kDim>::turn(const Point& point, const Eigen::VectorXd& u) const {
+  const Facet& facet = facets_[static_cast<std::size_t>(point.facet)];
+  Eigen::Matrix<double, kDim, 2> tangent = Eigen::Matrix<double, kDim, 2>::Zero(), moved = tangent;
+  for (std::size_t a = 0; a < facet.nodes.size(); ++a) {
+    tangent += rest(facet.nodes[a]) * point.shape.slope[a].transpose();
+    moved += u.segment<kDim>(kDim * facet.nodes[a]) * point.shape.slope[a].transpose();
+  }
+  constexpr int kAlong = kDim - 1;
+  const Eigen::Matrix<double, kDim, kAlong> t = tangent.template leftCols<kAlong>();
+  const Eigen::Matrix<double, kAlong, 1> slope = moved.template leftCols<kAlong>().transpose() * point.normal;
+  return -t * (t.transpose() * t).inverse() * slope;
+}
+
 template <int kDim>
 void Surface<kDim>::add_points(int index, double thickness_m, std::vector<Eigen::Triplet<double>>& mass) {
   const Facet& facet = facets_[static_cast<std::size_t>(index)];

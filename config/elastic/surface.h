@@ -63,6 +63,8 @@ class Surface {
   const std::vector<int>& facets_at(int node) const { return at_node_[static_cast<std::size_t>(node)]; }
   Vector<kDim> rest(int node) const;
   Vector<kDim> normal(const Facet& facet, const FacetShape& shape) const;
+  // How the unit normal at a point turns with [node * kDim + component], to first order.
+  Vector<kDim> turn(const Point& point, const Eigen::VectorXd& u) const;
   // int N N dA on [node * kDim + component].
   Eigen::VectorXd mass_times(const Eigen::VectorXd& u) const;
   // Largest distance between two corners of the bounding box.

@@ -12,20 +12,6 @@ namespace {
 
 constexpr int kRing = 8;  // places on each of two rings
 constexpr double kMeanShare = 0.75;
-// Share of the force that is a layer's, as z in width_law.h, from which F^2 alone is no longer a sum's second term: on
-// a pad (z = 0.27) it is 7 % of the travel too much along the surface, on tori (0.1) 1 % are missing without it.
-constexpr double kLayered = 0.15;
-
-// What counts of F^2 there.
-double second_order(const Model& model, const ElasticRow& row) {
-  const ModelParams& p = model.params;
-  const double modulus_Pa = row.modulus * p.youngs_modulus_Pa / (1 - p.poisson_ratio * p.poisson_ratio);
-  const double radius_m = row.tip.margin_m / std::max(1 + row.curvature_1_per_m * row.tip.margin_m, 0.25);
-  const double travel_m = std::max(row.travel_m, 0.0);
-  const double z = std::max(-row.c_m_per_N, 0.0) * 4 / 3 * modulus_Pa * std::sqrt(radius_m * travel_m);
-  const double square = z * z / (kLayered * kLayered);
-  return 1 / (1 + square * square);
-}
 
 }  // namespace
 
@@ -44,7 +30,7 @@ ElasticFarField::ElasticFarField(const Model& model)
     : model_(model), amplitude_m_(static_cast<std::size_t>(drawn_shapes::count(model))) {}
 
 void ElasticFarField::add(const ElasticRow& row, double force_N) {
-  const double square_N2 = second_order(model_, row) * force_N * force_N;
+  const double square_N2 = force_N * force_N;
   for (std::size_t corner = 0; corner < 3; ++corner) {
     const Triangle& triangle = model_.triangle[static_cast<std::size_t>(row.foot.triangle)];
     const float* of = drawn_shapes::at(model_, triangle.vertex[corner]);
