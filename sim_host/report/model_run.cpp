@@ -54,14 +54,14 @@ ReportPath path_of(const PressPlace& press) {
 }
 
 // Everything but times: the same on every run. `surface`: at the end of the press.
-void play(const Model& model, const ReportPath& path, const ReferenceSurface& surface, ModelRun& run) {
+void play(const Model& model, const ReportPath& path, const ReferenceSurface& surface, Vec3 normal, ModelRun& run) {
   std::vector<Vec3> slide;
   std::size_t i = 0;
   double sum = 0;
   const StatePtr state = make_state(model);
   press(model, path.pose, {}, *state, nullptr, [&](const PressRow& row, const State& now, const Scratch&) {
     const Vec3 force = row.record.output.contact_w.force_N;
-    if (i + 1 == path.press_to && !surface.place.empty()) run.surface = surface_error(model, now, surface);
+    if (i + 1 == path.press_to && !surface.place.empty()) run.surface = surface_error(model, now, surface, normal);
     if (i < path.press_to && path.depth_m[i] >= 0) {
       run.path.x.push_back(path.depth_m[i]);
       run.path.force_N.push_back(force);
@@ -119,7 +119,7 @@ void measure(const ModelVariant& variant, const SceneDesc& stated, const PressPl
   run.state_bytes = state_bytes(model);
   run.scratch_bytes = scratch_bytes(model);
   const ReportPath path = path_of(press);
-  play(model, path, reference != nullptr ? reference->surface : ReferenceSurface{}, run);
+  play(model, path, reference != nullptr ? reference->surface : ReferenceSurface{}, press.normal, run);
   if (reference != nullptr) {
     ForcePath truth{reference->depth_m, reference->force_N};
     run.error = curve_error(truth, run.path);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Dense>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <fstream>
@@ -57,26 +59,60 @@ class DrawnSurface {
   std::vector<TipDent> dents_;
 };
 
+// The rigid motion across a normal that fits what a surface is off best, by area; four numbers.
+class Lean {
+ public:
+  explicit Lean(Vec3 normal) : one_(unit_or(tangential_part(axis_off(normal), normal), {1, 0, 0})), normal_(normal) {}
+  void add(Vec3 at_m, Vec3 off, double area) {
+    const Columns column = columns(at_m);
+    const Eigen::Vector3d e(off.x, off.y, off.z);
+    square_ += area * column.transpose() * column;
+    right_ += area * column.transpose() * e;
+    left_ += area * e.squaredNorm();
+  }
+  // Sum of what is left of the squares.
+  double left() const { return std::max(left_ - right_.dot(square_.ldlt().solve(right_)), 0.0); }
+
+ private:
+  using Columns = Eigen::Matrix<double, 3, 4>;
+  Columns columns(Vec3 at_m) const {
+    constexpr double kUnit_m = 0.01;  // so that shifts and tilts are of one size
+    Columns out;
+    const Vec3 two = cross(normal_, one_),
+               way[4] = {one_, two, cross(one_, (1 / kUnit_m) * at_m), cross(two, (1 / kUnit_m) * at_m)};
+    for (int k = 0; k < 4; ++k) out.col(k) << way[k].x, way[k].y, way[k].z;
+    return out;
+  }
+  Vec3 one_, normal_;
+  Eigen::Matrix4d square_ = Eigen::Matrix4d::Zero();
+  Eigen::Vector4d right_ = Eigen::Vector4d::Zero();
+  double left_ = 0;
+};
+
 }  // namespace
 
-SurfaceError surface_error(const Model& model, const State& state, const ReferenceSurface& reference) {
+SurfaceError surface_error(const Model& model, const State& state, const ReferenceSurface& reference, Vec3 normal) {
   const DrawnSurface drawn(model, state);
+  Lean lean(normal);
   SurfaceError error;
   double off = 0, moves = 0, area = 0;
   for (const elastic::MovedPlace& place : reference.place) {
-    const double distance = norm(drawn.displacement_m(place.rest_m) - place.displacement_m) / reference.depth_m;
+    const Vec3 by = (1 / reference.depth_m) * (drawn.displacement_m(place.rest_m) - place.displacement_m);
+    const double distance = norm(by);
     if (distance > error.largest) {
       error.largest = distance;
       error.at_largest_m = place.rest_m;
     }
     const double way = norm(place.displacement_m) / reference.depth_m;
     if (!(way > kMovedShare)) continue;
+    lean.add(place.rest_m, by, place.area_m2);
     off += place.area_m2 * distance * distance;
     moves += place.area_m2 * way * way;
     area += place.area_m2;
   }
   if (!(area > 0)) return error;
   error.rms = std::sqrt(off / area);
+  error.upright_rms = std::sqrt(lean.left() / area);
   error.still_rms = std::sqrt(moves / area);
   return error;
 }

@@ -44,6 +44,7 @@ struct Kept {
   friend void PrintTo(const Kept& kept, std::ostream* out) { *out << kept.name; }
   const char* name;
   double force_largest, stiffness_rms, surface_rms = 0;  // of the surface where the reference has one
+  double upright_rms = 0;                                // less its lean, of cases that stand on a knife's edge
 };
 constexpr double kForceLargest = 0.0301;
 
@@ -60,18 +61,27 @@ void press_case(const std::string& folder, const Kept& kept) {
   record("surface_largest", run.surface.largest);
   EXPECT_GT(run.surface.still_rms, 0.05);  // the surface moves: there is something to get wrong
   EXPECT_LE(run.surface.rms, kept.surface_rms);
+  record("surface_upright_rms", run.surface.upright_rms);
+  EXPECT_LE(run.surface.upright_rms, run.surface.rms);
+  if (kept.upright_rms > 0) {
+    EXPECT_LE(run.surface.upright_rms, kept.upright_rms);
+  }
 }
 
-// The ring leans by a tenth of the travel, which is all of its surface's error but 1.1 %, and the layer is pressed to
-// two fifths of its thickness (docs/accuracy.md).
+// The ring stands at the end of what holds it upright: how far it leans nothing tells, and its surface's bound is that
+// of before; less that lean it is 0.8 % off. The layer is pressed to two fifths of its thickness (docs/accuracy.md).
 constexpr Kept kCases[] = {
-    {"block", 0.005, 0.005, 0.0045},           // 0.38, 0.31 % on 2026-11-25, its surface 0.4 % on 2026-11-26
-    {"cylinder_side", 0.013, 0.0105, 0.006},   // 1.14, 0.97, 0.6 %
-    {"ellipsoid", 0.004, 0.004, 0.0047},       // 0.25, 0.26, 0.4 %
-    {"half_shell", 0.015, 0.012, 0.0155},      // 1.33, 1.05, 1.5 %
-    {"hollow_cylinder", 0.007, 0.01, 0.0125},  // 0.63, 0.99, 1.2 %
-    {"layer", 0.027, 0.028, 0.028},            // 2.62, 2.63, 2.7 %
-    {"ring", 0.024, 0.022, 0.067},             // 2.35, 2.13, 6.6 %
+    {"block", 0.005, 0.005, 0.0035},           // 0.38, 0.31 % on 2026-11-25, its surface 0.33 % on 2026-11-26
+    {"cylinder_side", 0.013, 0.0105, 0.005},   // 1.14, 0.97, 0.48 %
+    {"ellipsoid", 0.004, 0.004, 0.0044},       // 0.25, 0.26, 0.41 %
+    {"half_shell", 0.015, 0.012, 0.0152},      // 1.33, 1.05, 1.48 %
+    {"hollow_cylinder", 0.007, 0.01, 0.0115},  // 0.63, 0.99, 1.12 %
+    {"layer", 0.027, 0.028, 0.0225},           // 2.62, 2.63, 2.2 %
+    {"ring", 0.024, 0.022, 0.067, 0.0085},     // 2.35, 2.13, 3.8 %, upright 0.81 %
+};
+// Beside its crest that ring leans by as much as it is pressed, and goes soft by that: above the 3 % at the deepest.
+constexpr Kept kLeans[] = {
+    {"ring_beside", 0.0315, 0.0365, 0.0105},  // 3.09, 3.60, 1.0 % on 2026-11-26
 };
 class AccuracyCases : public testing::TestWithParam<Kept> {};
 
@@ -80,32 +90,36 @@ TEST_P(AccuracyCases, ElasticBodyErrsAsPublished) { press_case(kFolder, GetParam
 INSTANTIATE_TEST_SUITE_P(Of, AccuracyCases, testing::ValuesIn(kCases),
                          [](const auto& given) { return std::string(given.param.name); });
 
+INSTANTIATE_TEST_SUITE_P(Leaning, AccuracyCases, testing::ValuesIn(kLeans),
+                         [](const auto& given) { return std::string(given.param.name); });
+
 TEST(AccuracyFolders, EveryCaseIsGated) {
   std::set<std::string> names;
   for (const Kept& kept : kCases) names.insert(kept.name);
+  for (const Kept& kept : kLeans) names.insert(kept.name);
   EXPECT_EQ(cases_in(kFolder), names);
 }
 
 // Cases that were chosen and committed before they were solved (kept_back/solve.sh). The first width law was never
 // tuned to them; the law of 2026-11-25 was made with their errors in view (docs/accuracy.md).
 constexpr Kept kKeptBack[] = {
-    {"pad", 0.006, 0.006, 0.018},       // 0.48, 0.48, 1.8 % on 2026-11-25, its surface on 2026-11-26
-    {"spheroid", 0.02, 0.016, 0.0525},  // 1.86, 1.48, 5.1 %
-    {"torus", 0.0292, 0.0225, 0.0275},  // 2.91, 2.23, 2.7 % with the reference of 2026-11-26
-    {"tube", 0.026, 0.018, 0.018},      // 2.47, 1.74, 1.7 %
-    {"dome", 0.0301, 0.026, 0.0195},    // 2.82, 2.21, 1.9 %
-    {"box", 0.017, 0.018, 0.0135},      // 1.54, 1.64, 1.3 %
-    {"triaxial", 0.028, 0.029, 0.011},  // 2.70, 2.79, 1.0 %
+    {"pad", 0.006, 0.006, 0.0148},              // 0.48, 0.48, 1.44 % on 2026-11-25, its surface on 2026-11-26
+    {"spheroid", 0.02, 0.016, 0.0525, 0.0115},  // 1.86, 1.48, 5.1 %, upright 1.1 %
+    {"torus", 0.0292, 0.0225, 0.0275},          // 2.91, 2.23, 2.7 % with the reference of 2026-11-26
+    {"tube", 0.026, 0.018, 0.0185},             // 2.47, 1.74, 1.81 %
+    {"dome", 0.0301, 0.026, 0.02},              // 2.82, 2.21, 1.98 %
+    {"box", 0.017, 0.018, 0.0148},              // 1.54, 1.64, 1.44 %
+    {"triaxial", 0.028, 0.029, 0.011},          // 2.70, 2.79, 1.0 %
 };
 
 // Cases that were solved after the law of 2026-11-25 was made, slab and loaf after the drawn fields of 2026-11-26, too;
 // as found, above the 3 % or not.
 constexpr Kept kBlind[] = {
-    {"lentil", 0.052, 0.049, 0.0088},       // 5.06, 4.77, 0.8 % on 2026-11-25, surfaces on 2026-11-26
-    {"disc", 0.011, 0.013, 0.0156},         // 0.98, 1.20, 1.5 %
-    {"small_torus", 0.021, 0.013, 0.0265},  // 1.98, 1.18, 2.6 %
+    {"lentil", 0.052, 0.049, 0.0085},       // 5.06, 4.77, 0.82 % on 2026-11-25, surfaces on 2026-11-26
+    {"disc", 0.011, 0.013, 0.0152},         // 0.98, 1.20, 1.48 %
+    {"small_torus", 0.021, 0.013, 0.0268},  // 1.98, 1.18, 2.65 %
     {"slab", 0.008, 0.007, 0.0092},         // 0.73, 0.63, 0.9 % on 2026-11-26
-    {"loaf", 0.008, 0.0135, 0.005},         // 0.77, 1.26, 0.5 %
+    {"loaf", 0.008, 0.0135, 0.0055},        // 0.77, 1.26, 0.5 %
 };
 
 class AccuracyKeptBack : public testing::TestWithParam<Kept> {};
