@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "config/bake/drawn_fields.h"
@@ -308,34 +309,58 @@ std::vector<double> fit_places(elastic::SelfTerms& self, const elastic::RestBody
 // curved, no less than the linear modes' share. On an arm c is a small difference of large numbers, and what its
 // changes from place to place asked for along the surface was a tenth of the force (2026-11-26); c1 and beta would be
 // less than a hundredth of the way.
-void hold_numbers(const elastic::ElasticBody<3>& body, ImageContents& image) {
-  using namespace elastic_layout;
-  const int s = body.soft, linear = static_cast<int>(body.modes.lambda_Npm3.size()) - s;
-  const auto stride = at(vertex_floats(s, linear)), own = at(kTermFloats * terms(s));
-  const auto own_of = [&](std::int32_t v) { return &image.elastic_vertex[stride * at(v) + own]; };
-  for (const ToolPoint& point : image.tool_point) {
-    const float curvature = own_of(image.triangle[at(point.begins_at)].vertex[0])[2];
-    const std::vector<std::int32_t> part = part_of(model_of(image), point.begins_at);
+class PartNumbers {
+ public:
+  PartNumbers(const elastic::ElasticBody<3>& body, ImageContents& image)
+      : image_(image),
+        linear_(static_cast<int>(body.modes.lambda_Npm3.size()) - body.soft),
+        stride_(at(elastic_layout::vertex_floats(body.soft, linear_))),
+        own_(at(elastic_layout::kTermFloats * elastic_layout::terms(body.soft))) {}
+
+  // Where a part begins is where the tick reads it (show_place_numbers), whatever part has a shared vertex last.
+  void hold() const {
+    std::vector<Numbers> held;
+    for (const ToolPoint& point : image_.tool_point) held.push_back(numbers_of(point));
+    for (std::size_t i = 0; i < held.size(); ++i)
+      for (const std::int32_t t : part_of(model_of(image_), image_.tool_point[i].begins_at))
+        for (const std::int32_t v : image_.triangle[at(t)].vertex) std::ranges::copy(held[i], own_of(v));
+    for (std::size_t i = 0; i < held.size(); ++i) std::ranges::copy(held[i], own_of(first_of(image_.tool_point[i])));
+  }
+
+ private:
+  using Numbers = std::array<float, elastic_layout::kOwnValues>;
+
+  float* own_of(std::int32_t v) const { return &image_.elastic_vertex[stride_ * at(v) + own_]; }
+  std::int32_t first_of(const ToolPoint& point) const { return image_.triangle[at(point.begins_at)].vertex[0]; }
+  double linear_share(std::int32_t vertex, Vec3 normal) const {
+    const float* u = own_of(vertex) + elastic_layout::kOwnFloats;
+    double sum = 0;
+    for (int m = 0; m < linear_; ++m, u += 3) {
+      const double along =
+          dot(normal, {static_cast<double>(u[0]), static_cast<double>(u[1]), static_cast<double>(u[2])});
+      sum += along * along;
+    }
+    return sum;
+  }
+  Numbers numbers_of(const ToolPoint& point) const {
+    const float curvature = own_of(first_of(point))[2];
     double c = 0, least = 0;
     int count = 0;
-    for (const std::int32_t t : part)
+    for (const std::int32_t t : part_of(model_of(image_), point.begins_at))
       for (int k = 0; k < 3; ++k) {
-        const float* of = own_of(image.triangle[at(t)].vertex[k]);
-        if (std::abs(of[2] - curvature) > 0.5f * std::abs(curvature)) continue;
-        const Vec3 n = image.corner_normal[at(t)].normal[k];
-        for (const float* u = of + kOwnFloats; u != of + kOwnFloats + 3 * linear; u += 3) {
-          const double along =
-              dot(n, {static_cast<double>(u[0]), static_cast<double>(u[1]), static_cast<double>(u[2])});
-          least += along * along;
-        }
-        c += static_cast<double>(of[0]);
+        const std::int32_t vertex = image_.triangle[at(t)].vertex[k];
+        if (std::abs(own_of(vertex)[2] - curvature) > 0.5f * std::abs(curvature)) continue;
+        least += linear_share(vertex, image_.corner_normal[at(t)].normal[k]);
+        c += static_cast<double>(own_of(vertex)[0]);
         count += 1;
       }
-    const float numbers[kOwnValues] = {static_cast<float>(std::max(c, least) / count), 0, curvature, 0};
-    for (const std::int32_t t : part)
-      for (const std::int32_t v : image.triangle[at(t)].vertex) std::copy_n(numbers, kOwnValues, own_of(v));
+    return {static_cast<float>(std::max(c, least) / count), 0, curvature, 0};
   }
-}
+
+  ImageContents& image_;
+  const int linear_;
+  const std::size_t stride_, own_;
+};
 
 }  // namespace
 
@@ -388,7 +413,7 @@ ElasticReport ElasticBake::write(int soft, int linear, double add_c_mpN, ImageCo
   add_energy(body.maps.potential, image);
   add_vertices(body, term_shapes(body, parts.gradient), self, parts.feet, image, parts.normals);
   if (touches_in_parts(image))
-    hold_numbers(body, image);
+    PartNumbers(body, image).hold();
   else
     add_own_slopes(body, parts.normals, image);
   parts.drawn.append(body, parts.spacing_m, image.elastic_vertex);

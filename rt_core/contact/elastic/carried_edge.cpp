@@ -171,7 +171,7 @@ EdgePlace place_on_edge(Vec3 centre_w, CarriedTriangle& last, ElasticRow& row) P
   const Vec3 edge = v[(on.edge + 1) % 3] - v[on.edge], out = centre_w - on.place_w;
   const Vec3 over = beyond_edge(last, last.model.triangle[static_cast<std::size_t>(other)], on.edge) - v[on.edge];
   const Vec3 up = cross(v[1] - v[0], v[2] - v[0]);
-  if (row.tip.is_of_part) {
+  if (row.tip.is_of_part()) {
     const bool is_above =
         looks_to(out, up) > max_of(kGrazing, is_part(last.model, other) ? looks_to(out, cross(over, edge)) : 0.0);
     EdgePlace nearest = is_above ? come_along(on, last, row) : on;

@@ -307,7 +307,7 @@ void CarriedSurface::place(const RoundTip& tip, std::int32_t triangle, Vec3 near
     on = place_on_edge(centre_w, last, row);
     found = row.foot.state == FootState::kFound;
   }
-  if (!found && on.edge < 0 && tip.is_of_part) {
+  if (!found && on.edge < 0 && tip.is_of_part()) {
     row.foot = {};
     row.foot.state = FootState::kFar;
     row.foot.triangle = last.triangle;
@@ -316,14 +316,14 @@ void CarriedSurface::place(const RoundTip& tip, std::int32_t triangle, Vec3 near
   if (!found && on.edge < 0 && !place_on_facet(centre_w, triangle, row)) return;
   const FacetSag sag = found ? smooth_sag(model, last, row.foot) : FacetSag{};
   row.travel_m = on.is_behind ? -kHuge : tip.margin_m - row.foot.height_m;
-  row.leads_m = tip.is_of_part && found ? lead_of(tip, row.foot.normal_w) : 0.0;
+  row.leads_m = tip.is_of_part() && found ? lead_of(tip, row.foot.normal_w) : 0.0;
   if (!(row.travel_m + row.leads_m + nearer_m > 0)) {
     // Newton's steps to a foot that is too far; with the terms below they count themselves (24,962 instructions against
     // 24,522 without, half_shell, 2026-11-23).
     *shown += 2 * terms(model.params.elastic_soft);
     return;
   }
-  row.has_slide = tip.is_ball() && force_N > 0 && (found || on.edge >= 0);
+  row.has_slide = tip.is_ball() && !tip.is_of_part() && force_N > 0 && (found || on.edge >= 0);
   FootSlopes slopes;
   Real step_m = 0;
   if (found) {

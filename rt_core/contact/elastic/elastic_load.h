@@ -55,7 +55,7 @@ struct ElasticLoad : TipLaws {
   // 0.16 mm into the seat of a clip, and the next tick said 800 N (2026-11-26).
   Real told_root_tangent(std::int32_t r, Real force_N, Real root_tangent) const PALPATE_RT {
     const ElasticRow& row = *placed[at(r, 0)];
-    if (!(force_N > 0 && row.tip.is_of_part && law[at(r, 0)].is_line)) return root_tangent;
+    if (!(force_N > 0 && row.tip.is_of_part() && law[at(r, 0)].is_line)) return root_tangent;
     return max_of(root_tangent, square_root(row.told.tangent_N_per_m));
   }
   // The force along the surface that the stored energy asks for where c, c1 and the curvature change along it. Of a
@@ -120,7 +120,7 @@ struct ElasticLoad : TipLaws {
     if (!law[i].is_line) return shift_m;
     const ElasticRow& row = *placed[i];
     const Real touches_m = law[i].line.touches_at_m(), depth_m = tip[i].depth_m;
-    if (row.tip.is_of_part && row.dent_m > 0) return depth_m - (touches_m + row.dent_m);
+    if (row.tip.is_of_part() && row.dent_m > 0) return depth_m - (touches_m + row.dent_m);
     if (goes_on && found_m[r] > touches_m) return depth_m - found_m[r];
     const Real over_m = depth_m - shift_m - touches_m;
     if (before_N[r] > 0 || !(over_m > 0)) return shift_m;

@@ -24,8 +24,9 @@ struct RoundTip {
   Real margin_m = 0;
   Real modulus_Pa = 0, depth_max_m = 0;  // of a capsule's law: E*
   Real along = 0;                        // where on the axis it touches, -1 to 1
-  bool is_of_part = false;               // ToolPoint::begins_at
+  std::int32_t begins_at = 0;            // ToolPoint::begins_at
 
+  bool is_of_part() const PALPATE_RT { return begins_at > 0; }
   Vec3 centre_w() const PALPATE_RT { return middle_w + along * half_axis_w; }
   bool is_ball() const PALPATE_RT { return !(squared_norm(half_axis_w) > 0); }
   void come_near(Vec3 w) PALPATE_RT {

@@ -4,8 +4,8 @@
 #include "rt_core/contact/regions.h"
 #include "rt_core/surface/body_box.h"
 #include "rt_core/surface/closest_point.h"
-#include "rt_core/tool/two_tools.h"
 #include "rt_core/tool/virtual_coupling.h"
+#include "rt_core/tool/two_tools.h"
 
 namespace palpate {
 
@@ -77,7 +77,7 @@ class Finder {
     PointState& point = state_.point[index];
     const bool touched = point.triangle >= 0 && point.gap_m < 0;
     RoundTip tip = round_tip(model_, index, carrier_w(model_, state_, piece_of(index)));
-    if (tip.is_of_part) return visit_part(index, tip, touched);
+    if (tip.is_of_part()) return visit_part(index, tip, touched);
     if (!touched && is_far(index, tip)) return;
     ElasticRow& row = work_.row[index];
     if (touched) tip.come_near(point.closest_w);
@@ -332,7 +332,7 @@ RoundTip round_tip(const Model& model, std::int32_t index, const Pose& carrier) 
   RoundTip tip;
   tip.margin_m = point.margin_m;
   tip.middle_w = transform(carrier, point.position_tool_m);
-  tip.is_of_part = point.begins_at > 0;
+  tip.begins_at = point.begins_at;
   if (piece.shape == PieceShape::kCapsule && point.position_tool_m == piece.pose_tool.position_m)
     tip.half_axis_w =
         rotate(carrier.orientation, rotate(piece.pose_tool.orientation, Vec3{0, 0, piece.half_extent_m[2]}));

@@ -81,19 +81,19 @@ Real stand_on_line(const Model& model, const Box& box, Real bend_1_per_m, Real f
   line.right_end = cut(reach.right_m + radius * lean, radius, line.right_m);
   line.right_m = max_of(line.right_m, -line.left_m);
   // On a part's edge that it crosses: a ball.
-  if (row.tip.is_of_part && row.foot.state == FootState::kEdge) line.left_m = line.right_m = line.lean = 0;
+  if (row.tip.is_of_part() && row.foot.state == FootState::kEdge) line.left_m = line.right_m = line.lean = 0;
   const LineLaw law(line, row.tip.modulus_Pa * row.modulus, kHuge);
-  if (row.tip.is_of_part) row.leads_m = max_of(-law.touches_at_m(), 0.0);
+  if (row.tip.is_of_part()) row.leads_m = max_of(-law.touches_at_m(), 0.0);
   const Real told_m = kTold * row.tip.depth_max_m;
   row.told = law.at(told_m + law.touches_at_m());
   const bool had = force_N > 0 && row.told.force_N > 0;
   row.dent_m = had ? dent_m(row.told, told_m, force_N) : 0.0;
   const Real deep = max_of(had ? row.dent_m : row.travel_m - law.touches_at_m(), kLeastDepth * radius);
-  if (had && row.tip.is_of_part) row.dent_m = nearer_dent_m(law, row.dent_m, force_N);
+  if (had && row.tip.is_of_part()) row.dent_m = nearer_dent_m(law, row.dent_m, force_N);
   const LineLaw::Lean stands = law.lean_at(law.touches_at_m() + deep);
   row.arm_m = stands.arm_m * min_of(deep / (kLeastArmDepth * radius), 1.0);
   Real way_m = stands.to_pressure_m;
-  if (row.tip.is_of_part) {
+  if (row.tip.is_of_part()) {
     const Reach on_face = reach_of(model, box, axis, 0, row);
     way_m = clamp_to(way_m, min_of(kInset_m - on_face.left_m, 0.0), max_of(on_face.right_m - kInset_m, 0.0));
   }

@@ -75,16 +75,6 @@ void show_bends(const Vec3* edge_m, const float* const* own, ElasticRow& row) PA
   store(row.number_bend[2], dot({dot(x, f), dot(y, f), dot(z, f)}, f));
 }
 
-// Of a part of the surface there is one set of numbers (config/bake/surface_parts.h), and nothing between the vertices.
-bool are_even(const float* const* own) PALPATE_RT {
-  Mask4 differ{};
-  for (int k = 0; k < 3; ++k) {  // bound: 3 x 4
-    differ |= widen4(own[k]) != widen4(own[0]);
-    for (int i = kOwnValues; i < kOwnBends; i += 4) differ |= widen4(own[k] + i) != Double4{};
-  }
-  return bits_of(differ) == 0;
-}
-
 void show_values(const Double4& value, ElasticRow& row) PALPATE_RT {
   row.c_m_per_N = value[0];
   row.c1_m_per_N2 = value[1];
@@ -110,6 +100,13 @@ void show_modulus(const Model& model, ElasticRow& row) PALPATE_RT {
 }  // namespace
 
 void show_place_numbers(const Model& model, ElasticRow& row) PALPATE_RT {
+  // Of a part of the surface there is one set of numbers, where it begins: vertices that two parts share have one.
+  if (row.tip.is_of_part()) {
+    const auto begins = static_cast<std::size_t>(row.tip.begins_at);
+    show_values(widen4(own_terms(model, model.triangle[begins].vertex[0])), row);
+    row.c_gradient = row.c1_gradient = row.curvature_gradient = row.beta_gradient = {};
+    return show_modulus(model, row);
+  }
   const auto index = static_cast<std::size_t>(row.foot.triangle);
   const Triangle& triangle = model.triangle[index];
   const float* own[3];
@@ -118,11 +115,6 @@ void show_place_numbers(const Model& model, ElasticRow& row) PALPATE_RT {
     own[k] = own_terms(model, triangle.vertex[k]);
     edge_m[k] = model.vertex_m[static_cast<std::size_t>(triangle.vertex[(k + 1) % 3])] -
                 model.vertex_m[static_cast<std::size_t>(triangle.vertex[k])];
-  }
-  if (row.tip.is_of_part && !row.has_slide && are_even(own)) {
-    show_values(widen4(own[0]), row);
-    row.c_gradient = row.c1_gradient = row.curvature_gradient = row.beta_gradient = {};
-    return show_modulus(model, row);
   }
   const VertexCubics cubics(edge_m, model.corner_normal[index], own);
   Double4 slope[3];
