@@ -4,7 +4,7 @@
 #include "rt_core/contact/contact_stiffness.h"
 #include "rt_core/decay.h"
 #include "rt_core/safety/seat.h"
-#include "rt_core/surface/body_box.h"
+#include "rt_core/tool/landing.h"
 #include "rt_core/tool/two_tools.h"
 
 namespace palpate {
@@ -41,15 +41,12 @@ bool factor(const Model& model, const double (&contact_stiffness)[36], Real (&ma
   return cholesky_factor(matrix, kDof);
 }
 
-// (contact_stiffness + diag(coupling)) motion = wrench. Returns false, `motion` untouched, when singular.
-bool solve(const Model& model, const double (&contact_stiffness)[36], const Wrench& wrench, Twist& motion) PALPATE_RT {
+// The motion under a wrench, of the Cholesky factor.
+Twist solved(const Real (&factor)[36], const Wrench& wrench) PALPATE_RT {
   const Vec3 f = wrench.force_N, m = wrench.torque_Nm;
   Real x[kDof] = {f.x, f.y, f.z, m.x, m.y, m.z};
-  Real matrix[kDof * kDof];
-  if (!factor(model, contact_stiffness, matrix)) return false;
-  cholesky_solve(matrix, x, kDof);
-  motion = {{x[0], x[1], x[2]}, {x[3], x[4], x[5]}};
-  return true;
+  cholesky_solve(factor, x, kDof);
+  return {{x[0], x[1], x[2]}, {x[3], x[4], x[5]}};
 }
 
 // Springs of the slipping regions that `motion` of the tool would turn back. Returns whether there are any.
@@ -67,111 +64,22 @@ bool add_reversals(const State& state, const Twist& motion, ContactStiffness& st
   return any;
 }
 
-// What holds the tool at a part of the surface that it comes to: more than the stiffest of them. With a thousand times
-// the coupling, of 237 N/m, the arms that a tube has snapped through pressed it 16 um into a seat of 7 kN/mm, and the
-// model said 110 N (2026-11-26).
-constexpr Real kLanding_N_per_m = 1e8;
-static_assert(2 * kMaxPieces <= 64, "a bit for either end of every point");
-
-// Which parts of an elastic body a motion of the tool, from `from`, would bring it into: springs that begin where it
-// meets them. In a seat as stiff as a wall a tool that knew of it in the next tick alone was 0.1 mm deep at 0.5 m/s,
-// and the model said 900 N (2026-11-26).
-class Landing {
- public:
-  Landing(const Model& model, const State& state, const Pose& from, Wrench& wrench,
-          ContactStiffness& stiffness) PALPATE_RT : model_(model),
-                                                    state_(state),
-                                                    gone_(twist_between(state.tool_w, from)),
-                                                    wrench_(wrench),
-                                                    stiffness_(stiffness) {}
-
-  // Whether there are any that it has not met yet.
-  bool add(const Twist& motion) PALPATE_RT {
-    motion_ = motion;
-    any_ = false;
-    const auto points = static_cast<std::int32_t>(model_.tool_point.size());
-    for (std::int32_t i = 0; i < points; ++i) {  // bound: kMaxPieces
-      const ToolPoint& tool_point = model_.tool_point[static_cast<std::size_t>(i)];
-      const PointState& point = state_.point[i];
-      if (tool_point.begins_at == 0 || point.triangle < 0 || presses(point)) continue;
-      const Real gap = point.gap_m >= 0 ? point.gap_m : point.gap_bound_m;
-      const ToolPiece& piece = model_.piece[static_cast<std::size_t>(tool_point.piece)];
-      if (piece.shape == PieceShape::kCapsule)
-        meet_line(piece, point, gap, 2 * i);
-      else
-        meet(point.closest_w, point.normal_w, gap, 2 * i);
-    }
-    return any_;
-  }
-
- private:
-  // A place that was touched and has no force is come to as well.
-  bool presses(const PointState& point) const PALPATE_RT {
-    return point.gap_m < 0 && point.region >= 0 && state_.region[point.region].normal_force_N > 0;
-  }
-  // A capsule comes down on either end of what it has below it, as far as the body goes on.
-  void meet_line(const ToolPiece& piece, const PointState& point, Real gap_m, std::int32_t end) PALPATE_RT {
-    const Vec3 axis = rotate(state_.tool_w.orientation, rotate(piece.pose_tool.orientation, Vec3{0, 0, 1}));
-    const Vec3 middle = transform(state_.tool_w, piece.pose_tool.position_m);
-    const Real half = piece.half_extent_m[2], at = dot(point.closest_w - middle, axis),
-               slope = dot(axis, point.normal_w);
-    const Box box = root_box(model_);
-    Real from = min_of(-half - at, 0.0), to = max_of(half - at, 0.0);
-    limit(axis.x, point.closest_w.x, box.lower.x, box.upper.x, from, to);
-    limit(axis.y, point.closest_w.y, box.lower.y, box.upper.y, from, to);
-    limit(axis.z, point.closest_w.z, box.lower.z, box.upper.z, from, to);
-    meet(point.closest_w + from * axis, point.normal_w, gap_m + from * slope, end);
-    meet(point.closest_w + to * axis, point.normal_w, gap_m + to * slope, end + 1);
-  }
-  static void limit(Real axis, Real at_m, Real lower_m, Real upper_m, Real& from, Real& to) PALPATE_RT {
-    if (!(abs_of(axis) > 1e-3)) return;
-    const Real inverse = 1.0 / axis, up = max_of(upper_m - at_m, 0.0) * inverse,
-               down = min_of(lower_m - at_m, 0.0) * inverse;
-    to = min_of(to, max_of(up, down));
-    from = max_of(from, min_of(up, down));
-  }
-  void meet(Vec3 place_w, Vec3 n, Real gap_m, std::int32_t end) PALPATE_RT {
-    const std::uint64_t bit = std::uint64_t{1} << end;
-    if ((met_ & bit) != 0) return;
-    const Vec3 turn = cross(place_w - state_.tool_w.position_m, n);
-    const auto along = [&](const Twist& t) PALPATE_RT { return dot(n, t.translation_m) + dot(turn, t.rotation_rad); };
-    const Real gap = max_of(gap_m + along(gone_), 0.0), k = kLanding_N_per_m;
-    if (!(-along(motion_) > gap)) return;
-    add_spring(stiffness_, k, n, turn);
-    wrench_.force_N -= (k * gap) * n;
-    wrench_.torque_Nm -= (k * gap) * turn;
-    met_ |= bit;
-    any_ = true;
-  }
-
-  const Model& model_;
-  const State& state_;
-  const Twist gone_;
-  Twist motion_;
-  std::uint64_t met_ = 0;  // ends of points
-  Wrench& wrench_;
-  ContactStiffness& stiffness_;
-  bool any_ = false;
-};
-
-// Motion of the tool from `from` under a wrench: the tangent is right for slipping forwards, so try that first.
+// Motion of the tool from `from` under a wrench: the tangent is right for slipping forwards, so try that first. False,
+// `motion` untouched, when it is singular.
 bool answer(const Model& model, const State& state, const Pose& from, const Wrench& wrench, Twist& motion) PALPATE_RT {
-  Twist forwards;
-  if (!solve(model, state.contact_stiffness, wrench, forwards)) return false;
+  Real matrix[kDof * kDof];
+  if (!factor(model, state.contact_stiffness, matrix)) return false;
+  Twist answered = solved(matrix, wrench);
   ContactStiffness further;
-  Wrench with_landings = wrench;
-  const bool turns = add_reversals(state, forwards, further);
-  const bool in_parts = touches_in_parts(model);
-  Landing landing(model, state, from, with_landings, further);
-  motion = forwards;
-  for (std::int32_t i = 0; i < (in_parts ? kLandings : 1); ++i) {  // bound: kLandings
-    const bool lands = in_parts && landing.add(motion);
-    if (!lands && !(turns && i == 0)) break;
-    double matrix[36];
-    store(further, matrix);
-    for (std::int32_t k = 0; k < 36; ++k) matrix[k] += state.contact_stiffness[k];  // bound: 36
-    if (!solve(model, matrix, with_landings, motion)) return false;
+  if (add_reversals(state, answered, further)) {
+    double stiffer[36];
+    store(further, stiffer);
+    for (std::int32_t k = 0; k < 36; ++k) stiffer[k] += state.contact_stiffness[k];  // bound: 36
+    if (!factor(model, stiffer, matrix)) return false;
+    answered = solved(matrix, wrench);
   }
+  if (touches_in_parts(model)) land(model, state, from, matrix, answered);
+  motion = answered;
   return true;
 }
 

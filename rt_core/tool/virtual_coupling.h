@@ -33,10 +33,6 @@ bool follow(const Model& model, const State& state, const Twist& handle, Twist& 
 bool correct(const Model& model, const State& state, const Wrench& contact_w, const Wrench& coupling_on_tool_w,
              Twist& correction) PALPATE_RT;
 
-// Of a tool that comes to parts of a body: what is turned aside by one part may come to another: a tube that met an
-// arm's inside was pressed .2 mm into the seat by the arms, and the model said 2,000 N (2026-11-26).
-inline constexpr std::int32_t kLandings = 3;
-
 // Where the tool goes under this tick's contact wrench: scratch.tool_corrected_w. As it is when something drives it;
 // where it was when the wrench is no number. Status: kCouplingSingular.
 void balance_tool(const Model& model, const State& state, Scratch& scratch) PALPATE_RT;

@@ -12,7 +12,7 @@
 #include "rt_core/image_check.h"
 #include "rt_core/surface/closest_point.h"
 #include "rt_core/surface/plane_proof.h"
-#include "rt_core/tool/virtual_coupling.h"
+#include "rt_core/tool/landing.h"
 
 namespace palpate {
 

@@ -4,7 +4,7 @@
 #include "rt_core/contact/regions.h"
 #include "rt_core/surface/body_box.h"
 #include "rt_core/surface/closest_point.h"
-#include "rt_core/tool/virtual_coupling.h"
+#include "rt_core/tool/landing.h"
 #include "rt_core/tool/two_tools.h"
 
 namespace palpate {
