@@ -18,17 +18,17 @@ constexpr std::int32_t kDof = 6;
 // in its seat, alternated by 0.8 N for as long as it was dragged (2026-11-22).
 constexpr Real kSwingCalm = 4;
 
-// How far the tool may go by itself, of the coupling's longest stretch, when the hand goes `hand` of it. Friction that
-// may give energy back needs the wide step: held to the narrow one its surplus grew to kUnstable in a slide of
-// heart_compass_paper (2026-11-23). While no force is rendered there is nothing to step, and what asks whether the tool
-// starts inside the body must not wait until it has come out. While the coupling's end stands apart (safety/seat.h) the
-// end gives way to a surplus, so that such friction does without: with the wide step its force swung in 2 ticks after
-// gaps (heart_compass_paper, 2026-11-25).
-Real own_share(const ModelParams& p, const State& state, Real hand) PALPATE_RT {
+// How far the tool may go by itself, of the coupling's longest stretch, when the hand goes `hand` of it; `calm`: under
+// a hand at rest. Friction that may give energy back needs the wide step: held to the narrow one its surplus grew to
+// kUnstable in a slide of heart_compass_paper (2026-11-23). While no force is rendered there is nothing to step, and
+// what asks whether the tool starts inside the body must not wait until it has come out. While the coupling's end
+// stands apart (safety/seat.h) the end gives way to a surplus, so that such friction does without: with the wide step
+// its force swung in 2 ticks after gaps (heart_compass_paper, 2026-11-25).
+Real own_share(const ModelParams& p, const State& state, Real hand, Real calm) PALPATE_RT {
   const bool gives = p.friction_law == FrictionLaw::kPaper || p.friction_law == FrictionLaw::kPreslidingPaper;
   return (gives && state.apart == 0) || state.safety.mode != Mode::kForce
              ? kToolStepShare
-             : clamp_to(kFollowShare * hand, kCalmStepShare, kToolStepShare);
+             : clamp_to(kFollowShare * hand, calm, kToolStepShare);
 }
 
 // Cholesky factor of contact_stiffness + diag(coupling). Returns false when singular.
@@ -147,11 +147,13 @@ Pose within_step(const Model& model, const State& state, const Pose& tool_w, std
   const Real reach_m = p.force_max_N / p.coupling_N_per_m, reach_rad = p.torque_max_Nm / p.coupling_Nm_per_rad;
   const Real way_m = norm(hand.translation_m), way_rad = norm(hand.rotation_rad);
   const Real fast = max_of(reach_m > 0 ? way_m / reach_m : 0, reach_rad > 0 ? way_rad / reach_rad : 0);
-  const Real allowed = own_share(p, state, fast) / (1 + kSwingCalm * state.safety.swings);
-  const Real most_m = allowed * reach_m + way_m, length_m = norm(step.translation_m);
+  const Real tired = 1 + kSwingCalm * state.safety.swings;
+  const Real calm = min_of(kCalmStepShare, kCalmSpeed_m_per_s * p.period_s / reach_m);
+  const Real most_m = own_share(p, state, fast, calm) / tired * reach_m + way_m, length_m = norm(step.translation_m);
   Real share = length_m > most_m ? most_m / length_m : 1;
   if (reach_rad > 0) {
-    const Real most_rad = allowed * reach_rad + way_rad, turn_rad = norm(step.rotation_rad);
+    const Real most_rad = own_share(p, state, fast, kCalmStepShare) / tired * reach_rad + way_rad,
+               turn_rad = norm(step.rotation_rad);
     if (turn_rad > most_rad) share = min_of(share, most_rad / turn_rad);
   }
   if (!(share < 1)) return tool_w;

@@ -50,6 +50,9 @@ Pose held_end(const Model& model, const Pose& device_w, const Pose& tool_w, std:
 // the scenes' own paths; 1 % leaves 1.0 % and 1.0 %, and a snap takes some ten ticks (2026-11-23). The laws of friction
 // that give energy back keep kToolStepShare.
 inline constexpr Real kCalmStepShare = 0.01;
+// And no faster than so: of a coupling of 84 N/m behind 20 N 1 % is 2.4 mm, by which a tube that had slipped off one
+// arm of a clip was inside the other in the next tick, and the model said 200 to 1,700 N (2026-11-26).
+inline constexpr Real kCalmSpeed_m_per_s = 0.25;
 // A fast hand's tool may go by itself as far as this share of the hand's way, up to kToolStepShare: with 1 % alone a
 // tool pushed at 0.5 m/s through the thin clip of snap_in_paper lay up to 2 mm in it without contact, with a tenth 0.5
 // mm (scenes.PushedThrough); with 0.4 the force alternated once in three scenes' pushes (2026-11-23).

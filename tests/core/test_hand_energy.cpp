@@ -63,6 +63,24 @@ TEST(WithinStep, BoundsWhatTheToolDoesByItself) {
   EXPECT_NEAR(within_step(model, *state, at({0.01, 0, 0}), status).position_m.x, 8 * own_m, 1e-15);
 }
 
+// Behind a coupling so soft that a hundredth of its stretch is millimetres, no faster than a quarter of a metre a
+// second; turns are as they were.
+TEST(WithinStep, OfASoftCouplingIsNoFasterThanAHand) {
+  Model model;
+  model.params = tiny_params();
+  model.params.coupling_N_per_m = 50;  // 170 mm
+  const StatePtr state = roomy_state();
+  state->safety.mode = Mode::kForce;
+  std::uint32_t status = 0;
+  const double own_m = 0.25 * model.params.period_s, own_rad = kCalmStepShare * 0.4;
+  EXPECT_NEAR(within_step(model, *state, at({0.01, 0, 0}), status).position_m.x, own_m, 1e-15);
+  EXPECT_EQ(status, Status::kToolHeldBack);
+  const Pose turned = within_step(model, *state, at({}, {0, 0.1, 0}), status);
+  EXPECT_NEAR(small_rotation_vector(turned.orientation).y, own_rad, 1e-6);
+  state->device_w = at({0, 0, 0.002});  // a fast hand's: a quarter of its way
+  EXPECT_NEAR(within_step(model, *state, at({0.01, 0, 0}), status).position_m.x, 1.25 * 0.002, 1e-15);
+}
+
 // Of a contact that pushes along one slanted direction: the springs in series along it, nothing across.
 TEST(FeltStiffness, IsCouplingAndContactInSeries) {
   Model model;
