@@ -2,7 +2,7 @@
 // account per tick with the coupled solve (callgrind, gcc 12 -O2, 2026-11-21): 12 k for one region of 16 contacts, 150
 // k for 16 regions of 64 contacts, of which 90 k are the solve.
 #include "rt_core/contact/contact.h"
-#include "rt_core/contact/points/point_laws.h"
+#include "rt_core/contact/points/coupled_points.h"
 #include "rt_core/contact/regions.h"
 
 namespace palpate {
@@ -43,33 +43,42 @@ void lean_regions(const Model& model, State& state, const PointLaws& laws, const
   }
 }
 
+// C in rows of kRegionStride; far_field_compliance_m_per_N() of four regions at a time.
 void fill_compliance(const Model& model, const State& state, const RowsByRegion& rows, Real* compliance) PALPATE_RT {
   const std::int32_t n = rows.regions;
   const Real scale = far_field_scale_m2_per_N(model.params.youngs_modulus_Pa, model.params.poisson_ratio);
   const Real core = model.params.far_field_radius_m;
-  compliance[0] = scale / core;  // all there is to say about a single region
-  if (n == 1) return;
-  for (std::int32_t i = 0; i < n; ++i) {  // bound: kMaxRegions^2 / 2
-    const Region& a = state.region[rows.slot[i]];
-    for (std::int32_t j = 0; j <= i; ++j) {
-      const Region& b = state.region[rows.slot[j]];
-      const Real c = far_field_compliance_m_per_N(scale, core, a.lean_tool_m, a.lean_normal_tool, b.lean_tool_m,
-                                                  b.lean_normal_tool);
-      compliance[i * n + j] = c;
-      compliance[j * n + i] = c;
+  if (n == 1) {  // all there is to say about a single region
+    for (std::int32_t j = 0; j < kRegionStride; ++j) compliance[j] = j == 0 ? scale / core : 0.0;
+    return;
+  }
+  Vec3x4 place[kRegionStride / 4] = {}, normal[kRegionStride / 4] = {};
+  for (std::int32_t i = 0; i < n; ++i) {  // bound: kMaxRegions
+    const Region& region = state.region[rows.slot[i]];
+    place[i / 4].set(static_cast<std::uint32_t>(i % 4), region.lean_tool_m);
+    normal[i / 4].set(static_cast<std::uint32_t>(i % 4), region.lean_normal_tool);
+  }
+  for (std::int32_t i = 0; i < n; ++i) {  // bound: kMaxRegions^2 / 4
+    const Region& region = state.region[rows.slot[i]];
+    const Vec3x4 here = splat4(region.lean_tool_m), along = splat4(region.lean_normal_tool);
+    for (std::int32_t j = 0; 4 * j < n; ++j) {
+      const Vec3x4 off = here - place[j];
+      const Double4 square = dot(off, off) + splat4(core * core);
+      const Double4 c = splat4(scale) * dot(along, normal[j]) / square_root(square);
+      store(compliance + i * kRegionStride + 4 * j, square > Double4{} ? c : Double4{});
     }
   }
 }
 
 // Shift of the surface under each region by all of them, and by one newton of its own.
-void couple(const Model& model, State& state, Scratch& scratch, PointLaws& laws) PALPATE_RT {
+void couple(const Model& model, State& state, Scratch& scratch, const PointLaws& laws) PALPATE_RT {
   for (std::int32_t r = 0; r < laws.n; ++r) scratch.system.shift_m[r] = 0;  // bound: kMaxRegions
   if (model.params.coupling_law == CouplingLaw::kTemporalPaper) shift_in_order(model, state, scratch, laws);
   if (!is_coupled(model)) return;
   lean_regions(model, state, laws, scratch.rows);
   fill_compliance(model, state, scratch.rows, scratch.system.compliance_m_per_N);
-  laws.compliance_m_per_N = scratch.system.compliance_m_per_N;
-  const RegionSolution result = solve_regions(laws, laws.n, scratch.system);
+  const RegionSolution result =
+      solve_regions(CoupledPoints(laws, scratch.system.compliance_m_per_N), laws.n, scratch.system);
   scratch.work.spring_laws += count_solution(result, laws.n, scratch.contact_count, scratch.work);
   scratch.residual_m = result.residual_m;
   if (result.singular) scratch.status |= Status::kCouplingSingular;
@@ -86,7 +95,7 @@ void solve(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
     weigh_contacts(weight, region[r]);
   }
   if (scratch.rows.regions == 0) return;
-  PointLaws laws{contact_law(model.params), region, nullptr, scratch.rows.regions};
+  const PointLaws laws{contact_law(model.params), region, nullptr, scratch.rows.regions};
   couple(model, state, scratch, laws);
   press_regions(laws, state, scratch);
 }
@@ -120,7 +129,7 @@ void slide_on_points(const Model& model, const State& state, Scratch& scratch, s
                      Region& region) PALPATE_RT {
   const FrictionParameters parameters = friction_parameters(model.params);
   region.depth_equivalent_m = law_depth_m(parameters.contact, region.normal_force_N);
-  const Real own = is_coupled(model) ? scratch.system.compliance_m_per_N[r * scratch.rows.regions + r] : 0.0;
+  const Real own = is_coupled(model) ? scratch.system.compliance_m_per_N[r * (kRegionStride + 1)] : 0.0;
   FrictionLoad load;
   // With the surface yielding under the region, its stiffness is that of the two springs in series.
   load.tangent_N_per_m = region.tangent_N_per_m / (1.0 + own * region.tangent_N_per_m);

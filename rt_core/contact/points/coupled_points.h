@@ -1,0 +1,45 @@
+// The coupled solve of points' regions (PointLaws) for contact/region_solve.h, four regions at a time: as PointLaws
+// region by region, to the bit. Fifteen regions of 52 points on rubber took 9,500 instructions a Newton step and 3,000
+// an evaluation one by one (2026-11-26); docs/models_grasp.md has what they take now.
+#pragma once
+
+#include "rt_core/contact/points/point_laws.h"
+#include "rt_core/lanes.h"
+
+namespace palpate {
+
+// Rows of a matrix of regions: whole lanes.
+inline constexpr std::int32_t kRegionStride = whole_lanes(kMaxRegions, 4);
+
+class CoupledPoints {
+ public:
+  static constexpr std::int32_t kIterations = PointLaws::kIterations;
+  static constexpr Real kEnough_m = PointLaws::kEnough_m;
+  static constexpr Real kTolerance_m = PointLaws::kTolerance_m;
+
+  // `compliance_m_per_N`: C, symmetric to the bit, in rows of kRegionStride. Bound: rows.
+  CoupledPoints(const PointLaws& laws, const Real* compliance_m_per_N) PALPATE_RT;
+
+  void start(Real* shift_m) const PALPATE_RT;
+  Real evaluate(const Real* shift_m, RegionSystem& system) const PALPATE_RT;
+  bool newton_step(RegionSystem& system) const PALPATE_RT;
+
+ private:
+  static constexpr std::int32_t kFours = kRegionStride / 4;
+  struct Load {
+    Double4 force_N, tangent_N_per_m;
+  };
+  Load law_at(Double4 depth_m) const PALPATE_RT;
+  bool factorise(RegionSystem& system, Real* pivot) const PALPATE_RT;
+  Double4 moved_by(const Real* per_region, std::int32_t four) const PALPATE_RT;
+
+  const CubicLaw law_;
+  const Real* compliance_;
+  const std::int32_t n_;
+  const std::int32_t fours_;  // of regions
+  // Row k of regions 4 i to 4 i + 3 side by side at first_[i] + k; where a region has no such row, none presses.
+  std::int32_t first_[kFours + 1];
+  Double4 depth_[kMaxContacts], weight_[kMaxContacts];
+};
+
+}  // namespace palpate
