@@ -1,7 +1,7 @@
 #include "rt_core/contact/regions.h"
 
 #include "rt_core/surface/body_box.h"
-#include "rt_core/surface/closest_point.h"
+#include "rt_core/surface/four_queries.h"
 #include "rt_core/surface/overlap.h"
 #include "rt_core/surface/smooth_foot.h"
 #include "rt_core/tool/articulate.h"
@@ -56,9 +56,10 @@ class Collider {
   void visit(std::size_t index, std::int32_t from, bool before) PALPATE_RT {
     const ToolPiece& piece = model_.piece[index];
     scratch_.work.pieces += 1;
+    piece_ = static_cast<std::int32_t>(index);
     if (is_articulated(model_)) {
-      now_ = RigidFrame(carrier_w(model_, state_, static_cast<std::int32_t>(index)));
-      before_ = RigidFrame(carrier_previous_w(model_, state_, static_cast<std::int32_t>(index)));
+      now_ = RigidFrame(carrier_w(model_, state_, piece_));
+      knows_before_ = false;
     }
     const Real gap = distance_to(root_, out_of(now_, piece.pose_tool.position_m)) - piece.bounding_radius_m;
     const std::int32_t last = piece.first_point + piece.point_count;
@@ -72,6 +73,7 @@ class Collider {
         visit_point(i);
       }
     }
+    measure_due();
   }
 
   void finish() PALPATE_RT {
@@ -96,9 +98,28 @@ class Collider {
       const Real gap = distance_to(root_, p) - model_.tool_point[static_cast<std::size_t>(index)].margin_m;
       if (gap > kSearchMargin_m + kRefreshMargin_m) return skip(point, gap);
     }
-    if (left_ > 0) return measure(index, p);
-    if (next_first_ < 0) next_first_ = index;
-    hold(index, p);
+    due_[due_count_] = index;
+    query_.p[due_count_] = p;
+    query_.warm_triangle[due_count_] = point.triangle;
+    if (++due_count_ == 4) measure_due();
+  }
+
+  // What of the points due, in their order, the tick's share of work is left for.
+  void measure_due() PALPATE_RT {
+    SurfacePoint surface[4];
+    const std::uint32_t settled = due_count_ > 1 ? settle_four(model_, query_, due_count_, surface) : 0;
+    for (std::int32_t k = 0; k < due_count_; ++k) {  // bound: 4
+      const Vec3 p = query_.p[k];
+      if (left_ > 0) {
+        if ((settled >> k & 1) == 0)
+          surface[k] = closest_surface_point(model_, p, kHuge, state_.point[due_[k]].triangle);
+        measure(due_[k], p, surface[k]);
+      } else {
+        if (next_first_ < 0) next_first_ = due_[k];
+        hold(due_[k], p);
+      }
+    }
+    due_count_ = 0;
   }
 
   // The tick's share of work is spent. A point in contact stays on its plane (a god-object); another's gap has shrunk
@@ -123,14 +144,15 @@ class Collider {
     keep(index, point, tool_point);
   }
 
-  Real moved(std::int32_t index, Vec3 p) const PALPATE_RT {
+  Real moved(std::int32_t index, Vec3 p) PALPATE_RT {
+    if (!knows_before_) before_ = RigidFrame(carrier_previous_w(model_, state_, piece_));
+    knows_before_ = true;
     return norm(p - out_of(before_, model_.tool_point[static_cast<std::size_t>(index)].position_tool_m));
   }
 
-  void measure(std::int32_t index, Vec3 p) PALPATE_RT {
+  void measure(std::int32_t index, Vec3 p, const SurfacePoint& surface) PALPATE_RT {
     const ToolPoint& tool_point = model_.tool_point[static_cast<std::size_t>(index)];
     PointState& point = state_.point[index];
-    const SurfacePoint surface = closest_surface_point(model_, p, kHuge, point.triangle);
     left_ -= surface.looked;
     scratch_.work.queries += 1;
     if (surface.stack_high_water > state_.high_water.traversal_stack) {
@@ -241,7 +263,11 @@ class Collider {
   const Model& model_;
   State& state_;
   Scratch& scratch_;
-  RigidFrame now_, before_;  // of the piece being visited
+  std::int32_t piece_ = 0;    // being visited
+  RigidFrame now_, before_;   // of it
+  bool knows_before_ = true;  // asked for by few
+  FourQueries query_;         // of its points that are due
+  std::int32_t due_[4], due_count_ = 0;
   const Box root_;
   bool smooth_ = false;
   const std::int32_t share_;  // of surface work

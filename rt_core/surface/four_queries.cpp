@@ -1,0 +1,182 @@
+#include "rt_core/surface/four_queries.h"
+
+#include "rt_core/lanes.h"
+#include "rt_core/surface/candidate.h"
+
+namespace palpate {
+
+namespace {
+
+using std::int32_t;
+using std::uint32_t;
+
+Double4 choose(const Mask4& mask, const Double4& a, const Double4& b) PALPATE_RT { return mask ? a : b; }
+Double4 smaller(const Double4& a, const Double4& b) PALPATE_RT { return a < b ? a : b; }
+Vec3x4 four(Vec3 a, Vec3 b, Vec3 c, Vec3 d) PALPATE_RT {
+  return {Double4{a.x, b.x, c.x, d.x}, Double4{a.y, b.y, c.y, d.y}, Double4{a.z, b.z, c.z, d.z}};
+}
+
+struct FourTriangles {
+  const Triangle* of[4];
+  Vec3x4 a, b, c;
+};
+
+FourTriangles four_triangles(const Model& model, const int32_t (&index)[4]) PALPATE_RT {
+  FourTriangles t;
+  Vec3x4* const corner[3] = {&t.a, &t.b, &t.c};
+  for (int k = 0; k < 4; ++k) t.of[k] = &model.triangle[static_cast<std::size_t>(index[k])];  // bound: 4
+  for (int i = 0; i < 3; ++i) {                                                               // bound: 3
+    const auto v = [&](int k) PALPATE_RT { return model.vertex_m[static_cast<std::size_t>(t.of[k]->vertex[i])]; };
+    *corner[i] = four(v(0), v(1), v(2), v(3));
+  }
+  return t;
+}
+
+// closest_on_triangle() of four, where it is in a face or on an edge.
+struct FourPlaces {
+  Vec3x4 point;
+  Double4 distance2, inset;
+  uint32_t face, edge[3];  // bits
+};
+
+// Which of the features in the order of closest_on_triangle(), and what its point is made of.
+FourPlaces places_on(const FourTriangles& t, const Vec3x4& p) PALPATE_RT {
+  const Double4 zero{};
+  const Vec3x4 ab = t.b - t.a, ac = t.c - t.a, ap = p - t.a, bp = p - t.b, cp = p - t.c;
+  const Double4 d1 = dot(ab, ap), d2 = dot(ac, ap), d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp);
+  const Double4 d6 = dot(ac, cp), vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
+  const Double4 along = d4 - d3, back = d5 - d6, area = va + vb + vc;
+  const Mask4 at_a = (d1 <= zero) & (d2 <= zero), at_b = (d3 >= zero) & (d4 <= d3), at_c = (d6 >= zero) & (d5 <= d6);
+  const Mask4 on_ab = (vc <= zero) & (d1 >= zero) & (d3 <= zero) & (d1 - d3 > zero) & ~(at_a | at_b);
+  const Mask4 on_ac = (vb <= zero) & (d2 >= zero) & (d6 <= zero) & (d2 - d6 > zero) & ~(at_a | at_b | on_ab | at_c);
+  const Mask4 before_bc = at_a | at_b | at_c | on_ab | on_ac;
+  const Mask4 on_bc = (va <= zero) & (along >= zero) & (back >= zero) & (along + back > zero) & ~before_bc;
+  const Mask4 in_face = (area > zero) & ~(before_bc | on_bc);
+
+  const Double4 over = choose(on_ab, d1, choose(on_ac, d2, choose(on_bc, along, splat4(1.0))));
+  const Double4 under = choose(on_ab, d1 - d3, choose(on_ac, d2 - d6, choose(on_bc, along + back, area)));
+  const Double4 share = over / under;  // along the edge; of the face the scale of its weights
+  const Vec3x4 base = where(on_bc, t.b, t.a), aim = where(on_ac, ac, where(on_bc, t.c - t.b, ab));
+  FourPlaces places;
+  const Vec3x4 first = base + choose(in_face, vb * share, share) * aim;
+  places.point = where(in_face, first + (vc * share) * ac, first);
+  places.inset = choose(in_face, share * smaller(smaller(va, vb), vc), smaller(share, splat4(1.0) - share));
+  const Vec3x4 off = p - places.point;
+  places.distance2 = dot(off, off);
+  places.face = bits_of(in_face);
+  places.edge[0] = bits_of(on_ab);
+  places.edge[1] = bits_of(on_bc);
+  places.edge[2] = bits_of(on_ac);
+  return places;
+}
+
+// Of those kSafeInset within their feature, which are nearest by certificate(): outside a convex part, nothing else
+// near. What an edge's other triangle tells is left.
+uint32_t are_certified(const FourTriangles& t, const Vec3x4& p, const FourPlaces& places) PALPATE_RT {
+  const auto clear = [&](int k) PALPATE_RT { return static_cast<double>(t.of[k]->clear_radius_m); };
+  const auto scale = [&](int k) PALPATE_RT { return static_cast<double>(t.of[k]->clear_scale_per_m); };
+  const Double4 distance = square_root(places.distance2);
+  const Double4 spare = Double4{clear(0), clear(1), clear(2), clear(3)} - distance;
+  const Vec3x4 normal = cross(t.b - t.a, t.c - t.a);
+  const Vec3x4 middle =
+      splat4(1.0 / 3.0) * (t.a + t.b + t.c) + Double4{scale(0), scale(1), scale(2), scale(3)} * normal;
+  const Vec3x4 off = p - middle;
+  const Mask4 near = (spare > Double4{}) & (dot(off, off) < splat4(1 - 1e-9) * (spare * spare));
+  const Mask4 outside = (distance > splat4(kDirectionFloor_m)) & (dot(p - places.point, normal) > Double4{});
+  uint32_t convex = 0;
+  for (uint32_t k = 0; k < 4; ++k) convex |= t.of[k]->ring_convex >= 1 ? 1u << k : 0u;  // bound: 4
+  return convex & bits_of(near & outside & (places.inset > splat4(kSafeInset)));
+}
+
+// What rounding can do to their squared distances: distance2_rounding().
+Double4 roundings(const FourPlaces& places) PALPATE_RT {
+  const Double4 distance = square_root(places.distance2);
+  return splat4(1e-14) * distance * (square_root(dot(places.point, places.point)) + distance);
+}
+
+Mask4 mask_of(uint32_t bits) PALPATE_RT {
+  const auto lane = [bits](uint32_t k) PALPATE_RT { return -static_cast<std::int64_t>(bits >> k & 1); };
+  return Mask4{lane(0), lane(1), lane(2), lane(3)};
+}
+
+// The triangle across its edge from each of `on_edge`. Returns those that have one.
+uint32_t across_edges(const FourTriangles& t, const FourPlaces& places, uint32_t on_edge,
+                      int32_t (&triangle)[4]) PALPATE_RT {
+  uint32_t closed = 0;
+  for (; on_edge != 0; on_edge &= on_edge - 1) {  // bound: 4
+    const auto k = static_cast<uint32_t>(__builtin_ctz(on_edge));
+    const int edge = (places.edge[0] >> k & 1) != 0 ? 0 : (places.edge[1] >> k & 1) != 0 ? 1 : 2;
+    const int32_t across = t.of[k]->adjacent[edge];
+    if (across < 0) continue;
+    triangle[k] = across;
+    closed |= 1u << k;
+  }
+  return closed;
+}
+
+// Of `on_edge`, whose nearest place is on an edge, the nearest of both triangles there, as measure_sharers() and
+// settle_by_planes() choose it. Returns those for which it is the same place but for rounding.
+uint32_t settle_edges(const Model& model, const FourTriangles& t, const Vec3x4& p, uint32_t on_edge,
+                      int32_t (&triangle)[4], FourPlaces& places) PALPATE_RT {
+  int32_t across[4] = {triangle[0], triangle[1], triangle[2], triangle[3]};
+  on_edge &= across_edges(t, places, on_edge, across);
+  const FourPlaces beyond = places_on(four_triangles(model, across), p);
+  uint32_t lower = 0;
+  for (uint32_t k = 0; k < 4; ++k) lower |= across[k] < triangle[k] ? 1u << k : 0u;  // bound: 4
+  const uint32_t known = beyond.face | beyond.edge[0] | beyond.edge[1] | beyond.edge[2];
+  const uint32_t settled = on_edge & known & ~bits_of(beyond.distance2 < places.distance2 - roundings(places));
+  const uint32_t as_near = bits_of(beyond.distance2 == places.distance2);
+  const uint32_t other = settled & (bits_of(beyond.distance2 < places.distance2) | (as_near & lower));
+  for (uint32_t k = 0; k < 4; ++k) triangle[k] = (other >> k & 1) != 0 ? across[k] : triangle[k];  // bound: 4
+  const Mask4 mask = mask_of(other);
+  places.point = where(mask, beyond.point, places.point);
+  places.distance2 = choose(mask, beyond.distance2, places.distance2);
+  for (int i = 0; i < 3; ++i) places.edge[i] = (places.edge[i] & ~other) | (beyond.edge[i] & other);  // bound: 3
+  return settled;
+}
+
+// Outside the body, as report() tells it.
+void tell(const FourPlaces& places, const Vec3x4& p, const int32_t (&triangle)[4], uint32_t settled, uint32_t on_edge,
+          SurfacePoint (&answer)[4]) PALPATE_RT {
+  const Double4 distance = square_root(places.distance2);
+  const Vec3x4 normal = (splat4(1.0) / distance) * (p - places.point);
+  for (; settled != 0; settled &= settled - 1) {  // bound: 4
+    const auto k = static_cast<uint32_t>(__builtin_ctz(settled));
+    SurfacePoint& point = answer[k];
+    point = {};
+    point.closest_w = places.point[k];
+    point.normal_w = normal[k];
+    point.signed_distance_m = point.lower_bound_m = distance[k];
+    point.triangle = triangle[k];
+    const uint32_t edge = (places.edge[0] >> k & 1) + 2 * (places.edge[1] >> k & 1) + 3 * (places.edge[2] >> k & 1);
+    point.feature = static_cast<Feature>(edge);
+    point.looked = 1 + static_cast<int32_t>(on_edge >> k & 1);
+    point.found = true;
+  }
+}
+
+}  // namespace
+
+uint32_t settle_four(const Model& model, const FourQueries& query, int32_t count,
+                     SurfacePoint (&answer)[4]) PALPATE_RT {
+  const auto triangles = static_cast<int32_t>(model.triangle.size());
+  uint32_t settled = (1u << count) - 1;
+  int32_t triangle[4];
+  for (uint32_t k = 0; k < 4; ++k) {  // bound: 4
+    const int32_t warm = query.warm_triangle[k];
+    const bool usable = warm >= 0 && warm < triangles && is_finite(query.p[k]);
+    triangle[k] = usable ? warm : 0;
+    if (!usable) settled &= ~(1u << k);
+  }
+  if (settled == 0) return 0;
+  const Vec3x4 p = four(query.p[0], query.p[1], query.p[2], query.p[3]);
+  const FourTriangles t = four_triangles(model, triangle);
+  FourPlaces places = places_on(t, p);
+  const uint32_t on_edge = places.edge[0] | places.edge[1] | places.edge[2];
+  settled &= are_certified(t, p, places) & (places.face | on_edge);
+  if ((settled & on_edge) != 0) settled &= ~on_edge | settle_edges(model, t, p, settled & on_edge, triangle, places);
+  tell(places, p, triangle, settled, on_edge, answer);
+  return settled;
+}
+
+}  // namespace palpate
