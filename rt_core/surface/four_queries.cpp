@@ -143,7 +143,6 @@ void tell(const FourPlaces& places, const Vec3x4& p, const int32_t (&triangle)[4
   for (; settled != 0; settled &= settled - 1) {  // bound: 4
     const auto k = static_cast<uint32_t>(__builtin_ctz(settled));
     SurfacePoint& point = answer[k];
-    point = {};
     point.closest_w = places.point[k];
     point.normal_w = normal[k];
     point.signed_distance_m = point.lower_bound_m = distance[k];
@@ -164,12 +163,12 @@ uint32_t settle_four(const Model& model, const FourQueries& query, int32_t count
   int32_t triangle[4];
   for (uint32_t k = 0; k < 4; ++k) {  // bound: 4
     const int32_t warm = query.warm_triangle[k];
-    const bool usable = warm >= 0 && warm < triangles && is_finite(query.p[k]);
+    const bool usable = warm >= 0 && warm < triangles;
     triangle[k] = usable ? warm : 0;
     if (!usable) settled &= ~(1u << k);
   }
   if (settled == 0) return 0;
-  const Vec3x4 p = four(query.p[0], query.p[1], query.p[2], query.p[3]);
+  const Vec3x4 p = four(query.p[0], query.p[1], query.p[2], query.p[3]);  // a NaN is over no feature
   const FourTriangles t = four_triangles(model, triangle);
   FourPlaces places = places_on(t, p);
   const uint32_t on_edge = places.edge[0] | places.edge[1] | places.edge[2];

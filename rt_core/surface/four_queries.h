@@ -15,8 +15,8 @@ struct FourQueries {
 };
 
 // closest_surface_point() of those of the first `count` that lie outside the body over their triangle or one of its
-// edges, with proof; the same to the bit. Returns which, as bits; of the others nothing is told. On grasp_cylinder_5 a
-// query takes 600 instructions alone, 210 here (2026-11-26).
+// edges, with proof; the same to the bit. `answer` as constructed. Returns which, as bits; the others are left. On
+// grasp_cylinder_5 a query takes 600 instructions alone, 210 here (2026-11-26).
 std::uint32_t settle_four(const Model& model, const FourQueries& query, std::int32_t count,
                           SurfacePoint (&answer)[4]) PALPATE_RT;
 

@@ -2,6 +2,7 @@
 
 #include <ccd/ccd.h>
 
+#include "rt_core/surface/triangle.h"
 #include "rt_core/tool/shapes.h"
 
 namespace palpate {
@@ -85,6 +86,30 @@ int intersect(Pair& pair) PALPATE_RT {
 #endif
 }
 
+// What the closed form takes, in supports.
+constexpr std::int32_t kClosedFormSupports = 2;
+
+// Squared distance of a triangle from the segment of length 2 `half` along z about the origin. Where they do not meet
+// the nearest two points are an end and a place on the triangle, or a place on the segment and one on an edge.
+Real segment_distance2(const Vec3 (&t)[3], Real half) PALPATE_RT {
+  const Vec3 up{0, 0, half};
+  Real nearest = min_of(squared_norm(up - closest_on_triangle(up, t[0], t[1], t[2]).point),
+                        squared_norm(-up - closest_on_triangle(-up, t[0], t[1], t[2]).point));
+  Real turn[3];                  // about z, from corner to corner
+  for (int k = 0; k < 3; ++k) {  // bound: 3
+    const Vec3 a = t[k], d = t[k == 2 ? 0 : k + 1] - a;
+    turn[k] = a.x * d.y - a.y * d.x;
+    const Real square = d.x * d.x + d.y * d.y;
+    const Vec3 q = a + (square > 0 ? clamp_to(-(a.x * d.x + a.y * d.y) / square, 0, 1) : 0.0) * d;
+    if (abs_of(q.z) <= half) nearest = min_of(nearest, q.x * q.x + q.y * q.y);
+  }
+  const bool around = (turn[0] >= 0 && turn[1] >= 0 && turn[2] >= 0) || (turn[0] <= 0 && turn[1] <= 0 && turn[2] <= 0);
+  const Real sum = turn[0] + turn[1] + turn[2];
+  if (!around || sum == 0) return nearest;
+  const Real height = (turn[1] * t[0].z + turn[2] * t[1].z + turn[0] * t[2].z) / sum;
+  return abs_of(height) <= half ? 0.0 : nearest;
+}
+
 }  // namespace
 
 OverlapResult overlap_piece_triangle(const Model& model, const ToolPiece& piece, const Pose& tool_w,
@@ -95,6 +120,12 @@ OverlapResult overlap_piece_triangle(const Model& model, const ToolPiece& piece,
   for (int k = 0; k < 3; ++k) {  // bound: 3
     pair.triangle_mm[k] = kMillimetresPerMetre * inverse_transform(piece_w, triangle_w[k]);
     if (!is_finite(pair.triangle_mm[k])) return result;
+  }
+  if (piece.shape == PieceShape::kSphere || piece.shape == PieceShape::kCapsule) {
+    const Real half = piece.shape == PieceShape::kCapsule ? piece.half_extent_m[2] : 0.0;
+    const Real margin_mm = kMillimetresPerMetre * piece.margin_m;
+    const bool near = segment_distance2(pair.triangle_mm, kMillimetresPerMetre * half) <= margin_mm * margin_mm;
+    return {near ? Overlap::kHit : Overlap::kMiss, kClosedFormSupports};
   }
   const bool hit = intersect(pair) != 0;
   result.support_calls = pair.calls;

@@ -1,4 +1,6 @@
-// Does a rounded tool piece touch a surface triangle? A yes/no cross-check by libccd; forces never come from here.
+// Does a rounded tool piece touch a surface triangle? A yes/no cross-check; forces never come from here. Spheres and
+// capsules by their distance, 900 instructions; the others by libccd, 13,000 where a capsule's end left a facet
+// (2026-11-26).
 #pragma once
 
 #include <cstdint>
