@@ -106,14 +106,16 @@ class Collider {
 
   // What of the points due, in their order, the tick's share of work is left for.
   void measure_due() PALPATE_RT {
-    SurfacePoint surface[4];
-    const std::uint32_t settled = due_count_ > 1 ? settle_four(model_, query_, due_count_, surface) : 0;
+    if (due_count_ == 0) return;
+    FourSettled four;
+    if (due_count_ > 1) four = settle_four(model_, query_, due_count_);
     for (std::int32_t k = 0; k < due_count_; ++k) {  // bound: 4
       const Vec3 p = query_.p[k];
       if (left_ > 0) {
-        if ((settled >> k & 1) == 0)
-          surface[k] = closest_surface_point(model_, p, kHuge, state_.point[due_[k]].triangle);
-        measure(due_[k], p, surface[k]);
+        const bool settled = (four.settled >> k & 1) != 0;
+        measure(due_[k], p,
+                settled ? settled_point(four, static_cast<std::uint32_t>(k))
+                        : closest_surface_point(model_, p, kHuge, state_.point[due_[k]].triangle));
       } else {
         if (next_first_ < 0) next_first_ = due_[k];
         hold(due_[k], p);
@@ -247,17 +249,16 @@ class Collider {
     for (; at > 0 && scratch_.contact[at - 1].row > index; --at) {  // bound: kMaxContacts
       scratch_.contact[at] = scratch_.contact[at - 1];
     }
-    Contact& contact = scratch_.contact[at];
-    contact = Contact{};
-    contact.row = contact.point = index;
-    contact.piece = tool_point.piece;
-    contact.hand = hand_of(model_, contact.piece);
-    contact.previous = point.region;
-    contact.position_w = point.closest_w;
-    contact.normal_w = point.normal_w;
-    contact.depth_m = -point.gap_m;
-    contact.weight = tool_point.weight;
-    contact.area_m2 = tool_point.area_m2;
+    scratch_.contact[at] = {.row = index,
+                            .point = index,
+                            .piece = tool_point.piece,
+                            .previous = point.region,
+                            .hand = hand_of(model_, tool_point.piece),
+                            .position_w = point.closest_w,
+                            .normal_w = point.normal_w,
+                            .depth_m = -point.gap_m,
+                            .weight = tool_point.weight,
+                            .area_m2 = tool_point.area_m2};
   }
 
   const Model& model_;

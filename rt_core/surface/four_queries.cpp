@@ -12,7 +12,7 @@ using std::uint32_t;
 
 Double4 choose(const Mask4& mask, const Double4& a, const Double4& b) PALPATE_RT { return mask ? a : b; }
 Double4 smaller(const Double4& a, const Double4& b) PALPATE_RT { return a < b ? a : b; }
-Vec3x4 four(Vec3 a, Vec3 b, Vec3 c, Vec3 d) PALPATE_RT {
+Vec3x4 side_by_side(Vec3 a, Vec3 b, Vec3 c, Vec3 d) PALPATE_RT {
   return {Double4{a.x, b.x, c.x, d.x}, Double4{a.y, b.y, c.y, d.y}, Double4{a.z, b.z, c.z, d.z}};
 }
 
@@ -27,7 +27,7 @@ FourTriangles four_triangles(const Model& model, const int32_t (&index)[4]) PALP
   for (int k = 0; k < 4; ++k) t.of[k] = &model.triangle[static_cast<std::size_t>(index[k])];  // bound: 4
   for (int i = 0; i < 3; ++i) {                                                               // bound: 3
     const auto v = [&](int k) PALPATE_RT { return model.vertex_m[static_cast<std::size_t>(t.of[k]->vertex[i])]; };
-    *corner[i] = four(v(0), v(1), v(2), v(3));
+    *corner[i] = side_by_side(v(0), v(1), v(2), v(3));
   }
   return t;
 }
@@ -135,47 +135,32 @@ uint32_t settle_edges(const Model& model, const FourTriangles& t, const Vec3x4& 
   return settled;
 }
 
-// Outside the body, as report() tells it.
-void tell(const FourPlaces& places, const Vec3x4& p, const int32_t (&triangle)[4], uint32_t settled, uint32_t on_edge,
-          SurfacePoint (&answer)[4]) PALPATE_RT {
-  const Double4 distance = square_root(places.distance2);
-  const Vec3x4 normal = (splat4(1.0) / distance) * (p - places.point);
-  for (; settled != 0; settled &= settled - 1) {  // bound: 4
-    const auto k = static_cast<uint32_t>(__builtin_ctz(settled));
-    SurfacePoint& point = answer[k];
-    point.closest_w = places.point[k];
-    point.normal_w = normal[k];
-    point.signed_distance_m = point.lower_bound_m = distance[k];
-    point.triangle = triangle[k];
-    const uint32_t edge = (places.edge[0] >> k & 1) + 2 * (places.edge[1] >> k & 1) + 3 * (places.edge[2] >> k & 1);
-    point.feature = static_cast<Feature>(edge);
-    point.looked = 1 + static_cast<int32_t>(on_edge >> k & 1);
-    point.found = true;
-  }
-}
-
 }  // namespace
 
-uint32_t settle_four(const Model& model, const FourQueries& query, int32_t count,
-                     SurfacePoint (&answer)[4]) PALPATE_RT {
+FourSettled settle_four(const Model& model, const FourQueries& query, int32_t count) PALPATE_RT {
   const auto triangles = static_cast<int32_t>(model.triangle.size());
-  uint32_t settled = (1u << count) - 1;
-  int32_t triangle[4];
+  FourSettled four;
+  four.settled = (1u << count) - 1;
   for (uint32_t k = 0; k < 4; ++k) {  // bound: 4
     const int32_t warm = query.warm_triangle[k];
     const bool usable = warm >= 0 && warm < triangles;
-    triangle[k] = usable ? warm : 0;
-    if (!usable) settled &= ~(1u << k);
+    four.triangle[k] = usable ? warm : 0;
+    if (!usable) four.settled &= ~(1u << k);
   }
-  if (settled == 0) return 0;
-  const Vec3x4 p = four(query.p[0], query.p[1], query.p[2], query.p[3]);  // a NaN is over no feature
-  const FourTriangles t = four_triangles(model, triangle);
+  if (four.settled == 0) return four;
+  const Vec3x4 p = side_by_side(query.p[0], query.p[1], query.p[2], query.p[3]);  // a NaN is over no feature
+  const FourTriangles t = four_triangles(model, four.triangle);
   FourPlaces places = places_on(t, p);
-  const uint32_t on_edge = places.edge[0] | places.edge[1] | places.edge[2];
-  settled &= are_certified(t, p, places) & (places.face | on_edge);
-  if ((settled & on_edge) != 0) settled &= ~on_edge | settle_edges(model, t, p, settled & on_edge, triangle, places);
-  tell(places, p, triangle, settled, on_edge, answer);
-  return settled;
+  four.on_edge = places.edge[0] | places.edge[1] | places.edge[2];
+  four.settled &= are_certified(t, p, places) & (places.face | four.on_edge);
+  const uint32_t on_edge = four.settled & four.on_edge;
+  if (on_edge != 0) four.settled &= ~on_edge | settle_edges(model, t, p, on_edge, four.triangle, places);
+  for (int i = 0; i < 3; ++i) four.edge[i] = places.edge[i];  // bound: 3
+  // Outside the body, as report() tells it.
+  four.distance_m = square_root(places.distance2);
+  four.closest_w = places.point;
+  four.normal_w = (splat4(1.0) / four.distance_m) * (p - places.point);
+  return four;
 }
 
 }  // namespace palpate

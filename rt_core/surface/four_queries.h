@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "rt_core/lanes.h"
 #include "rt_core/surface/closest_point.h"
 
 namespace palpate {
@@ -14,10 +15,31 @@ struct FourQueries {
   std::int32_t warm_triangle[4] = {-1, -1, -1, -1};
 };
 
-// closest_surface_point() of those of the first `count` that lie outside the body over their triangle or one of its
-// edges, with proof; the same to the bit. `answer` as constructed. Returns which, as bits; the others are left. On
-// grasp_cylinder_5 a query takes 600 instructions alone, 210 here (2026-11-26).
-std::uint32_t settle_four(const Model& model, const FourQueries& query, std::int32_t count,
-                          SurfacePoint (&answer)[4]) PALPATE_RT;
+// What was found of them: outside the body over their triangle or one of its edges, with proof.
+struct FourSettled {
+  std::uint32_t settled = 0;  // which of them, as bits; of the others nothing is told
+  std::uint32_t on_edge = 0;
+  std::uint32_t edge[3] = {};
+  std::int32_t triangle[4];
+  Vec3x4 closest_w, normal_w;
+  Double4 distance_m;
+};
+
+// The first `count` of them. On grasp_cylinder_5 a query takes 600 instructions alone, 250 here (2026-11-26).
+FourSettled settle_four(const Model& model, const FourQueries& query, std::int32_t count) PALPATE_RT;
+
+// closest_surface_point() of one that is settled, to the bit.
+inline SurfacePoint settled_point(const FourSettled& four, std::uint32_t k) PALPATE_RT {
+  SurfacePoint point;
+  point.closest_w = four.closest_w[k];
+  point.normal_w = four.normal_w[k];
+  point.signed_distance_m = point.lower_bound_m = four.distance_m[k];
+  point.triangle = four.triangle[k];
+  point.feature =
+      static_cast<Feature>((four.edge[0] >> k & 1) + 2 * (four.edge[1] >> k & 1) + 3 * (four.edge[2] >> k & 1));
+  point.looked = 1 + static_cast<std::int32_t>(four.on_edge >> k & 1);
+  point.found = true;
+  return point;
+}
 
 }  // namespace palpate
