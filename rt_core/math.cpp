@@ -118,23 +118,25 @@ Reduced reduce(Real x) PALPATE_RT {
   return {((x - k * kHalfPi1) - k * kHalfPi2) - k * kHalfPi3, n};
 }
 
-// Taylor series on |r| <= pi/4; first omitted terms 8e-20 and 2e-18.
-Real sin_series(Real r) PALPATE_RT {
+// Taylor series on |r| <= pi/4; first omitted terms 8e-20 and 2e-18. Of one number or of four, with the same bits.
+template <class Number>
+Number sin_series(const Number& r) PALPATE_RT {
   constexpr Real kCoefficient[8] = {-1.0 / 6,        1.0 / 120,          -1.0 / 5040,          1.0 / 362880,
                                     -1.0 / 39916800, 1.0 / 6227020800.0, -1.0 / 1307674368000, 1.0 / 355687428096000};
-  const Real z = r * r;
-  Real sum = 0;
+  const Number z = r * r;
+  Number sum{};
   for (int n = 7; n >= 0; --n) sum = sum * z + kCoefficient[n];  // bound: 8
   return r + r * z * sum;
 }
-Real cos_series(Real r) PALPATE_RT {
+template <class Number>
+Number cos_series(const Number& r) PALPATE_RT {
   constexpr Real kCoefficient[7] = {1.0 / 24,        -1.0 / 720,           1.0 / 40320,         -1.0 / 3628800,
                                     1.0 / 479001600, -1.0 / 87178291200.0, 1.0 / 20922789888000};
-  const Real z = r * r;
-  Real sum = 0;
+  const Number z = r * r;
+  Number sum{};
   for (int n = 6; n >= 0; --n) sum = sum * z + kCoefficient[n];  // bound: 7
-  const Real half = 0.5 * z;
-  const Real leading = 1.0 - half;
+  const Number half = 0.5 * z;
+  const Number leading = 1.0 - half;
   return leading + (((1.0 - leading) - half) + z * z * sum);
 }
 
@@ -203,6 +205,24 @@ Real cbrt(Real x) PALPATE_RT {
 
 Real sin(Real x) PALPATE_RT { return is_finite(x) ? sin_shifted(x, 0) : 0.0; }
 Real cos(Real x) PALPATE_RT { return is_finite(x) ? sin_shifted(x, 1) : 1.0; }
+
+SinCos4 sin_cos(const Double4& x) PALPATE_RT {
+  using Int4 [[gnu::vector_size(16)]] = std::int32_t;
+  const Double4 angle = (x >= -1e4) & (x <= 1e4) ? x : Double4{};
+  const Double4 turned = angle * kTwoOverPi;
+  const Int4 quarter = __builtin_convertvector(turned + (turned < 0 ? splat4(-0.5) : splat4(0.5)), Int4);  // nearest()
+  const Double4 k = __builtin_convertvector(quarter, Double4);
+  const Double4 r = ((angle - k * kHalfPi1) - k * kHalfPi2) - k * kHalfPi3;
+  const Mask4 odd = __builtin_convertvector(-(quarter & 1), Mask4);
+  const Mask4 sin_falls = __builtin_convertvector(-(quarter >> 1 & 1), Mask4);
+  const Mask4 cos_falls = __builtin_convertvector(-((quarter + 1) >> 1 & 1), Mask4);
+  const auto within = [](const Double4& v) PALPATE_RT {
+    const Double4 low = v > -1.0 ? v : splat4(-1.0);
+    return low < 1.0 ? low : splat4(1.0);
+  };
+  const Double4 s = sin_series(r), c = cos_series(r), sine = odd ? c : s, cosine = odd ? s : c;
+  return {within(sin_falls ? -sine : sine), within(cos_falls ? -cosine : cosine)};
+}
 
 Real atan2(Real y, Real x) PALPATE_RT {
   if (!is_number(y) || !is_number(x)) return 0.0;

@@ -2,7 +2,7 @@
 // argument reduction and polynomials in plain IEEE arithmetic; each states its range and measured error.
 #pragma once
 
-#include "rt_core/base.h"
+#include "rt_core/lanes.h"
 
 namespace palpate::math {
 
@@ -12,6 +12,11 @@ Real pow(Real x, Real y) PALPATE_RT;  // x >= 0
 Real cbrt(Real x) PALPATE_RT;
 Real sin(Real x) PALPATE_RT;  // |x| <= 1e4
 Real cos(Real x) PALPATE_RT;  // |x| <= 1e4
+// Both of four numbers, to the bit; beyond that range of 0.
+struct SinCos4 {
+  Double4 sin, cos;
+};
+SinCos4 sin_cos(const Double4& x) PALPATE_RT;
 Real atan2(Real y, Real x) PALPATE_RT;
 Real asin(Real x) PALPATE_RT;  // clamped to [-1, 1]
 Real acos(Real x) PALPATE_RT;  // clamped to [-1, 1]

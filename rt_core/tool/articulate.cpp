@@ -70,8 +70,8 @@ void stop_loaded(const Model& model, const ArticulationState& a, Scratch& scratc
   }
 }
 
-// Moves the joints. Returns whether any of them did.
-bool move_joints(const Model& model, State& state, Scratch& scratch, const Input& input) PALPATE_RT {
+// Moves the joints. Returns those that did, as bits, with all that hang on one root.
+std::uint32_t move_joints(const Model& model, State& state, Scratch& scratch, const Input& input) PALPATE_RT {
   ArticulationState& a = state.articulation;
   const std::int32_t joints = joint_count(model);
   double step[kMaxJoints] = {};
@@ -80,21 +80,28 @@ bool move_joints(const Model& model, State& state, Scratch& scratch, const Input
     step[j] = clamp_to(goal_of(model, state, scratch, input, j) - a.joint[j], -fastest, fastest);
   }
   stop_loaded(model, a, scratch, step);
-  bool moved = false;
+  std::uint32_t of_root[kMaxJoints] = {}, moved = 0;
+  std::int32_t root[kMaxJoints];
   for (std::int32_t j = 0; j < joints; ++j) {  // bound: kMaxJoints
+    const std::int32_t parent = joint_at(model, j).parent;
+    root[j] = parent < 0 ? j : root[parent];
+    of_root[root[j]] |= 1u << j;
     if (step[j] == 0) continue;
     a.joint[j] = clamp_to(a.joint[j] + step[j], joint_at(model, j).lowest, joint_at(model, j).highest);
-    moved = true;
+    moved |= 1u << root[j];
   }
-  return moved;
+  std::uint32_t with_it = 0;
+  for (std::int32_t j = 0; j < joints; ++j)
+    with_it |= (moved >> root[j] & 1) != 0 ? of_root[root[j]] : 0;  // kMaxJoints
+  return with_it;
 }
 
-void place_pieces(const Model& model, ArticulationState& a) PALPATE_RT {
+void place_pieces(const Model& model, ArticulationState& a, std::uint32_t which) PALPATE_RT {
   Pose link[kMaxJoints];
-  place_links(model, a.joint.data(), link, a.axis_tool.data(), a.origin_tool_m.data());
+  place_links(model, a.joint.data(), link, a.axis_tool.data(), a.origin_tool_m.data(), which);
   for (std::int32_t p = 0; p < a.motion_tool.size(); ++p) {  // bound: kMaxPieces
     const std::int32_t j = model.piece[static_cast<std::size_t>(p)].joint;
-    if (j >= 0) a.motion_tool[p] = link[j] * joint_at(model, j).zero_inverse;
+    if (j >= 0 && (which >> j & 1) != 0) a.motion_tool[p] = link[j] * joint_at(model, j).zero_inverse;
   }
 }
 
@@ -114,19 +121,26 @@ void balance_palm(const Model& model, const State& state, Scratch& scratch) PALP
 
 }  // namespace
 
-void place_links(const Model& model, const double* joint, Pose* link_tool, Vec3* axis_tool,
-                 Vec3* origin_tool_m) PALPATE_RT {
+void place_links(const Model& model, const double* joint, Pose* link_tool, Vec3* axis_tool, Vec3* origin_tool_m,
+                 std::uint32_t which) PALPATE_RT {
   const std::int32_t joints = joint_count(model);
+  math::SinCos4 half[whole_lanes(kMaxJoints, 4) / 4];
+  for (std::int32_t j = 0; j < joints; j += 4) {  // bound: kMaxJoints
+    Double4 angle{};
+    for (std::int32_t k = 0; k < 4 && j + k < joints; ++k)
+      angle[k] = 0.5 * (joint_at(model, j + k).sign * joint[j + k]);
+    if ((which >> j & 15) != 0) half[j / 4] = math::sin_cos(angle);
+  }
   for (std::int32_t j = 0; j < joints; ++j) {  // bound: kMaxJoints; parents come first
+    if ((which >> j & 1) == 0) continue;
     const Joint& row = joint_at(model, j);
     const Pose axis = row.parent < 0 ? row.before : link_tool[row.parent] * row.before;
     const Vec3 z = rotate(axis.orientation, {0, 0, 1});
-    const double q = row.sign * joint[j];
     Pose moved = axis;
     if (row.kind == JointKind::kSlide) {
-      moved.position_m += q * z;
+      moved.position_m += row.sign * joint[j] * z;
     } else {
-      moved.orientation = axis.orientation * Quat{math::cos(0.5 * q), 0, 0, math::sin(0.5 * q)};
+      moved.orientation = axis.orientation * Quat{half[j / 4].cos[j % 4], 0, 0, half[j / 4].sin[j % 4]};
     }
     link_tool[j] = moved * row.after;
     if (axis_tool != nullptr) axis_tool[j] = z;
@@ -146,8 +160,9 @@ void articulate(const Model& model, State& state, Scratch& scratch, const Input&
   }
   if (a.moved != 0) keep_previous(a);
   advance_closing(model, state, scratch, input);
-  a.moved = move_joints(model, state, scratch, input) || first ? 1 : 0;
-  if (a.moved != 0) place_pieces(model, a);
+  const std::uint32_t moved = move_joints(model, state, scratch, input) | (first ? ~0u : 0u);
+  a.moved = moved != 0 ? 1 : 0;
+  if (a.moved != 0) place_pieces(model, a, moved);
   if (first) keep_previous(a);
 }
 

@@ -14,9 +14,10 @@ namespace palpate {
 void load_pieces(const Model& model, State& state, Scratch& scratch) PALPATE_RT;
 
 // Frame of every link in the tool frame for the joint positions `joint`; writes sizes.n_joint poses, and the joints'
-// axes where the pointers are not null. Bound: kMaxJoints.
-void place_links(const Model& model, const double* joint, Pose* link_tool, Vec3* axis_tool,
-                 Vec3* origin_tool_m) PALPATE_RT;
+// axes where the pointers are not null. `which`, as bits: of those joints alone, each with all its parents. Bound:
+// kMaxJoints.
+void place_links(const Model& model, const double* joint, Pose* link_tool, Vec3* axis_tool, Vec3* origin_tool_m,
+                 std::uint32_t which = ~0u) PALPATE_RT;
 
 // The rigid motion that carries a piece and its tool points: the tool's own pose, or for an articulated tool that pose
 // and the motion of the piece by its joints.
