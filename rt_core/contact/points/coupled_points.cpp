@@ -4,6 +4,7 @@ namespace palpate {
 
 CoupledPoints::CoupledPoints(const PointLaws& laws, const Real* compliance_m_per_N) PALPATE_RT
     : law_(laws.law),
+      rows_(laws.region),
       compliance_(compliance_m_per_N),
       n_(laws.n),
       fours_(whole_lanes(laws.n, 4) / 4) {
@@ -17,6 +18,7 @@ CoupledPoints::CoupledPoints(const PointLaws& laws, const Real* compliance_m_per
     for (std::int32_t k = 0; k < most; ++k) {
       depth_[at + k] = splat4(-kHuge);
       weight_[at + k] = Double4{};
+      place_[at + k] = normal_[at + k] = Vec3x4{};
     }
     for (std::int32_t l = 0; l < regions; ++l) {
       const RegionRows& rows = laws.region[4 * i + l];
@@ -24,15 +26,18 @@ CoupledPoints::CoupledPoints(const PointLaws& laws, const Real* compliance_m_per
         const Contact& contact = rows[k];
         depth_[at + k][l] = contact.depth_m;
         weight_[at + k][l] = contact.weight;
+        place_[at + k].set(static_cast<std::uint32_t>(l), contact.position_w);
+        normal_[at + k].set(static_cast<std::uint32_t>(l), contact.normal_w);
       }
     }
     at += most;
   }
   first_[fours_] = at;
+  geometric_ = laws.region[0].geometric;
 }
 
 // As law_at() of cubic_law.h.
-CoupledPoints::Load CoupledPoints::law_at(Double4 depth_m) const PALPATE_RT {
+CoupledPoints::Load CoupledPoints::law_at(const Double4& depth_m) const PALPATE_RT {
   const Double4 k1 = splat4(law_.k1_N_per_m), most = splat4(law_.max_depth_m), huge = splat4(kHuge);
   const Double4 inside = depth_m < most ? depth_m : most;
   const Double4 cubic = splat4(law_.k3_N_per_m3) * inside * inside;
@@ -41,6 +46,17 @@ CoupledPoints::Load CoupledPoints::law_at(Double4 depth_m) const PALPATE_RT {
   const Double4 beyond = force + tangent * ((depth_m < huge ? depth_m : huge) - inside);
   const Mask4 presses = depth_m > Double4{};
   return {presses ? (depth_m <= most ? force : beyond) : Double4{}, presses ? tangent : Double4{}};
+}
+
+// As law_energy_J().
+Double4 CoupledPoints::energy_at(const Double4& depth_m) const PALPATE_RT {
+  const Double4 k1 = splat4(law_.k1_N_per_m), k3 = splat4(law_.k3_N_per_m3), most = splat4(law_.max_depth_m);
+  const Double4 inside = depth_m < most ? depth_m : most, square = inside * inside;
+  const Double4 energy = (splat4(0.5) * k1 + splat4(0.25) * k3 * square) * square;
+  const Double4 beyond = (depth_m < splat4(kHuge) ? depth_m : splat4(kHuge)) - inside;
+  const Load edge = law_at(inside);
+  const Double4 more = (edge.force_N + splat4(0.5) * edge.tangent_N_per_m * beyond) * beyond;
+  return depth_m > Double4{} ? (depth_m <= most ? energy : energy + more) : Double4{};
 }
 
 void CoupledPoints::start(Real* shift_m) const PALPATE_RT {

@@ -23,23 +23,33 @@ class CoupledPoints {
   void start(Real* shift_m) const PALPATE_RT;
   Real evaluate(const Real* shift_m, RegionSystem& system) const PALPATE_RT;
   bool newton_step(RegionSystem& system) const PALPATE_RT;
+  // As press_regions(), at the shifts in scratch.system.
+  void press(State& state, Scratch& scratch) const PALPATE_RT;
 
  private:
+  struct Four;
   static constexpr std::int32_t kFours = kRegionStride / 4;
   struct Load {
     Double4 force_N, tangent_N_per_m;
   };
-  Load law_at(Double4 depth_m) const PALPATE_RT;
+  Load law_at(const Double4& depth_m) const PALPATE_RT;
+  Double4 energy_at(const Double4& depth_m) const PALPATE_RT;
+  void load_four(std::int32_t i, const Double4& shift_m, const Vec3x4& pivot_w, Four& four) const PALPATE_RT;
+  void centre_four(std::int32_t i, const Vec3x4& last_normal_w, Four& four) const PALPATE_RT;
+  void press_four(std::int32_t i, State& state, Scratch& scratch) const PALPATE_RT;
   bool factorise(RegionSystem& system, Real* pivot) const PALPATE_RT;
   Double4 moved_by(const Real* per_region, std::int32_t four) const PALPATE_RT;
 
   const CubicLaw law_;
+  const RegionRows* const rows_;
   const Real* compliance_;
-  const std::int32_t n_;
+  const std::int32_t n_;      // regions, one at least
   const std::int32_t fours_;  // of regions
   // Row k of regions 4 i to 4 i + 3 side by side at first_[i] + k; where a region has no such row, none presses.
   std::int32_t first_[kFours + 1];
   Double4 depth_[kMaxContacts], weight_[kMaxContacts];
+  Vec3x4 place_[kMaxContacts], normal_[kMaxContacts];
+  bool geometric_;  // RegionRows::geometric
 };
 
 }  // namespace palpate

@@ -70,19 +70,24 @@ void fill_compliance(const Model& model, const State& state, const RowsByRegion&
   }
 }
 
-// Shift of the surface under each region by all of them, and by one newton of its own.
-void couple(const Model& model, State& state, Scratch& scratch, const PointLaws& laws) PALPATE_RT {
-  for (std::int32_t r = 0; r < laws.n; ++r) scratch.system.shift_m[r] = 0;  // bound: kMaxRegions
-  if (model.params.coupling_law == CouplingLaw::kTemporalPaper) shift_in_order(model, state, scratch, laws);
-  if (!is_coupled(model)) return;
+// What the regions press with, each shifted by all of them and by itself.
+void press_coupled(const Model& model, State& state, Scratch& scratch, const PointLaws& laws) PALPATE_RT {
   lean_regions(model, state, laws, scratch.rows);
   fill_compliance(model, state, scratch.rows, scratch.system.compliance_m_per_N);
-  const RegionSolution result =
-      solve_regions(CoupledPoints(laws, scratch.system.compliance_m_per_N), laws.n, scratch.system);
+  const CoupledPoints coupled(laws, scratch.system.compliance_m_per_N);
+  const RegionSolution result = solve_regions(coupled, laws.n, scratch.system);
   scratch.work.spring_laws += count_solution(result, laws.n, scratch.contact_count, scratch.work);
   scratch.residual_m = result.residual_m;
   if (result.singular) scratch.status |= Status::kCouplingSingular;
   if (!(result.residual_m <= PointLaws::kTolerance_m)) scratch.status |= Status::kNotConverged;
+  coupled.press(state, scratch);
+}
+
+// What each presses with alone, or shifted by those before it.
+void press_in_turn(const Model& model, State& state, Scratch& scratch, const PointLaws& laws) PALPATE_RT {
+  for (std::int32_t r = 0; r < laws.n; ++r) scratch.system.shift_m[r] = 0;  // bound: kMaxRegions
+  if (model.params.coupling_law == CouplingLaw::kTemporalPaper) shift_in_order(model, state, scratch, laws);
+  press_regions(laws, state, scratch);
 }
 
 void solve(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
@@ -96,8 +101,7 @@ void solve(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   }
   if (scratch.rows.regions == 0) return;
   const PointLaws laws{contact_law(model.params), region, nullptr, scratch.rows.regions};
-  couple(model, state, scratch, laws);
-  press_regions(laws, state, scratch);
+  is_coupled(model) ? press_coupled(model, state, scratch, laws) : press_in_turn(model, state, scratch, laws);
 }
 
 // The papers' contributions: what other regions' skeletons carry over is added along the normal. All are taken from the
