@@ -1,22 +1,25 @@
 #include "rt_core/contact/region_load.h"
 
-#include "rt_core/contact/relaxation.h"
-
 #include "rt_core/contact/regions.h"
+#include "rt_core/contact/relaxation.h"
+#include "rt_core/lanes.h"
 #include "rt_core/tool/virtual_coupling.h"
 
 namespace palpate {
 
 namespace {
 
-Real size_of(Vec3 v) PALPATE_RT { return abs_of(v.x) + abs_of(v.y) + abs_of(v.z); }
+// Place, normal, depth and weight as two fours.
+static_assert(offsetof(Contact, normal_w) == offsetof(Contact, position_w) + 24 &&
+              offsetof(Contact, depth_m) == offsetof(Contact, position_w) + 48 &&
+              offsetof(Contact, weight) == offsetof(Contact, position_w) + 56);
 
 // One sum that is NaN or beyond kHuge if any of its terms is.
 bool usable(const State& state, const Contact& contact) PALPATE_RT {
   const std::int32_t slot = contact.region;
   if (slot < 0 || slot >= kMaxRegions || !is_in_contact(state.region[slot])) return false;
-  const Real size = size_of(contact.position_w) + size_of(contact.normal_w) + abs_of(contact.weight);
-  return contact.depth_m > 0 && contact.depth_m + size <= kHuge;
+  const double* const number = &contact.position_w.x;
+  return contact.depth_m > 0 && sum(abs_of(load4(number)) + abs_of(load4(number + 4))) <= kHuge;
 }
 
 // A region without a usable contact exerts nothing but remembers its stretch until its slot is freed (a bounce keeps
@@ -46,9 +49,15 @@ Vec3 carried(Vec3 stretch, Vec3 from_normal, Vec3 to_normal) PALPATE_RT {
   return length > 1e-15 ? (norm(stretch) / length) * turned : Vec3{};
 }
 
-// Motion since the last tick of the material at `point` that moves rigidly from `before` to `now`.
-Vec3 carried_motion(const Pose& before, const Pose& now, Vec3 point) PALPATE_RT {
-  return point - transform(before, inverse_transform(now, point));
+// Motion since the last tick of the material of a piece that is at `point_w` now. Place by place: to put the two
+// motions together first takes twice as much.
+Vec3 motion_of_piece(const Model& model, const State& state, std::int32_t piece, Vec3 point_w) PALPATE_RT {
+  Vec3 at_tool = inverse_transform(state.tool_w, point_w);
+  if (is_articulated(model)) {
+    const ArticulationState& a = state.articulation;
+    at_tool = transform(a.motion_previous_tool[piece], inverse_transform(a.motion_tool[piece], at_tool));
+  }
+  return point_w - transform(state.tool_previous_w, at_tool);
 }
 
 }  // namespace
@@ -136,7 +145,7 @@ void press(Scratch& scratch, Region& region, const RegionRows& rows, const Regio
 }
 
 Vec3 material_motion(const Model& model, const State& state, const RegionRows& rows, Vec3 point_w) PALPATE_RT {
-  if (!is_articulated(model)) return carried_motion(state.tool_previous_w, state.tool_w, point_w);
+  if (!is_articulated(model)) return motion_of_piece(model, state, 0, point_w);
   Vec3 sum;
   Real total = 0;
   std::int32_t last = -1;
@@ -144,7 +153,7 @@ Vec3 material_motion(const Model& model, const State& state, const RegionRows& r
   for (std::int32_t k = 0; k < rows.count; ++k) {  // bound: rows
     const std::int32_t piece = rows[k].piece;
     if (piece != last) {
-      motion = carried_motion(carrier_previous_w(model, state, piece), carrier_w(model, state, piece), point_w);
+      motion = motion_of_piece(model, state, piece, point_w);
       last = piece;
     }
     sum += rows[k].force_N * motion;

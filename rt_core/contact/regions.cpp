@@ -29,6 +29,7 @@ struct Kinship {
   double group[kRanks];
   double previous[kRanks];           // region of the last tick; of none a number of its own
   std::int32_t begin[kMaxContacts];  // the first contact that may be of the same group
+  std::int32_t run[kMaxContacts];    // the first of those up to it that are of its part
 };
 // Contacts are compared with those of their chain alone: fifteen parts of five fingers have 115 fours of them instead
 // of 350. Groups that share a chain are told apart when compared.
@@ -52,6 +53,7 @@ void find_kinship(const Model& model, const Scratch& scratch, const Clusters& ou
     std::int32_t& chain = first[static_cast<std::uint32_t>(group) % kChains];
     if (chain < 0) chain = i;
     kin.begin[i] = chain;
+    kin.run[i] = i > 0 && kin.piece[i] == kin.piece[i - 1] ? kin.run[i - 1] : i;
   }
 }
 
@@ -235,9 +237,10 @@ void find_clusters(const Model& model, const Scratch& scratch, Clusters& out) PA
   std::int32_t set[kMaxContacts];  // rank of the lowest contact of each contact's set
   std::int32_t sets = 0;
   for (std::int32_t i = 0; i < out.contacts; ++i) {  // bound: kMaxContacts
-    set[i] = i;
-    sets += 1;
-    for (std::int32_t j = kin.begin[i] & ~3; j < i && sets > 1; j += 4) {  // bound: kMaxContacts / 4
+    const std::int32_t run = kin.run[i];
+    set[i] = run == i ? i : set[run];
+    sets += run == i ? 1 : 0;
+    for (std::int32_t j = kin.begin[i] & ~3; j < run && sets > 1; j += 4) {  // bound: kMaxContacts / 4
       out.pairs += 4;
       for (std::uint32_t bits = linked(kin, i, j, near * near, far * far); bits != 0; bits &= bits - 1) {  // bound: 4
         const std::int32_t other = set[j + __builtin_ctz(bits)];

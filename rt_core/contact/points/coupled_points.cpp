@@ -53,6 +53,7 @@ Double4 CoupledPoints::energy_at(const Double4& depth_m) const PALPATE_RT {
   const Double4 k1 = splat4(law_.k1_N_per_m), k3 = splat4(law_.k3_N_per_m3), most = splat4(law_.max_depth_m);
   const Double4 inside = depth_m < most ? depth_m : most, square = inside * inside;
   const Double4 energy = (splat4(0.5) * k1 + splat4(0.25) * k3 * square) * square;
+  if (bits_of(depth_m > most) == 0) return depth_m > Double4{} ? energy : Double4{};
   const Double4 beyond = (depth_m < splat4(kHuge) ? depth_m : splat4(kHuge)) - inside;
   const Load edge = law_at(inside);
   const Double4 more = (edge.force_N + splat4(0.5) * edge.tangent_N_per_m * beyond) * beyond;
