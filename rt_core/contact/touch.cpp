@@ -5,6 +5,7 @@
 #include "rt_core/surface/overlap.h"
 #include "rt_core/surface/smooth_foot.h"
 #include "rt_core/tool/articulate.h"
+#include "rt_core/tool/carrier_frames.h"
 #include "rt_core/tool/two_tools.h"
 
 namespace palpate {
@@ -50,6 +51,8 @@ class Collider {
                                                                             root_(root_box(model)),
                                                                             share_(surface_work_share(model.params)) {
     smooth_ = !model.corner_normal.empty();
+    const ArticulationState& a = state.articulation;
+    if (is_articulated(model)) now_of_.place(state.tool_w, a.motion_tool.data(), a.motion_tool.size());
   }
 
   // The points of a piece from `from` on, or before it.
@@ -58,7 +61,7 @@ class Collider {
     scratch_.work.pieces += 1;
     piece_ = static_cast<std::int32_t>(index);
     if (is_articulated(model_)) {
-      now_ = RigidFrame(carrier_w(model_, state_, piece_));
+      now_ = now_of_.of(piece_);
       knows_before_ = false;
     }
     const Real gap = distance_to(root_, out_of(now_, piece.pose_tool.position_m)) - piece.bounding_radius_m;
@@ -147,9 +150,17 @@ class Collider {
   }
 
   Real moved(std::int32_t index, Vec3 p) PALPATE_RT {
-    if (!knows_before_) before_ = RigidFrame(carrier_previous_w(model_, state_, piece_));
-    knows_before_ = true;
+    if (!knows_before_) look_back();
     return norm(p - out_of(before_, model_.tool_point[static_cast<std::size_t>(index)].position_tool_m));
+  }
+
+  // Where the piece was: few ticks ask.
+  void look_back() PALPATE_RT {
+    const ArticulationState& a = state_.articulation;
+    if (!knows_all_before_)
+      before_of_.place(state_.tool_previous_w, a.motion_previous_tool.data(), a.motion_previous_tool.size());
+    knows_all_before_ = knows_before_ = true;
+    before_ = before_of_.of(piece_);
   }
 
   void measure(std::int32_t index, Vec3 p, const SurfacePoint& surface) PALPATE_RT {
@@ -264,10 +275,11 @@ class Collider {
   const Model& model_;
   State& state_;
   Scratch& scratch_;
-  std::int32_t piece_ = 0;    // being visited
-  RigidFrame now_, before_;   // of it
-  bool knows_before_ = true;  // asked for by few
-  FourQueries query_;         // of its points that are due
+  std::int32_t piece_ = 0;   // being visited
+  RigidFrame now_, before_;  // of it
+  CarrierFrames now_of_, before_of_;
+  bool knows_before_ = true, knows_all_before_ = false;
+  FourQueries query_;  // of its points that are due
   std::int32_t due_[4], due_count_ = 0;
   const Box root_;
   bool smooth_ = false;
