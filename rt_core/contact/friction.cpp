@@ -44,23 +44,29 @@ struct TangentialSpring {
 Real reach_m(const TangentialSpring& spring, Real stretch) PALPATE_RT {
   return spring.depth_m > 0 ? square_root(spring.depth_m * spring.depth_m + stretch * stretch) : stretch;
 }
-// f(R)/R, with its limit k1 at zero.
-Real secant_N_per_m(const CubicLaw& law, Real reach) PALPATE_RT {
-  return reach > kNoStretch_m ? law_force_N(law, reach) / reach : law.k1_N_per_m;
+// The spring at a stretch; asked for once, used for its force, stiffness and energy.
+struct StretchedSpring {
+  Real stretch = 0, reach = 0;
+  LawPoint law;
+  Real secant_N_per_m = 0;  // f(R)/R, with its limit k1 at zero
+};
+StretchedSpring stretched(const TangentialSpring& spring, Real stretch) PALPATE_RT {
+  StretchedSpring at;
+  at.stretch = stretch;
+  at.reach = reach_m(spring, stretch);
+  at.law = law_at(spring.law, at.reach);
+  at.secant_N_per_m = at.reach > kNoStretch_m ? at.law.force_N / at.reach : spring.law.k1_N_per_m;
+  return at;
 }
-Real spring_force_N(const TangentialSpring& spring, Real stretch) PALPATE_RT {
-  return secant_N_per_m(spring.law, reach_m(spring, stretch)) * stretch;
-}
-Real spring_tangent_N_per_m(const TangentialSpring& spring, Real stretch) PALPATE_RT {
-  const Real reach = reach_m(spring, stretch);
-  if (!(reach > kNoStretch_m)) return spring.law.k1_N_per_m;
-  const Real cosine = stretch / reach, sine = spring.depth_m / reach;
-  return law_tangent_N_per_m(spring.law, reach) * cosine * cosine + secant_N_per_m(spring.law, reach) * sine * sine;
+Real force_N(const StretchedSpring& at) PALPATE_RT { return at.secant_N_per_m * at.stretch; }
+Real tangent_N_per_m(const TangentialSpring& spring, const StretchedSpring& at) PALPATE_RT {
+  if (!(at.reach > kNoStretch_m)) return spring.law.k1_N_per_m;
+  const Real cosine = at.stretch / at.reach, sine = spring.depth_m / at.reach;
+  return at.law.tangent_N_per_m * cosine * cosine + at.secant_N_per_m * sine * sine;
 }
 Real normal_gain_N(const TangentialSpring& spring, Real stretch) PALPATE_RT {
   if (!(spring.depth_m > 0)) return 0.0;
-  return secant_N_per_m(spring.law, reach_m(spring, stretch)) * spring.depth_m -
-         law_force_N(spring.law, spring.depth_m);
+  return stretched(spring, stretch).secant_N_per_m * spring.depth_m - law_force_N(spring.law, spring.depth_m);
 }
 
 // Stretch at which the spring carries `force`. At fixed depth, and within the law's range, the tangential component
@@ -73,8 +79,9 @@ Real spring_stretch_m(const TangentialSpring& spring, Real force) PALPATE_RT {
   Real stretch = law_depth_m(at_depth, force);
   if (reach_m(spring, stretch) <= spring.law.max_depth_m) return stretch;
   for (std::int32_t i = 0; i < kInverseLawIterations; ++i) {  // bound: kInverseLawIterations
-    const Real tangent = spring_tangent_N_per_m(spring, stretch);
-    if (tangent > 0) stretch -= (spring_force_N(spring, stretch) - force) / tangent;
+    const StretchedSpring at = stretched(spring, stretch);
+    const Real tangent = tangent_N_per_m(spring, at);
+    if (tangent > 0) stretch -= (force_N(at) - force) / tangent;
   }
   return max_of(stretch, 0.0);
 }
@@ -109,14 +116,14 @@ Real power_law(Real k, Real force, Real beta) PALPATE_RT {
   return k * math::pow(force, beta);
 }
 
-FrictionForce spring_response(const TangentialSpring& spring, Real depth_rate, Vec3 direction, Real length) PALPATE_RT {
+FrictionForce spring_response(const TangentialSpring& spring, const StretchedSpring& at, Real depth_rate,
+                              Vec3 direction) PALPATE_RT {
   FrictionForce result;
-  result.force_w = -spring_force_N(spring, length) * direction;
-  result.normal_gain_N = depth_rate * normal_gain_N(spring, length);
-  const Real reach = reach_m(spring, length);
-  result.energy_J = law_energy_J(spring.law, reach) - law_energy_J(spring.law, spring.depth_m);
-  result.along_N_per_m = spring_tangent_N_per_m(spring, length);
-  result.across_N_per_m = secant_N_per_m(spring.law, reach);
+  result.force_w = -force_N(at) * direction;
+  result.normal_gain_N = depth_rate * normal_gain_N(spring, at.stretch);
+  result.energy_J = law_energy_J(spring.law, at.reach) - law_energy_J(spring.law, spring.depth_m);
+  result.along_N_per_m = tangent_N_per_m(spring, at);
+  result.across_N_per_m = at.secant_N_per_m;
   result.direction_w = direction;
   return result;
 }
@@ -209,11 +216,12 @@ FrictionForce friction_step(const FrictionParameters& parameters, const Friction
   const Real normal = load.force_N + load.depth_rate * normal_gain_N(spring, length);
   const bool sliding_on = memory.mode == FrictionMode::kSlip && !paper;
   const Real limit = sliding_on ? sliding_limit_N(parameters, normal) : static_limit_N(parameters, normal);
-  const Real force = spring_force_N(spring, length);
+  const StretchedSpring tried = stretched(spring, length);
+  const Real force = force_N(tried);
   if (force <= limit * kLimitSlack) {
     memory.mode = sliding_on && force > kSticksAgain * limit ? FrictionMode::kSlip : FrictionMode::kStick;
     memory.stretch_w = trial;
-    return spring_response(spring, load.depth_rate, direction, length);
+    return spring_response(spring, tried, load.depth_rate, direction);
   }
   memory.mode = FrictionMode::kSlip;
   // The radial law's normal force falls as the stretch is cut; where sliding is plain mu F the cut ends at mu depth.
@@ -227,7 +235,7 @@ FrictionForce friction_step(const FrictionParameters& parameters, const Friction
     memory.stretch_w = spring_stretch_m(spring, sliding) * direction;
   }
   const Real kept = norm(memory.stretch_w);
-  FrictionForce result = spring_response(spring, load.depth_rate, slip_direction, kept);
+  FrictionForce result = spring_response(spring, stretched(spring, kept), load.depth_rate, slip_direction);
   result.force_w = -sliding * slip_direction;
   result.reversal_N_per_m = result.along_N_per_m;
   result.along_N_per_m = 0.0;

@@ -185,8 +185,8 @@ FrictionForce rub_region(const Model& model, const State& state, const FrictionP
 }
 
 TangentAxes tangent_axes(const FrictionForce& friction, Vec3 normal) PALPATE_RT {
-  const Vec3 any = unit_or(tangential_part(axis_off(normal), normal), {});
-  const Vec3 along = unit_or(friction.direction_w, any);
+  Vec3 along = unit_or(friction.direction_w, {});
+  if (along == Vec3{}) along = unit_or(tangential_part(axis_off(normal), normal), {});
   return {along, cross(normal, along)};
 }
 
