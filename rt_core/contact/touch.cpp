@@ -114,11 +114,10 @@ class Collider {
     if (due_count_ > 1) four = settle_four(model_, query_, due_count_);
     for (std::int32_t k = 0; k < due_count_; ++k) {  // bound: 4
       const Vec3 p = query_.p[k];
-      if (left_ > 0) {
-        const bool settled = (four.settled >> k & 1) != 0;
-        measure(due_[k], p,
-                settled ? settled_point(four, static_cast<std::uint32_t>(k))
-                        : closest_surface_point(model_, p, kHuge, state_.point[due_[k]].triangle));
+      if (left_ > 0 && (four.settled >> k & 1) != 0) {
+        settle(due_[k], p, four, static_cast<std::uint32_t>(k));
+      } else if (left_ > 0) {
+        measure(due_[k], p, closest_surface_point(model_, p, kHuge, state_.point[due_[k]].triangle));
       } else {
         if (next_first_ < 0) next_first_ = due_[k];
         hold(due_[k], p);
@@ -161,6 +160,20 @@ class Collider {
       before_of_.place(state_.tool_previous_w, a.motion_previous_tool.data(), a.motion_previous_tool.size());
     knows_all_before_ = knows_before_ = true;
     before_ = before_of_.of(piece_);
+  }
+
+  // measure() of one of four that is outside the body, with its nearest place proved.
+  void settle(std::int32_t index, Vec3 p, const FourSettled& four, std::uint32_t k) PALPATE_RT {
+    if (smooth_) return measure(index, p, settled_point(four, k));
+    const ToolPoint& tool_point = model_.tool_point[static_cast<std::size_t>(index)];
+    PointState& point = state_.point[index];
+    left_ -= looked_at(four, k);
+    scratch_.work.queries += 1;
+    point.closest_w = four.closest_w[k];
+    point.normal_w = four.normal_w[k];
+    point.triangle = four.triangle[k];
+    point.gap_m = point.gap_bound_m = four.distance_m[k] - tool_point.margin_m;
+    if (point.gap_m < 0) keep(index, point, tool_point);
   }
 
   void measure(std::int32_t index, Vec3 p, const SurfacePoint& surface) PALPATE_RT {

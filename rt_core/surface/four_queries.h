@@ -28,7 +28,11 @@ struct FourSettled {
 // The first `count` of them. On grasp_cylinder_5 a query takes 600 instructions alone, 250 here (2026-11-26).
 FourSettled settle_four(const Model& model, const FourQueries& query, std::int32_t count) PALPATE_RT;
 
-// closest_surface_point() of one that is settled, to the bit.
+// Triangles looked at for one that is settled.
+inline std::int32_t looked_at(const FourSettled& four, std::uint32_t k) PALPATE_RT {
+  return 1 + static_cast<std::int32_t>(four.on_edge >> k & 1);
+}
+// closest_surface_point() of it, to the bit.
 inline SurfacePoint settled_point(const FourSettled& four, std::uint32_t k) PALPATE_RT {
   SurfacePoint point;
   point.closest_w = four.closest_w[k];
@@ -37,7 +41,7 @@ inline SurfacePoint settled_point(const FourSettled& four, std::uint32_t k) PALP
   point.triangle = four.triangle[k];
   point.feature =
       static_cast<Feature>((four.edge[0] >> k & 1) + 2 * (four.edge[1] >> k & 1) + 3 * (four.edge[2] >> k & 1));
-  point.looked = 1 + static_cast<std::int32_t>(four.on_edge >> k & 1);
+  point.looked = looked_at(four, k);
   point.found = true;
   return point;
 }

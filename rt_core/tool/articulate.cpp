@@ -134,7 +134,9 @@ void place_links(const Model& model, const double* joint, Pose* link_tool, Vec3*
   for (std::int32_t j = 0; j < joints; ++j) {  // bound: kMaxJoints; parents come first
     if ((which >> j & 1) == 0) continue;
     const Joint& row = joint_at(model, j);
-    const Pose axis = row.parent < 0 ? row.before : link_tool[row.parent] * row.before;
+    // Where the axis is that of the parent's frame, as in all but a hand's first joints, the product is spared.
+    Pose axis = row.before;
+    if (row.parent >= 0) axis = axis == Pose{} ? link_tool[row.parent] : link_tool[row.parent] * axis;
     const Vec3 z = rotate(axis.orientation, {0, 0, 1});
     Pose moved = axis;
     if (row.kind == JointKind::kSlide) {

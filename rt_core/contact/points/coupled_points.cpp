@@ -2,6 +2,10 @@
 
 namespace palpate {
 
+namespace {
+constexpr Double4 kLane{0, 1, 2, 3};
+}
+
 CoupledPoints::CoupledPoints(const PointLaws& laws, const Real* compliance_m_per_N) PALPATE_RT
     : law_(laws.law),
       rows_(laws.region),
@@ -105,22 +109,48 @@ Real CoupledPoints::evaluate(const Real* shift_m, RegionSystem& s) const PALPATE
   return largest;
 }
 
-// I + g C g = U^T U as in cholesky.h, by U's rows: what is left of a row stays in registers. The diagonal is in `pivot`
+// Row j of I + g C g from its diagonal's four on, kWide of them, less what U's rows above take from it.
+template <int kWide>
+void CoupledPoints::reduce_row(RegionSystem& s, std::int32_t j) const PALPATE_RT {
+  const std::int32_t begin = 4 * (j / 4);
+  const Real* const g = s.root_tangent;
+  Double4 left[static_cast<std::size_t>(kWide)];
+#pragma GCC unroll 4
+  for (int i = 0; i < kWide; ++i)
+    left[i] = load4(g + begin + 4 * i) * load4(compliance_ + j * kRegionStride + begin + 4 * i) * splat4(g[j]);
+  left[0] += splat4(j - begin) == kLane ? splat4(1.0) : Double4{};
+  const Real* above = s.factor + begin;
+  for (std::int32_t k = 0; k < j; ++k, above += kRegionStride) {  // bound: regions
+    const Double4 share = splat4(above[j - begin]);
+#pragma GCC unroll 4
+    for (int i = 0; i < kWide; ++i) left[i] -= load4(above + 4 * i) * share;
+  }
+#pragma GCC unroll 4
+  for (int i = 0; i < kWide; ++i) store(s.factor + j * kRegionStride + begin + 4 * i, left[i]);
+}
+
+// I + g C g = U^T U as in cholesky.h, by U's rows: what is left of one stays in registers. The diagonal is in `pivot`
 // and 0 in U, like what is below it, so that whole lanes may be taken of a row. Bound: regions^3 / 6 multiply-adds.
 bool CoupledPoints::factorise(RegionSystem& s, Real* pivot) const PALPATE_RT {
-  const Real* g = s.root_tangent;
-  constexpr Double4 kLane{0, 1, 2, 3};
+  static_assert(kFours == 4);
   for (std::int32_t j = 0; j < n_; ++j) {
     const std::int32_t begin = j / 4;
-    Real* const row = s.factor + j * kRegionStride;
-    for (std::int32_t i = begin; i < fours_; ++i) {
-      Double4 left = load4(g + 4 * i) * load4(compliance_ + j * kRegionStride + 4 * i) * splat4(g[j]);
-      if (i == begin) left += splat4(j - 4 * i) == kLane ? splat4(1.0) : Double4{};
-      const Real* above = s.factor + 4 * i;
-      for (std::int32_t k = 0; k < j; ++k, above += kRegionStride) left -= load4(above) * splat4(above[j - 4 * i]);
-      store(row + 4 * i, left);
+    switch (fours_ - begin) {
+      case 1:
+        reduce_row<1>(s, j);
+        break;
+      case 2:
+        reduce_row<2>(s, j);
+        break;
+      case 3:
+        reduce_row<3>(s, j);
+        break;
+      default:
+        reduce_row<4>(s, j);
+        break;
     }
-    const Real scale = g[j] * compliance_[j * (kRegionStride + 1)] * g[j] + 1.0;
+    Real* const row = s.factor + j * kRegionStride;
+    const Real g = s.root_tangent[j], scale = g * compliance_[j * (kRegionStride + 1)] * g + 1.0;
     if (!(row[j] > 1e-14 * scale && row[j] < kHuge * kHuge)) return false;
     pivot[j] = square_root(row[j]);
     const Double4 inverse = splat4(1.0 / pivot[j]);

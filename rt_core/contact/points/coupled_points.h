@@ -37,6 +37,8 @@ class CoupledPoints {
   void load_four(std::int32_t i, const Double4& shift_m, const Vec3x4& pivot_w, Four& four) const PALPATE_RT;
   void centre_four(std::int32_t i, const Vec3x4& last_normal_w, Four& four) const PALPATE_RT;
   void press_four(std::int32_t i, State& state, Scratch& scratch) const PALPATE_RT;
+  template <int kWide>
+  void reduce_row(RegionSystem& system, std::int32_t j) const PALPATE_RT;
   bool factorise(RegionSystem& system, Real* pivot) const PALPATE_RT;
   Double4 moved_by(const Real* per_region, std::int32_t four) const PALPATE_RT;
 
