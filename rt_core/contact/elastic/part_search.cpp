@@ -22,28 +22,45 @@ Real length2(const Model& model, std::int32_t triangle) PALPATE_RT {
 // decides about those that share what is nearest. Alone it left a foot on a needle whose neighbours' middles are
 // farther along.
 struct Seen {
-  std::int32_t triangle;
-  Real square_m2, facing;
-  bool is_above;  // of its inside
+  std::int32_t triangle = -1;
+  Real square_m2 = 0, facing = -2;
+  bool is_above = false;  // of its inside
 
-  Seen(const Model& model, std::int32_t t, Vec3 place) PALPATE_RT : triangle(t) {
-    const foot::RestCorners at(model, t);
-    const Vec3 out = place - middle(at);
-    facing = looks_to(out, cross(at.v[1] - at.v[0], at.v[2] - at.v[0]));
-    const TrianglePoint nearest = closest_on_triangle(place, at.v[0], at.v[1], at.v[2]);
-    square_m2 = squared_norm(place - nearest.point) + kMiddle * squared_norm(out);
-    is_above = facing >= 0 && nearest.feature == Feature::kFace;
-  }
   bool is_better_than(const Seen& other) const PALPATE_RT {
     return other.facing < 0 ? facing > other.facing : facing >= 0 && square_m2 < other.square_m2;
   }
 };
 
+// Looks at a facet as far as it takes to see that it is no better than `best`. Returns whether it is, as `there` tells.
+bool improves(const Model& model, std::int32_t triangle, Vec3 place, const Seen& best, Seen& there) PALPATE_RT {
+  const foot::RestCorners at(model, triangle);
+  const Vec3 out = place - middle(at), up = cross(at.v[1] - at.v[0], at.v[2] - at.v[0]);
+  if (best.facing >= 0 && dot(out, up) < 0) return false;
+  const Real facing = best.facing < 0 ? looks_to(out, up) : 0.0;
+  if (best.facing < 0 && !(facing > best.facing)) return false;
+  const TrianglePoint nearest = closest_on_triangle(place, at.v[0], at.v[1], at.v[2]);
+  const Real square_m2 = squared_norm(place - nearest.point) + kMiddle * squared_norm(out);
+  if (best.facing >= 0 && !(square_m2 < best.square_m2)) return false;
+  there = {triangle, square_m2, best.facing < 0 ? facing : looks_to(out, up),
+           dot(out, up) >= 0 && nearest.feature == Feature::kFace};
+  return best.facing < 0 || there.facing >= 0;
+}
+
 void take(const Model& model, std::int32_t triangle, Vec3 place, Seen& best, std::int32_t& looked) PALPATE_RT {
-  if (triangle < 0 || triangle == best.triangle) return;
+  if (triangle == best.triangle) return;
   looked += 1;
-  const Seen there(model, triangle, place);
-  if (there.is_better_than(best)) best = there;
+  Seen there;
+  if (improves(model, triangle, place, best, there)) best = there;
+}
+
+// The same across an edge, if the part goes on there: asked only of one that is better, since it takes as much.
+void take_across(const Model& model, std::int32_t from, int edge, Vec3 place, Seen& best,
+                 std::int32_t& looked) PALPATE_RT {
+  const std::int32_t next = model.triangle[static_cast<std::size_t>(from)].adjacent[edge];
+  if (next < 0 || next == best.triangle) return;
+  looked += 1;
+  Seen there;
+  if (improves(model, next, place, best, there) && foot::across(model, from, edge) >= 0) best = there;
 }
 
 }  // namespace
@@ -68,21 +85,20 @@ PartSeeds spread_over_part(const Model& model, std::int32_t begins_at) noexcept 
 }
 
 PartPlace come_down(const Model& model, const PartSeeds& seeds, Vec3 place_m, std::int32_t triangle) PALPATE_RT {
-  Seen best(model, triangle, place_m);
-  std::int32_t looked = 1;
+  Seen best;
+  std::int32_t looked = 0;
+  take(model, triangle, place_m, best, looked);
   for (const std::int32_t seed : seeds.triangle) take(model, seed, place_m, best, looked);  // bound: kPartSeeds
   for (std::int32_t i = 0; i < kMostDown; ++i) {                                            // bound: kMostDown x 9
     const std::int32_t here = best.triangle;
     if (best.is_above) return {here, true, looked};
-    std::int32_t beside[3];
-    for (int edge = 0; edge < 3; ++edge) {
-      beside[edge] = foot::across(model, here, edge);
-      take(model, beside[edge], place_m, best, looked);
-    }
+    for (int edge = 0; edge < 3; ++edge) take_across(model, here, edge, place_m, best, looked);
     // A corner may be what is nearest of those beside, too, and not of those beyond them.
-    for (int edge = 0; edge < 3 && best.triangle == here; ++edge)
-      for (int beyond = 0; beyond < 3 && beside[edge] >= 0; ++beyond)
-        take(model, foot::across(model, beside[edge], beyond), place_m, best, looked);
+    for (int edge = 0; edge < 3 && best.triangle == here; ++edge) {
+      const std::int32_t beside = foot::across(model, here, edge);
+      for (int beyond = 0; beyond < 3 && beside >= 0; ++beyond)
+        take_across(model, beside, beyond, place_m, best, looked);
+    }
     if (best.triangle == here) return {here, true, looked};
   }
   return {best.triangle, false, looked};
