@@ -232,6 +232,10 @@ const PlaneClearance::Fan& PlaneClearance::fan_about(std::int32_t index, int k) 
   return fan;
 }
 
+bool PlaneClearance::is_flat_about_a_corner(std::int32_t index) {
+  return fan_about(index, 0).flat || fan_about(index, 1).flat || fan_about(index, 2).flat;
+}
+
 void PlaneClearance::measure(std::int32_t index, bool only_whole) {
   if (visits_left_ <= 0 || !list_planes(index)) return;
   Triangle& t = bvh_.triangle[static_cast<std::size_t>(index)];

@@ -25,6 +25,8 @@ class PlaneClearance {
   // Triangle::clear_* and ring_convex of a triangle, left as they are where planes prove no more. `only_whole`: only
   // where all of the triangle is certified.
   void measure(std::int32_t index, bool only_whole);
+  // Whether the triangles about one of its corners lie in one plane.
+  bool is_flat_about_a_corner(std::int32_t index);
 
  private:
   struct Plane {

@@ -5,6 +5,7 @@
 
 #include "config/hand/hand_model.h"
 #include "rt_core/tool/articulate.h"
+#include "rt_core/tool/carrier_frames.h"
 
 namespace palpate {
 namespace {
@@ -27,6 +28,27 @@ void expect_near(Vec3 a, Vec3 b, double tolerance) {
   EXPECT_NEAR(a.x, b.x, tolerance);
   EXPECT_NEAR(a.y, b.y, tolerance);
   EXPECT_NEAR(a.z, b.z, tolerance);
+}
+
+TEST(HandKinematics, FramesByFoursAreTheSameToTheBit) {
+  const auto pose = [](int i) {
+    const double t = 0.37 * i;
+    return Pose{{std::sin(t), std::cos(2 * t), 0.1 * t}, normalised({std::cos(t), std::sin(t), std::sin(3 * t), 0.2})};
+  };
+  const Pose tool = pose(40);
+  std::vector<Pose> motion;
+  for (int n = 1; n <= kMaxPieces; ++n) {
+    motion.push_back(pose(n));
+    CarrierFrames frames;
+    frames.place(tool, motion.data(), n);
+    for (int i = 0; i < n; ++i) {
+      const RigidFrame one(tool * motion[static_cast<std::size_t>(i)]), of_four = frames.of(i);
+      EXPECT_EQ(one.x, of_four.x) << n << ' ' << i;
+      EXPECT_EQ(one.y, of_four.y);
+      EXPECT_EQ(one.z, of_four.z);
+      EXPECT_EQ(one.origin, of_four.origin);
+    }
+  }
 }
 
 // Index finger of Table I, psi = 10, theta = 40, 50, 30 degrees; numbers computed independently, to their last digit.

@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "rt_core/cholesky.h"
-#include "rt_core/contact/points/point_laws.h"
+#include "rt_core/contact/points/coupled_points.h"
+#include "tests/support/roomy.h"
 
 namespace palpate {
 namespace {
@@ -32,13 +33,34 @@ struct Problem {
     first.push_back(static_cast<std::int32_t>(contact.size()));
   }
   std::size_t regions() const { return first.size() - 1; }
-  RegionSolution solve() {
+  std::vector<RegionRows> rows() {
     std::vector<RegionRows> view;
     for (std::size_t r = 0; r < regions(); ++r) {
       view.push_back({contact.data(), index.data() + first[r], first[r + 1] - first[r]});
     }
+    return view;
+  }
+  RegionSolution solve() {
+    const std::vector<RegionRows> view = rows();
     const auto n = static_cast<std::int32_t>(regions());
     return solve_regions(PointLaws{kLaw, view.data(), compliance.data(), n}, n, system);
+  }
+  // C as CoupledPoints has it.
+  std::vector<Real> wide() const {
+    std::vector<Real> out(kRegionStride * regions(), 0.0);
+    for (std::size_t i = 0; i < regions(); ++i) {
+      for (std::size_t j = 0; j < regions(); ++j) out[kRegionStride * i + j] = compliance[regions() * i + j];
+    }
+    return out;
+  }
+  // The first n regions alone.
+  void keep(std::size_t n) {
+    std::vector<Real> kept;
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t j = 0; j < n; ++j) kept.push_back(compliance[regions() * i + j]);
+    }
+    compliance = kept;
+    first.resize(n + 1);
   }
   Real shift(std::size_t r) const { return system.shift_m[r]; }
   Real force(std::size_t r) const { return system.force_N[r]; }
@@ -144,6 +166,104 @@ TEST(CoupledRegions, ConvergesOnTwoThousandRandomProblems) {
     // Measured 2026-11-21 over 2000 problems each with all five steps: 9e-19, 9e-19, 2.3e-13, 1.3e-10 m; the solve ends
     // early below PointLaws::kEnough_m.
     EXPECT_LE(worst, c.bound_m) << c.self_compliance << ' ' << c.points;
+  }
+}
+
+TEST(CoupledRegions, ByFoursTheyAreSolvedTheSameToTheBit) {
+  std::mt19937_64 random(8);
+  for (std::size_t n = 1; n <= 15; ++n) {
+    for (const int points : {1, 3, 4}) {
+      Problem p = random_problem(random, points, 1e-4);
+      p.keep(n);
+      Problem fours = p;
+      const RegionSolution one = p.solve();
+      const std::vector<RegionRows> view = fours.rows();
+      const std::vector<Real> wide = fours.wide();
+      const auto regions = static_cast<std::int32_t>(n);
+      const PointLaws laws{kLaw, view.data(), nullptr, regions};
+      const RegionSolution four = solve_regions(CoupledPoints(laws, wide.data()), regions, fours.system);
+      EXPECT_EQ(one.residual_m, four.residual_m) << n;
+      EXPECT_EQ(one.steps, four.steps);
+      EXPECT_EQ(one.evaluations, four.evaluations);
+      for (std::size_t r = 0; r < n; ++r) {
+        EXPECT_EQ(p.shift(r), fours.shift(r)) << n << ' ' << r;
+        EXPECT_EQ(p.force(r), fours.force(r));
+      }
+    }
+  }
+}
+
+// A hand's contacts on a body, and what is remembered of their regions.
+struct Pressed {
+  StatePtr state = test::roomy_state();
+  ScratchPtr scratch = test::roomy_scratch();
+
+  explicit Pressed(const Problem& p) {
+    std::mt19937_64 random(9);
+    std::uniform_real_distribution<Real> u(-1, 1);
+    const auto anywhere = [&] { return Vec3{u(random), u(random), u(random)}; };
+    RowsByRegion& rows = scratch->rows;
+    rows.regions = static_cast<std::int32_t>(p.regions());
+    state->tool_w.position_m = 0.05 * anywhere();
+    for (std::size_t i = 0; i < p.contact.size(); ++i) {
+      Contact& contact = scratch->contact[static_cast<std::ptrdiff_t>(i)];
+      contact = p.contact[i];
+      contact.position_w = 0.03 * anywhere();
+      contact.normal_w = unit_or(Vec3{0, 0, 2} + anywhere(), {});
+      rows.index[i] = static_cast<std::int32_t>(i);
+    }
+    for (std::size_t r = 0; r < p.regions(); ++r) {
+      rows.slot[r] = static_cast<std::int32_t>(p.regions() - 1 - r);
+      rows.first[r + 1] = p.first[r + 1];
+      scratch->system.shift_m[r] = 1e-3 * u(random);
+      Region& region = state->region[rows.slot[r]];
+      region.normal_w = r % 3 == 0 ? Vec3{} : unit_or(Vec3{0, 0, 1} + anywhere(), {});
+      region.stretch_w = r % 4 == 0 ? Vec3{} : 1e-4 * anywhere();
+    }
+    rows.first[0] = 0;
+  }
+  std::vector<RegionRows> rows() {
+    std::vector<RegionRows> out;
+    for (std::int32_t r = 0; r < scratch->rows.regions; ++r) out.push_back(rows_of(*scratch, r));
+    return out;
+  }
+};
+
+TEST(CoupledRegions, ByFoursTheyPressTheSameToTheBit) {
+  std::mt19937_64 random(10);
+  for (std::size_t n = 1; n <= 15; ++n) {
+    Problem p = random_problem(random, 4, 1e-4);
+    p.keep(n);
+    p.contact.resize(static_cast<std::size_t>(p.first[n]));
+    if (n > 2) p.contact[5].depth_m = p.contact[6].depth_m = p.contact[4].depth_m = p.contact[7].depth_m = -1e-3;
+    for (const Real range_m : {kHuge, 2e-3}) {
+      Pressed one(p), four(p);
+      const CubicLaw law{40, 3e8, range_m};
+      const auto regions = static_cast<std::int32_t>(n);
+      const std::vector<RegionRows> rows = one.rows(), by_fours = four.rows();
+      press_regions(PointLaws{law, rows.data(), nullptr, regions}, *one.state, *one.scratch);
+      const std::vector<Real> wide = p.wide();
+      CoupledPoints(PointLaws{law, by_fours.data(), nullptr, regions}, wide.data()).press(*four.state, *four.scratch);
+      EXPECT_EQ(one.scratch->status, four.scratch->status);
+      for (std::int32_t r = 0; r < regions; ++r) {
+        const Region &a = one.state->region[r], &b = four.state->region[r];
+        EXPECT_EQ(a.centre_w, b.centre_w) << n << ' ' << r;
+        EXPECT_EQ(a.normal_w, b.normal_w);
+        EXPECT_EQ(a.stretch_w, b.stretch_w);
+        EXPECT_EQ(a.normal_force_N, b.normal_force_N);
+        EXPECT_EQ(a.wrench_w, b.wrench_w);
+        EXPECT_EQ(a.energy_J, b.energy_J);
+        EXPECT_EQ(a.tangent_N_per_m, b.tangent_N_per_m);
+      }
+      for (std::size_t i = 0; i < p.contact.size(); ++i) {
+        const auto k = static_cast<std::ptrdiff_t>(i);
+        EXPECT_EQ(one.scratch->contact[k].force_N, four.scratch->contact[k].force_N);
+      }
+      Real a[36], b[36];
+      store(one.scratch->stiffness, a);
+      store(four.scratch->stiffness, b);
+      for (int i = 0; i < 36; ++i) EXPECT_EQ(a[i], b[i]);
+    }
   }
 }
 

@@ -168,6 +168,24 @@ TEST(Math, ArcTangent) {
   EXPECT_EQ(math::atan2(kSubnormal, 1), kSubnormal);
 }
 
+TEST(Math, SinesAndCosinesOfFourAreTheSameToTheBit) {
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<Real> wide(-1e4, 1e4), narrow(-4, 4);
+  for (int i = 0; i < 20000; ++i) {
+    const Double4 x{narrow(random), wide(random), (i % 12000) * M_PI_4, -1e-9 * i};
+    const math::SinCos4 four = math::sin_cos(x);
+    for (int k = 0; k < 4; ++k) {
+      ASSERT_EQ(four.sin[k], math::sin(x[k])) << x[k];
+      ASSERT_EQ(four.cos[k], math::cos(x[k])) << x[k];
+    }
+  }
+  const math::SinCos4 bad = math::sin_cos(Double4{kNan, kInfinity, -kInfinity, 1e5});
+  for (int k = 0; k < 4; ++k) {
+    EXPECT_EQ(bad.sin[k], 0);
+    EXPECT_EQ(bad.cos[k], 1);
+  }
+}
+
 TEST(Math, ArcSineAndArcCosine) {
   const auto points = dense_and_random(-1, 1, 20001, 10);
   EXPECT_LT(worst(points, math::asin, [](long double x) { return std::asin(x); }), kRelative);
