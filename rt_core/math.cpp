@@ -208,7 +208,8 @@ Real cos(Real x) PALPATE_RT { return is_finite(x) ? sin_shifted(x, 1) : 1.0; }
 
 SinCos4 sin_cos(const Double4& x) PALPATE_RT {
   using Int4 [[gnu::vector_size(16)]] = std::int32_t;
-  const Double4 angle = (x >= -1e4) & (x <= 1e4) ? x : Double4{};
+  const Mask4 in_range = (x >= -1e4) & (x <= 1e4);
+  const Double4 angle = in_range ? x : Double4{};
   const Double4 turned = angle * kTwoOverPi;
   const Int4 quarter = __builtin_convertvector(turned + (turned < 0 ? splat4(-0.5) : splat4(0.5)), Int4);  // nearest()
   const Double4 k = __builtin_convertvector(quarter, Double4);

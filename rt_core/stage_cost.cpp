@@ -9,7 +9,7 @@ namespace palpate {
 namespace {
 
 // What a stage takes whatever it finds to do, in the stages' order.
-constexpr double kStageInstructions[kStageCount] = {3500, 50, 2500, 1700, 4500, 1500, 400};
+constexpr double kStageInstructions[kStageCount] = {3500, 50, 2500, 1300, 4500, 1500, 400};
 
 }  // namespace
 

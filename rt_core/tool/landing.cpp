@@ -123,7 +123,7 @@ class Landing {
   }
   void hold(const End& end, const Real* factor, const Twist& wanted) PALPATE_RT {
     Real x[kDof] = {end.n.x, end.n.y, end.n.z, end.turn.x, end.turn.y, end.turn.z};
-    cholesky_solve(factor, x, kDof);
+    cholesky_solve<kDof>(factor, x);
     hold_[held_] = {&end, {{x[0], x[1], x[2]}, {x[3], x[4], x[5]}}, -end.along(wanted) - end.gap_m, 0};
     held_ += 1;
   }
