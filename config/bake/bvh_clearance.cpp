@@ -227,10 +227,10 @@ void measure_clearance(std::span<const Vec3> vertex_m, BvhBuild& bvh) {
   const auto triangles = static_cast<std::int32_t>(bvh.triangle.size());
   for (std::int32_t i = 0; i < triangles; ++i) {
     const Coverage by_ring = clearance.measure(i);
-    // Near the corners of a convex part the next triangles but one are too near for a ball, and below the planes: a
-    // point 8 mm off a corner of the cylinder held by five fingers went through the hierarchy, 3,000 instructions for
-    // 600 (2026-11-26). Not where a fan lies in one plane: of its triangles its ring tells which is first.
-    const bool bends = by_ring == Coverage::kPart && clearance.has_convex_ring(i) && !planes.is_flat_about_a_corner(i);
+    // Near the corners of what bends one way the next triangles but one are too near for a ball, and below the planes:
+    // a point 8 mm off a corner of the cylinder held by five fingers went through the hierarchy, 3,000 instructions for
+    // 600 (2026-11-26). Where it bends both ways planes would leave what is nearest to a corner to the hierarchy.
+    const bool bends = by_ring == Coverage::kPart && clearance.has_convex_ring(i) && planes.bends_one_way(i);
     const bool in_part = bends || (by_ring == Coverage::kPart && clearance.is_sliver(i));
     const bool helps = clearance.has_large_ring() || in_part;
     if (by_ring == Coverage::kNoRing || helps) planes.measure(i, by_ring != Coverage::kNoRing);

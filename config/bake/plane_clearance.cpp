@@ -190,6 +190,19 @@ bool PlaneClearance::is_flat(std::span<const std::int32_t> fan, std::int32_t mid
          std::pow(0.5 * nearest, 2) > 4e-14 * kUsefulFactor * size_ * (farthest_ + kUsefulFactor * size_);
 }
 
+bool PlaneClearance::is_bent_one_way(std::span<const std::int32_t> fan) const {
+  const Vec3 first = plane_of(fan[0]).normal;
+  Vec3 axis;
+  for (const std::int32_t i : fan) {
+    const Vec3 turn = cross(first, plane_of(i).normal);
+    if (squared_norm(turn) > squared_norm(axis)) axis = turn;
+  }
+  axis = norm(axis) > 1e-6 ? unit_or(axis, {}) : Vec3{};
+  return squared_norm(axis) > 0 && std::all_of(fan.begin(), fan.end(), [&](std::int32_t i) {
+           return abs_of(dot(plane_of(i).normal, axis)) < 1e-9;
+         });
+}
+
 PlaneClearance::Fan PlaneClearance::look_about(std::int32_t index, int k) const {
   Fan out;
   out.known = true;
@@ -204,6 +217,7 @@ PlaneClearance::Fan PlaneClearance::look_about(std::int32_t index, int k) const 
   } while (i != index);
   out.triangles = static_cast<std::int32_t>(fan.size());
   out.flat = is_flat(fan, middle);
+  out.bends_one_way = is_bent_one_way(fan);
   if (!out.flat) return out;
   const Vec3 hub = vertex_[static_cast<std::size_t>(middle)];
   for (int axis = 0; axis < 3; ++axis) {
@@ -232,8 +246,8 @@ const PlaneClearance::Fan& PlaneClearance::fan_about(std::int32_t index, int k) 
   return fan;
 }
 
-bool PlaneClearance::is_flat_about_a_corner(std::int32_t index) {
-  return fan_about(index, 0).flat || fan_about(index, 1).flat || fan_about(index, 2).flat;
+bool PlaneClearance::bends_one_way(std::int32_t index) {
+  return fan_about(index, 0).bends_one_way && fan_about(index, 1).bends_one_way && fan_about(index, 2).bends_one_way;
 }
 
 void PlaneClearance::measure(std::int32_t index, bool only_whole) {

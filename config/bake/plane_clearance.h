@@ -25,8 +25,9 @@ class PlaneClearance {
   // Triangle::clear_* and ring_convex of a triangle, left as they are where planes prove no more. `only_whole`: only
   // where all of the triangle is certified.
   void measure(std::int32_t index, bool only_whole);
-  // Whether the triangles about one of its corners lie in one plane.
-  bool is_flat_about_a_corner(std::int32_t index);
+  // Whether the surface about each of its corners bends, and one way alone, as a cylinder: over none of them is room
+  // for a point that is nearest to the corner itself, which planes leave to the hierarchy.
+  bool bends_one_way(std::int32_t index);
 
  private:
   struct Plane {
@@ -38,7 +39,7 @@ class PlaneClearance {
   };
   // What is known of the triangles about a vertex.
   struct Fan {
-    bool known = false, flat = false;
+    bool known = false, flat = false, bends_one_way = false;
     std::int32_t triangles = 0;
     std::int32_t lowest = -1;  // of a fan in one plane across an axis, to the bit: its first triangle
   };
@@ -54,6 +55,7 @@ class PlaneClearance {
   const Fan& fan_about(std::int32_t index, int corner);
   Fan look_about(std::int32_t index, int corner) const;
   bool is_flat(std::span<const std::int32_t> fan, std::int32_t middle) const;
+  bool is_bent_one_way(std::span<const std::int32_t> fan) const;
 
   std::span<const Vec3> vertex_;
   BvhBuild& bvh_;
