@@ -99,10 +99,12 @@ elif [ "$mode" = meshes ]; then
   echo "largest over smallest: worst tick $ratio_worst %, mean in contact $ratio_mean % (at most $mesh_ratio_percent %)"
 elif [ "$mode" = nodal ]; then
   from_start=yes
+  # 305,732 on 2026-11-26, of which friction of 57 nodes that slip is 9,000 more than before the spring was asked once a
+  # stretch: that made fingers cheaper, whose stretch is kept.
   for part in slide rock; do
     echo "== $part"
     count "$part"
-    judge 300000
+    judge 310000
   done
 elif [ "$mode" = overlays ]; then
   palpate=${3:?$usage} scenes=${4:?$usage}

@@ -31,7 +31,7 @@ struct PartPlace {
 };
 // Facets that come_down() goes over, with what is beside and beyond each, and what one costs in terms of a vertex.
 inline constexpr std::int32_t kMostDown = 6;
-inline constexpr std::int32_t kMostPartLooks = 1 + kPartSeeds + 9 * kMostDown, kPartLookTerms = 9;
+inline constexpr std::int32_t kMostPartLooks = 1 + kPartSeeds + 9 * kMostDown, kPartLookTerms = 7;
 // What a visit takes beside these and beside its Newton steps, in the same terms.
 inline constexpr std::int32_t kPartVisitTerms = 60;
 // From `triangle` on over facets while they come nearer to a place on the body at rest, from those that look away from
