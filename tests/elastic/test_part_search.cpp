@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <random>
 
 #include "config/bake/surface_parts.h"
@@ -58,6 +59,20 @@ TEST(PartSearch, FindsTheNearestFacetOfAClipsPartsFromAnywhere) {
   RecordProperty("found", std::to_string(found) + " of " + std::to_string(asked));
   EXPECT_GT(asked, 1000);
   EXPECT_GT(found, 0.99 * asked);
+}
+
+// What asks from nowhere, as a state spoilt in memory does, stays where it is.
+TEST(PartSearch, StaysWhereItIsWhenThePlaceIsNoNumber) {
+  const BakedScene baked(load_scene(PALPATE_SOURCE_DIR "/config/scenes/snap_in.toml"));
+  const Model& model = baked.model();
+  const std::int32_t begins_at = model.tool_point[0].begins_at;
+  const PartSeeds seeds = spread_over_part(model, begins_at);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const Vec3 from : {Vec3{nan, 0, 0}, Vec3{nan, nan, nan}, Vec3{0, kHuge * kHuge * kHuge, 0}}) {
+    const PartPlace place = come_down(model, seeds, from, begins_at);
+    EXPECT_GE(place.triangle, 0);
+    EXPECT_LT(place.triangle, model.sizes.n_triangle);
+  }
 }
 
 }  // namespace

@@ -89,6 +89,7 @@ PartPlace come_down(const Model& model, const PartSeeds& seeds, Vec3 place_m, st
   std::int32_t looked = 0;
   take(model, triangle, place_m, best, looked);
   for (const std::int32_t seed : seeds.triangle) take(model, seed, place_m, best, looked);  // bound: kPartSeeds
+  if (best.triangle < 0) return {triangle, false, looked};                                  // the place is no number
   for (std::int32_t i = 0; i < kMostDown; ++i) {                                            // bound: kMostDown x 9
     const std::int32_t here = best.triangle;
     if (best.is_above) return {here, true, looked};
