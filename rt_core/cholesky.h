@@ -11,8 +11,13 @@
 namespace palpate {
 
 // Replaces the lower triangle of the row-major n x n matrix `a` by its Cholesky factor. Returns false, with `a`
-// spoiled, when a pivot is not clearly positive (or is NaN). Bound: n^3/6 multiply-adds.
-inline bool cholesky_factor(Real* a, std::int32_t n) PALPATE_RT {
+// spoiled, when a pivot is not clearly positive (or is NaN). `count` may be known to the compiler, which then leaves no
+// loop of up to six: a tick balances its tool twice with six unknowns, at 530 instructions a factor of which 300
+// counted (2026-11-26). Bound: n^3/6 multiply-adds.
+template <class Count>
+inline bool cholesky_factor(Real* a, Count count) PALPATE_RT {
+  const std::int32_t n = count;
+#pragma GCC unroll 6
   for (std::int32_t j = 0; j < n; ++j) {
     Real diagonal = a[j * n + j];
     const Real scale = diagonal;
@@ -22,6 +27,7 @@ inline bool cholesky_factor(Real* a, std::int32_t n) PALPATE_RT {
     const Real pivot = square_root(diagonal);
     a[j * n + j] = pivot;
     const Real inverse = 1.0 / pivot;
+#pragma GCC unroll 6
     for (std::int32_t i = j + 1; i < n; ++i) {
       Real sum = a[i * n + j];
 #pragma GCC unroll 6
@@ -32,66 +38,23 @@ inline bool cholesky_factor(Real* a, std::int32_t n) PALPATE_RT {
   return true;
 }
 
-// Solves (L L^T) x = b in place, with L from cholesky_factor. `count` may be known to the
-// compiler.
+// Solves (L L^T) x = b in place, with L from cholesky_factor.
 template <class Count>
 inline void cholesky_solve(const Real* factor, Real* b, Count count) PALPATE_RT {
   const std::int32_t n = count;
+#pragma GCC unroll 6
   for (std::int32_t i = 0; i < n; ++i) {
     Real sum = b[i];
 #pragma GCC unroll 6
     for (std::int32_t k = 0; k < i; ++k) sum -= factor[i * n + k] * b[k];
     b[i] = sum / factor[i * n + i];
   }
+#pragma GCC unroll 6
   for (std::int32_t i = n - 1; i >= 0; --i) {
     Real sum = b[i];
 #pragma GCC unroll 6
     for (std::int32_t k = i + 1; k < n; ++k) sum -= factor[k * n + i] * b[k];
     b[i] = sum / factor[i * n + i];
-  }
-}
-
-// Both for a number of unknowns that is written down, at most kUnrolled: no loop is left, with the same bits. A tick
-// balances its tool twice with six, at 530 instructions a factor of which 300 counted (2026-11-26).
-inline constexpr std::int32_t kUnrolled = 6;
-template <std::int32_t kCount>
-inline bool cholesky_factor(Real* a) PALPATE_RT {
-  static_assert(kCount <= kUnrolled);
-#pragma GCC unroll 6
-  for (std::int32_t j = 0; j < kCount; ++j) {
-    Real diagonal = a[j * kCount + j];
-    const Real scale = diagonal;
-#pragma GCC unroll 6
-    for (std::int32_t k = 0; k < j; ++k) diagonal -= a[j * kCount + k] * a[j * kCount + k];
-    if (!(diagonal > 1e-14 * scale && diagonal < kHuge * kHuge)) return false;
-    const Real pivot = square_root(diagonal), inverse = 1.0 / pivot;
-    a[j * kCount + j] = pivot;
-#pragma GCC unroll 6
-    for (std::int32_t i = j + 1; i < kCount; ++i) {
-      Real sum = a[i * kCount + j];
-#pragma GCC unroll 6
-      for (std::int32_t k = 0; k < j; ++k) sum -= a[i * kCount + k] * a[j * kCount + k];
-      a[i * kCount + j] = sum * inverse;
-    }
-  }
-  return true;
-}
-template <std::int32_t kCount>
-inline void cholesky_solve(const Real* factor, Real* b) PALPATE_RT {
-  static_assert(kCount <= kUnrolled);
-#pragma GCC unroll 6
-  for (std::int32_t i = 0; i < kCount; ++i) {
-    Real sum = b[i];
-#pragma GCC unroll 6
-    for (std::int32_t k = 0; k < i; ++k) sum -= factor[i * kCount + k] * b[k];
-    b[i] = sum / factor[i * kCount + i];
-  }
-#pragma GCC unroll 6
-  for (std::int32_t i = kCount - 1; i >= 0; --i) {
-    Real sum = b[i];
-#pragma GCC unroll 6
-    for (std::int32_t k = i + 1; k < kCount; ++k) sum -= factor[k * kCount + i] * b[k];
-    b[i] = sum / factor[i * kCount + i];
   }
 }
 

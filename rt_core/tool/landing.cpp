@@ -1,5 +1,7 @@
 #include "rt_core/tool/landing.h"
 
+#include <type_traits>
+
 #include "rt_core/cholesky.h"
 #include "rt_core/surface/body_box.h"
 #include "rt_core/tool/two_tools.h"
@@ -9,7 +11,7 @@ namespace palpate {
 
 namespace {
 
-constexpr std::int32_t kDof = 6;
+constexpr std::integral_constant<std::int32_t, 6> kDof;  // loops over it are unrolled
 
 // What holds the tool at a part of the surface that it comes to: more than the stiffest of them. With a thousand times
 // the coupling, of 237 N/m, the arms that a tube has snapped through pressed it 16 um into a seat of 7 kN/mm, and the
@@ -123,7 +125,7 @@ class Landing {
   }
   void hold(const End& end, const Real* factor, const Twist& wanted) PALPATE_RT {
     Real x[kDof] = {end.n.x, end.n.y, end.n.z, end.turn.x, end.turn.y, end.turn.z};
-    cholesky_solve<kDof>(factor, x);
+    cholesky_solve(factor, x, kDof);
     hold_[held_] = {&end, {{x[0], x[1], x[2]}, {x[3], x[4], x[5]}}, -end.along(wanted) - end.gap_m, 0};
     held_ += 1;
   }

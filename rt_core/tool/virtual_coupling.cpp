@@ -1,5 +1,7 @@
 #include "rt_core/tool/virtual_coupling.h"
 
+#include <type_traits>
+
 #include "rt_core/cholesky.h"
 #include "rt_core/contact/contact_stiffness.h"
 #include "rt_core/decay.h"
@@ -11,7 +13,7 @@ namespace palpate {
 
 namespace {
 
-constexpr std::int32_t kDof = 6;
+constexpr std::integral_constant<std::int32_t, 6> kDof;  // loops over it are unrolled
 
 // After one swing of the force (safety/hand_energy.h) the tool may go a fifth as far by itself, after two a ninth: two
 // states of contact that throw it to and fro lose it within a few ticks. Without this snap_in_paper, dragged sideways
@@ -38,14 +40,14 @@ bool factor(const Model& model, const double (&contact_stiffness)[36], Real (&ma
     matrix[i * (kDof + 1)] += model.params.coupling_N_per_m;
     matrix[(i + 3) * (kDof + 1)] += model.params.coupling_Nm_per_rad;
   }
-  return cholesky_factor<kDof>(matrix);
+  return cholesky_factor(matrix, kDof);
 }
 
 // The motion under a wrench, of the Cholesky factor.
 Twist solved(const Real (&factor)[36], const Wrench& wrench) PALPATE_RT {
   const Vec3 f = wrench.force_N, m = wrench.torque_Nm;
   Real x[kDof] = {f.x, f.y, f.z, m.x, m.y, m.z};
-  cholesky_solve<kDof>(factor, x);
+  cholesky_solve(factor, x, kDof);
   return {{x[0], x[1], x[2]}, {x[3], x[4], x[5]}};
 }
 
@@ -177,7 +179,7 @@ FeltStiffness felt_stiffness(const Model& model, const State& state, const Scrat
   Real answer[3][kDof] = {};
   for (std::int32_t i = 0; i < 3; ++i) {  // bound: 3
     answer[i][i] = k;
-    cholesky_solve<kDof>(matrix, answer[i]);
+    cholesky_solve(matrix, answer[i], kDof);
   }
   const auto across = [&](int i, int j) { return -0.5 * k * (answer[i][j] + answer[j][i]); };
   return {{k * max_of(0, 1 - answer[0][0]), k * max_of(0, 1 - answer[1][1]), k * max_of(0, 1 - answer[2][2])},
