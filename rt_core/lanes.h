@@ -103,6 +103,9 @@ struct Vec3x4 {
     z[k] = v.z;
   }
 };
+inline Vec3x4 side_by_side(Vec3 a, Vec3 b, Vec3 c, Vec3 d) PALPATE_RT {
+  return {Double4{a.x, b.x, c.x, d.x}, Double4{a.y, b.y, c.y, d.y}, Double4{a.z, b.z, c.z, d.z}};
+}
 inline Vec3x4 splat4(Vec3 a) PALPATE_RT { return {splat4(a.x), splat4(a.y), splat4(a.z)}; }
 inline Vec3x4 operator+(const Vec3x4& a, const Vec3x4& b) PALPATE_RT { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 inline Vec3x4 operator-(const Vec3x4& a, const Vec3x4& b) PALPATE_RT { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
@@ -111,6 +114,7 @@ inline Double4 dot(const Vec3x4& a, const Vec3x4& b) PALPATE_RT { return a.x * b
 inline Vec3x4 cross(const Vec3x4& a, const Vec3x4& b) PALPATE_RT {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
+inline Double4 where(const Mask4& mask, const Double4& a, const Double4& b) PALPATE_RT { return mask ? a : b; }
 inline Vec3x4 where(const Mask4& mask, const Vec3x4& a, const Vec3x4& b) PALPATE_RT {
   return {mask ? a.x : b.x, mask ? a.y : b.y, mask ? a.z : b.z};
 }

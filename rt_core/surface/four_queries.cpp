@@ -10,11 +10,7 @@ namespace {
 using std::int32_t;
 using std::uint32_t;
 
-Double4 choose(const Mask4& mask, const Double4& a, const Double4& b) PALPATE_RT { return mask ? a : b; }
 Double4 smaller(const Double4& a, const Double4& b) PALPATE_RT { return a < b ? a : b; }
-Vec3x4 side_by_side(Vec3 a, Vec3 b, Vec3 c, Vec3 d) PALPATE_RT {
-  return {Double4{a.x, b.x, c.x, d.x}, Double4{a.y, b.y, c.y, d.y}, Double4{a.z, b.z, c.z, d.z}};
-}
 
 struct FourTriangles {
   const Triangle* of[4];
@@ -53,14 +49,14 @@ FourPlaces places_on(const FourTriangles& t, const Vec3x4& p) PALPATE_RT {
   const Mask4 on_bc = (va <= zero) & (along >= zero) & (back >= zero) & (along + back > zero) & ~before_bc;
   const Mask4 in_face = (area > zero) & ~(before_bc | on_bc);
 
-  const Double4 over = choose(on_ab, d1, choose(on_ac, d2, choose(on_bc, along, splat4(1.0))));
-  const Double4 under = choose(on_ab, d1 - d3, choose(on_ac, d2 - d6, choose(on_bc, along + back, area)));
+  const Double4 over = where(on_ab, d1, where(on_ac, d2, where(on_bc, along, splat4(1.0))));
+  const Double4 under = where(on_ab, d1 - d3, where(on_ac, d2 - d6, where(on_bc, along + back, area)));
   const Double4 share = over / under;  // along the edge; of the face the scale of its weights
   const Vec3x4 base = where(on_bc, t.b, t.a), aim = where(on_ac, ac, where(on_bc, t.c - t.b, ab));
   FourPlaces places;
-  const Vec3x4 first = base + choose(in_face, vb * share, share) * aim;
+  const Vec3x4 first = base + where(in_face, vb * share, share) * aim;
   places.point = where(in_face, first + (vc * share) * ac, first);
-  places.inset = choose(in_face, share * smaller(smaller(va, vb), vc), smaller(share, splat4(1.0) - share));
+  places.inset = where(in_face, share * smaller(smaller(va, vb), vc), smaller(share, splat4(1.0) - share));
   const Vec3x4 off = p - places.point;
   places.distance2 = dot(off, off);
   places.face = bits_of(in_face);
@@ -130,7 +126,7 @@ uint32_t settle_edges(const Model& model, const FourTriangles& t, const Vec3x4& 
   for (uint32_t k = 0; k < 4; ++k) triangle[k] = (other >> k & 1) != 0 ? across[k] : triangle[k];  // bound: 4
   const Mask4 mask = mask_of(other);
   places.point = where(mask, beyond.point, places.point);
-  places.distance2 = choose(mask, beyond.distance2, places.distance2);
+  places.distance2 = where(mask, beyond.distance2, places.distance2);
   for (int i = 0; i < 3; ++i) places.edge[i] = (places.edge[i] & ~other) | (beyond.edge[i] & other);  // bound: 3
   return settled;
 }

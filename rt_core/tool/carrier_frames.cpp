@@ -30,10 +30,8 @@ void CarrierFrames::place(const Pose& tool_w, const Pose* motion_tool, std::int3
     const auto motion = [&](std::int32_t k)
                             PALPATE_RT -> const Pose& { return motion_tool[4 * i + k < pieces ? 4 * i + k : 4 * i]; };
     const Pose &a = motion(0), &b = motion(1), &c = motion(2), &d = motion(3);
-    const Vec3 pa = a.position_m, pb = b.position_m, pc = c.position_m, pd = d.position_m;
     const Quat qa = a.orientation, qb = b.orientation, qc = c.orientation, qd = d.orientation;
-    const Vec3x4 position{Double4{pa.x, pb.x, pc.x, pd.x}, Double4{pa.y, pb.y, pc.y, pd.y},
-                          Double4{pa.z, pb.z, pc.z, pd.z}};
+    const Vec3x4 position = side_by_side(a.position_m, b.position_m, c.position_m, d.position_m);
     const Quat4 turn{
         Double4{qa.w, qb.w, qc.w, qd.w},
         {Double4{qa.x, qb.x, qc.x, qd.x}, Double4{qa.y, qb.y, qc.y, qd.y}, Double4{qa.z, qb.z, qc.z, qd.z}}};

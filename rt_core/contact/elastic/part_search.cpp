@@ -25,10 +25,6 @@ struct Seen {
   std::int32_t triangle = -1;
   Real square_m2 = 0, facing = -2;
   bool is_above = false;  // of its inside
-
-  bool is_better_than(const Seen& other) const PALPATE_RT {
-    return other.facing < 0 ? facing > other.facing : facing >= 0 && square_m2 < other.square_m2;
-  }
 };
 
 // Looks at a facet as far as it takes to see that it is no better than `best`. Returns whether it is, as `there` tells.

@@ -6,7 +6,6 @@ namespace palpate {
 
 namespace {
 
-Double4 choose(const Mask4& mask, const Double4& a, const Double4& b) PALPATE_RT { return mask ? a : b; }
 Double4 length_of(const Vec3x4& v) PALPATE_RT { return square_root(dot(v, v)); }
 Vec3x4 tangential_part(const Vec3x4& a, const Vec3x4& n) PALPATE_RT { return a - dot(a, n) * n; }
 
@@ -25,7 +24,7 @@ Vec3x4 turned_with(const Vec3x4& a, const Vec3x4& b, const Vec3x4& v) PALPATE_RT
   const Double4 scale = splat4(1.0) / length;
   const Vec3x4 u = where(usable, scale * axis, Vec3x4{});
   const Vec3x4 t = splat4(2.0) * cross(u, v);
-  return v + choose(usable, scale * w, splat4(1.0)) * t + cross(u, t);
+  return v + where(usable, scale * w, splat4(1.0)) * t + cross(u, t);
 }
 
 // carried() of region_load.cpp.
@@ -100,7 +99,7 @@ void CoupledPoints::load_four(std::int32_t i, const Double4& shift, const Vec3x4
 // centre_of(), by force where there is any.
 void CoupledPoints::centre_four(std::int32_t i, const Vec3x4& last_normal, Four& four) const PALPATE_RT {
   const Mask4 loaded = (four.force > Double4{}) & (geometric_ ? Mask4{} : ~Mask4{});
-  const auto share = [&](std::int32_t k) PALPATE_RT { return choose(loaded, four.row_force[k], weight_[k]); };
+  const auto share = [&](std::int32_t k) PALPATE_RT { return where(loaded, four.row_force[k], weight_[k]); };
   Vec3x4 moment{}, sum{};
   Double4 total{}, height{};
   for (std::int32_t k = first_[i]; k < first_[i + 1]; ++k) {  // bound: rows
@@ -116,7 +115,7 @@ void CoupledPoints::centre_four(std::int32_t i, const Vec3x4& last_normal, Four&
     const Vec3x4 mean = normal_[k] + normal;
     const Double4 slope = dot(mean, normal);
     const Double4 above = dot(place_[k] - centre, mean) / slope;
-    height += share(k) * choose(slope > splat4(0.5), above, Double4{});
+    height += share(k) * where(slope > splat4(0.5), above, Double4{});
   }
   const Mask4 placed = total > Double4{};
   four.centre = where(placed, centre + (height / total) * normal, place_[first]);

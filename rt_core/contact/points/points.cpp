@@ -110,7 +110,10 @@ void solve(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   }
   if (scratch.rows.regions == 0) return;
   PointLaws laws{contact_law(model.params), region, nullptr, scratch.rows.regions};
-  is_coupled(model) ? press_coupled(model, state, scratch, laws) : press_in_turn(model, state, scratch, laws);
+  if (is_coupled(model))
+    press_coupled(model, state, scratch, laws);
+  else
+    press_in_turn(model, state, scratch, laws);
 }
 
 // The papers' contributions: what other regions' skeletons carry over is added along the normal. All are taken from the
