@@ -230,9 +230,9 @@ void measure_clearance(std::span<const Vec3> vertex_m, BvhBuild& bvh) {
     // Near the corners of what bends one way the next triangles but one are too near for a ball, and below the planes:
     // a point 8 mm off a corner of the cylinder held by five fingers went through the hierarchy, 3,000 instructions for
     // 600 (2026-11-26). Where it bends both ways planes would leave what is nearest to a corner to the hierarchy.
-    const bool bends = by_ring == Coverage::kPart && clearance.has_convex_ring(i) && planes.bends_one_way(i);
-    const bool in_part = bends || (by_ring == Coverage::kPart && clearance.is_sliver(i));
-    const bool helps = clearance.has_large_ring() || in_part;
+    const bool is_part = by_ring == Coverage::kPart;
+    const bool helps = clearance.has_large_ring() || (is_part && clearance.is_sliver(i)) ||
+                       (is_part && clearance.has_convex_ring(i) && planes.bends_one_way(i));
     if (by_ring == Coverage::kNoRing || helps) planes.measure(i, by_ring != Coverage::kNoRing);
   }
 }

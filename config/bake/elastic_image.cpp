@@ -412,7 +412,7 @@ ElasticReport ElasticBake::write(int soft, int linear, double add_c_mpN, ImageCo
   const SampleField self = self_field(parts.rest.surface(), body.self, beta, parts.spacing_m);
   add_energy(body.maps.potential, image);
   add_vertices(body, term_shapes(body, parts.gradient), self, parts.feet, image, parts.normals);
-  if (touches_in_parts(image))
+  if (touches_in_parts(model_of(image)))
     PartNumbers(body, image).hold();
   else
     add_own_slopes(body, parts.normals, image);

@@ -90,8 +90,4 @@ std::vector<std::int32_t> part_of(const Model& model, std::int32_t triangle) {
   return part;
 }
 
-bool touches_in_parts(const ImageContents& image) {
-  return std::ranges::any_of(image.tool_point, [](const ToolPoint& point) { return point.begins_at > 0; });
-}
-
 }  // namespace palpate

@@ -10,7 +10,6 @@ namespace palpate {
 // does, and ends the smooth surface where a part does. Nothing on bodies without parts. Throws ConfigError where the
 // points are too many.
 void touch_by_parts(const SceneDesc& scene, ImageContents& image);
-bool touches_in_parts(const ImageContents& image);
 // The triangles of the part in which that one is.
 std::vector<std::int32_t> part_of(const Model& model, std::int32_t triangle);
 

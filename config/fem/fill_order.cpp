@@ -41,15 +41,6 @@ Graph graph_of(const Eigen::SparseMatrix<double>& lower) {
   return graph;
 }
 
-std::vector<int> minimum_degree(const Eigen::SparseMatrix<double>& lower) {
-  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> inverse;
-  const Eigen::SparseMatrix<double> whole = lower.selfadjointView<Eigen::Lower>();
-  Eigen::AMDOrdering<int>()(whole, inverse);
-  std::vector<int> place(static_cast<std::size_t>(lower.cols()));
-  for (int k = 0; k < lower.cols(); ++k) place[static_cast<std::size_t>(inverse.indices()[k])] = k;
-  return place;
-}
-
 std::vector<int> nested_dissection(const Eigen::SparseMatrix<double>& lower) {
   int n = static_cast<int>(lower.cols());
   std::vector<int> place(static_cast<std::size_t>(n)), order(static_cast<std::size_t>(n));
@@ -65,8 +56,19 @@ std::vector<int> nested_dissection(const Eigen::SparseMatrix<double>& lower) {
 
 }  // namespace
 
+std::vector<int> minimum_degree(const Eigen::SparseMatrix<double>& whole) {
+  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> inverse;
+  Eigen::AMDOrdering<int>()(whole, inverse);
+  return {inverse.indices().data(), inverse.indices().data() + whole.cols()};
+}
+
 std::vector<int> fill_order(const Eigen::SparseMatrix<double>& lower) {
-  return lower.cols() < kLeastDissected ? minimum_degree(lower) : nested_dissection(lower);
+  if (lower.cols() >= kLeastDissected) return nested_dissection(lower);
+  std::vector<int> place(static_cast<std::size_t>(lower.cols()));
+  int next = 0;
+  for (const int unknown : minimum_degree(lower.selfadjointView<Eigen::Lower>()))
+    place[static_cast<std::size_t>(unknown)] = next++;
+  return place;
 }
 
 }  // namespace palpate::fem

@@ -19,4 +19,7 @@ namespace palpate::fem {
 //                                                   0.1     0.6       3.6      41
 std::vector<int> fill_order(const Eigen::SparseMatrix<double>& lower);
 
+// The unknowns one after another, by minimum degree. `whole`: both triangles.
+std::vector<int> minimum_degree(const Eigen::SparseMatrix<double>& whole);
+
 }  // namespace palpate::fem

@@ -1,10 +1,10 @@
 #include "config/fem/linear_body.h"
 
-#include <Eigen/OrderingMethods>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "config/fem/fill_order.h"
 #include "config/fem/sparse_factor.h"
 #include "config/fem/tet_element.h"
 #include "config/scene/config_error.h"
@@ -47,7 +47,7 @@ Matrix assemble(const TetMesh& mesh, const FemMaterial& material, const Progress
   return stiffness;
 }
 
-// Elimination order of the nodes: approximate minimum degree (Amestoy, Davis & Duff 1996) on the nodes' graph.
+// Elimination order of the nodes, on their graph.
 std::vector<std::int32_t> node_order(const TetMesh& mesh) {
   std::vector<Triplet> entries;
   for (const Tet& tet : mesh.tet)
@@ -57,9 +57,7 @@ std::vector<std::int32_t> node_order(const TetMesh& mesh) {
   const auto n = static_cast<Eigen::Index>(mesh.node_m.size());
   Matrix graph(n, n);
   graph.setFromTriplets(entries.begin(), entries.end());
-  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> inverse;
-  Eigen::AMDOrdering<int>()(graph, inverse);
-  return {inverse.indices().data(), inverse.indices().data() + n};
+  return fem::minimum_degree(graph);
 }
 
 }  // namespace
