@@ -14,6 +14,7 @@
 #include "rt_core/model.h"
 #include "rt_core/pool.h"
 #include "rt_core/safety/edge_observer.h"
+#include "rt_core/safety/encoder_observer.h"
 #include "rt_core/state_fields.h"
 #include "rt_core/work.h"
 
@@ -245,8 +246,8 @@ struct LateDevice {
   X(std::int32_t, started, 0, "0: the next sample is the first")                                        \
   X(std::int32_t, rejected_ticks, 0, "consecutive samples found implausible")                           \
   X(Pose, told_w, {}, "of the last accepted sample, as it came")                                        \
-  X(Vec3, observed_m_per_s, {}, "velocity with which device_w goes on between the encoder's steps")     \
-  X(Vec3, observed_rad_per_s, {}, "and turns")                                                          \
+  X(ObservedMotion, observed_m, {}, "by which device_w goes on between the encoder's steps")            \
+  X(ObservedMotion, observed_rad, {}, "and turns")                                                      \
   X(EdgeMemory, edges_m, {}, "of the encoder's edges, where device_w follows them")                     \
   X(EdgeMemory, edges_rad, {}, "and where it turns by them")                                            \
   X(Vec3, hand_velocity_m_per_s, {}, "of the handle, smoothed: bridges lost samples")                   \

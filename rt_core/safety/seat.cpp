@@ -96,7 +96,7 @@ void seat_anew(const Model& model, State& state, const Pose& handle_w) PALPATE_R
   state.seat_rad = shortened(apart.rotation_rad, kSeatMost_rad);
   state.apart = 1;
   state.device_w = state.device_previous_w = state.told_w = handle_w;
-  state.observed_m_per_s = state.observed_rad_per_s = {};
+  state.observed_m = state.observed_rad = {};
   state.edges_m = state.edges_rad = {};
 }
 

@@ -58,8 +58,8 @@ Vec3 by_edges(double step, double elapsed_s, Vec3 change, EdgeMemory& memory) PA
 Vec3 observed_position(const ModelParams& p, State& state, double elapsed_s, Vec3 before_m, Vec3 told_m) PALPATE_RT {
   if (p.encoder_law_m == EncoderLaw::kEdges)
     return told_m + by_edges(p.encoder_step_m, elapsed_s, told_m - before_m, state.edges_m);
-  const Vec3 expected = state.device_w.position_m + p.period_s * state.observed_m_per_s;
-  return expected + observe(observer_gains(p.encoder_step_m, p.period_s), told_m - expected, state.observed_m_per_s);
+  const ObserverGains gains = observer_gains(kObservedPosition, p.encoder_step_m, p.period_s);
+  return state.device_w.position_m + observe(gains, told_m - state.device_w.position_m, state.observed_m);
 }
 
 Quat observed_orientation(const ModelParams& p, State& state, double elapsed_s, const Quat& before,
@@ -69,10 +69,9 @@ Quat observed_orientation(const ModelParams& p, State& state, double elapsed_s, 
     const Vec3 apart = by_edges(p.encoder_step_rad, elapsed_s, change, state.edges_rad);
     return normalised(small_rotation(apart) * told);
   }
-  const Quat expected = small_rotation(p.period_s * state.observed_rad_per_s) * state.device_w.orientation;
-  const Vec3 ahead = small_rotation_vector(told * conjugate(expected));
-  const Vec3 turn = observe(observer_gains(p.encoder_step_rad, p.period_s), ahead, state.observed_rad_per_s);
-  return normalised(small_rotation(turn) * expected);
+  const Vec3 ahead = small_rotation_vector(told * conjugate(state.device_w.orientation));
+  const ObserverGains gains = observer_gains(kObservedAngle, p.encoder_step_rad, p.period_s);
+  return normalised(small_rotation(observe(gains, ahead, state.observed_rad)) * state.device_w.orientation);
 }
 
 // `pose`, as the encoders told it `elapsed_s` after `before`, to where the handle is between their steps.
@@ -88,8 +87,10 @@ void observe_handle(const Model& model, State& state, double elapsed_s, const Po
     pose = told;
     state.edges_m = state.edges_rad = {};
   }
-  state.observed_m_per_s = settled(state.observed_m_per_s);
-  state.observed_rad_per_s = settled(state.observed_rad_per_s);
+  for (ObservedMotion* motion : {&state.observed_m, &state.observed_rad}) {
+    motion->per_s = settled(motion->per_s);
+    motion->apart = settled(motion->apart);
+  }
 }
 
 // Velocity of the handle from fresh samples; between them, for as long as the last force is held, the handle is taken

@@ -75,7 +75,10 @@ DrawnDevice draw_device(std::uint64_t seed, std::uint64_t index) {
 
 std::string drawn_failure(Manoeuvre manoeuvre, const FeelRun& run) {
   std::string text = feel_failure(run);
-  if (is_quiet(manoeuvre) && run.figures.hand_J > kGridHandMost_J)
+  // A tremor is of the size of an encoder's steps, and goes on: what they make of it is bounded by its way alone.
+  const double most_J =
+      manoeuvre == Manoeuvre::kTremor ? std::max(kGridHandMost_J, run.figures.quantum_J) : kGridHandMost_J;
+  if (is_quiet(manoeuvre) && run.figures.hand_J > most_J)
     text += fmt::format("{}gives the hand {:.2g} mJ", text.empty() ? "" : ", ", 1e3 * run.figures.hand_J);
   return text;
 }
@@ -146,6 +149,9 @@ std::string drawn_json(const std::vector<DrawnRun>& runs) {
                    {"alternations", f.alternations},
                    {"port_J", f.port_J},
                    {"hand_J", f.hand_J},
+                   {"quantum_J", f.quantum_J},
+                   {"noise_N", f.noise_N},
+                   {"object_N_per_m", f.object_N_per_m},
                    {"failure", d.failure}});
   }
   return all.dump(2) + "\n";

@@ -75,7 +75,7 @@ FeelRun run_feel(const Model& model, const SceneDesc& scene, const TouchPlace& p
     };
   const StatePtr state = make_state(model);
   const ScratchPtr scratch = make_scratch(model);
-  FeelMeters meters(model.params, setup.plant.encoder_m, setup.encoder_rad);
+  FeelMeters meters(model.params, setup);
   FingerWork fingers(model, *state, *scratch);
   run_feel_loop(
       setup,

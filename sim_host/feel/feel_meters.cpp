@@ -24,6 +24,16 @@ int add_swings(Vec3 value, SwingMeter (&swing)[3]) {
   return std::max({swing[0].turns(), swing[1].turns(), swing[2].turns()});
 }
 
+// RMS about the mean, from sample `begin` on.
+double spread(const std::vector<Vec3>& sample, std::size_t begin) {
+  Vec3 sum;
+  double squares = 0;
+  for (std::size_t i = begin; i < sample.size(); ++i) sum += sample[i] - sample[begin];
+  const double share = 1.0 / static_cast<double>(std::max<std::size_t>(1, sample.size() - begin));
+  for (std::size_t i = begin; i < sample.size(); ++i) squares += squared_norm(sample[i] - sample[begin] - share * sum);
+  return std::sqrt(share * squares);
+}
+
 }  // namespace
 
 void SwingMeter::add(double value) {
@@ -63,12 +73,15 @@ double band_rms(const std::vector<double>& sample, double period_s, double lowes
   return std::sqrt(power / (static_cast<double>(n) * weight));
 }
 
-FeelMeters::FeelMeters(const ModelParams& params, double encoder_m, double encoder_rad)
+FeelMeters::FeelMeters(const ModelParams& params, const FeelSetup& setup)
     : params_(params),
-      swing_{force_swings(params, encoder_m), force_swings(params, encoder_m), force_swings(params, encoder_m)},
-      torque_swing_{torque_swings(params, encoder_rad), torque_swings(params, encoder_rad),
-                    torque_swings(params, encoder_rad)} {
+      encoder_m_(setup.plant.encoder_m),
+      friction_N_(setup.plant.friction_N),
+      swing_{force_swings(params, encoder_m_), force_swings(params, encoder_m_), force_swings(params, encoder_m_)},
+      torque_swing_{torque_swings(params, setup.encoder_rad), torque_swings(params, setup.encoder_rad),
+                    torque_swings(params, setup.encoder_rad)} {
   figures_.force_limit_N = params.force_max_N;
+  figures_.coupling_N_per_m = params.coupling_N_per_m;
 }
 
 void FeelMeters::add(const FeelTick& tick) {
@@ -86,6 +99,8 @@ void FeelMeters::add(const FeelTick& tick) {
   add_energy(tick);
   force_.push_back(out.device_w.force_N);
   handle_.push_back(tick.handle_w.position_m);
+  contact_N_.push_back(tick.output.contact_w.force_N);
+  tool_m_.push_back(tick.output.tool_w.position_m);
 }
 
 void FeelMeters::add_steps(const FeelTick& tick) {
@@ -118,6 +133,13 @@ void FeelMeters::add_energy(const FeelTick& tick) {
     figures_.contacts += 1;
     port_begin_J_ = tick.energy.motor_J - tick.fingers_J;
     hand_begin_J_ = tick.energy.to_hand_J() - tick.fingers_J;
+    quantum_J_ = 0;
+  }
+  if (touching) {
+    const Vec3 way = tick.handle_w.position_m - handle_.back();
+    const double along_axes_m = std::abs(way.x) + std::abs(way.y) + std::abs(way.z);
+    quantum_J_ += params_.coupling_N_per_m * encoder_m_ * along_axes_m - friction_N_ * norm(way);
+    figures_.quantum_J = std::max(figures_.quantum_J, quantum_J_);
   }
   figures_.fingers_J = std::max(figures_.fingers_J, tick.fingers_J);
   // The command of the tick before acts until now, so the tick after the last one with force still belongs to it.
@@ -141,22 +163,31 @@ double FeelMeters::felt_stiffness() const {
   return way > 1e-6 ? norm(rise) / way : 0;
 }
 
+std::size_t FeelMeters::last_second() const {
+  return force_.size() - std::min(force_.size(), static_cast<std::size_t>(std::lround(1 / params_.period_s)));
+}
+
 double FeelMeters::noise() const {
-  const auto count = std::min(force_.size(), static_cast<std::size_t>(std::lround(1 / params_.period_s)));
   double power = 0;
   for (const auto component : {&Vec3::x, &Vec3::y, &Vec3::z}) {
     std::vector<double> last;
-    for (std::size_t i = force_.size() - count; i < force_.size(); ++i) last.push_back(force_[i].*component);
+    for (std::size_t i = last_second(); i < force_.size(); ++i) last.push_back(force_[i].*component);
     const double rms = band_rms(last, params_.period_s, 50, 500);
     power += rms * rms;
   }
   return std::sqrt(power);
 }
 
+double FeelMeters::object_stiffness() const {
+  const double moved_m = spread(tool_m_, last_second()), changed_N = spread(contact_N_, last_second());
+  return moved_m > 1e-9 ? changed_N / moved_m : 0;
+}
+
 FeelFigures FeelMeters::figures() const {
   FeelFigures figures = figures_;
   figures.felt_N_per_m = felt_stiffness();
   figures.noise_N = noise();
+  figures.object_N_per_m = object_stiffness();
   return figures;
 }
 

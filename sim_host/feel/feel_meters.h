@@ -28,10 +28,16 @@ struct FeelFigures {
   double force_limit_N = 0;  // the device's largest force: no object is pressed harder
   double felt_N_per_m = 0;   // rise of the force over the way of the handle, between half and all of the largest force
   double noise_N = 0;        // RMS at 50 to 500 Hz in the last second
-  int contacts = 0;          // times the force rose from zero
-  double port_J = 0;         // most that one contact returned at the motors, more than handle and fingers gave it
-  double fingers_J = 0;      // work of driven fingers on the object, at most
-  double hand_J = 0;         // most of that which reached the hand, after the device's own losses
+  double coupling_N_per_m = 0;  // of the scene
+  // The object's own stiffness in the last second: RMS of its force over that of the tool, about their means; 0: still.
+  double object_N_per_m = 0;
+  int contacts = 0;      // times the force rose from zero
+  double port_J = 0;     // most that one contact returned at the motors, more than handle and fingers gave it
+  double fingers_J = 0;  // work of driven fingers on the object, at most
+  double hand_J = 0;     // most of that which reached the hand, after the device's own losses
+  // Most that the encoder's steps D can give in a contact: the handle is taken to be within D of where it is along
+  // every axis, so K D of its way along them, of which friction takes its own (docs/stability.md).
+  double quantum_J = 0;
   std::uint32_t status = 0;  // bits seen, together
   std::uint32_t fault = 0;
   int worst_mode = 0;  // of Mode
@@ -56,7 +62,7 @@ double band_rms(const std::vector<double>& sample, double period_s, double lowes
 
 class FeelMeters {
  public:
-  FeelMeters(const ModelParams& params, double encoder_m, double encoder_rad);
+  FeelMeters(const ModelParams& params, const FeelSetup& setup);
   void add(const FeelTick& tick);
   FeelFigures figures() const;
 
@@ -65,15 +71,18 @@ class FeelMeters {
   void add_torque(const FeelTick& tick);
   void add_energy(const FeelTick& tick);
   double felt_stiffness() const;
+  std::size_t last_second() const;  // its first tick
   double noise() const;
+  double object_stiffness() const;
 
   const ModelParams& params_;
+  const double encoder_m_, friction_N_;
   FeelFigures figures_;
   SwingMeter swing_[3], torque_swing_[3];
-  std::vector<Vec3> force_, handle_;
+  std::vector<Vec3> force_, handle_, contact_N_, tool_m_;
   FeelTick last_;
   bool touching_ = false;
-  double port_begin_J_ = 0, hand_begin_J_ = 0;
+  double port_begin_J_ = 0, hand_begin_J_ = 0, quantum_J_ = 0;
 };
 
 }  // namespace palpate

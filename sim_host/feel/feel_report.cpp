@@ -16,6 +16,9 @@ constexpr double kStepShareMax =
     0.10;  // of the largest force, in one tick; the output keeps below it (kOutputStepShare)
 // The tool goes on by its prediction and is corrected at the tick's end: 1.05 in a push at 0.5 m/s (2026-11-25).
 constexpr double kLeashSlack = 1.1;
+// A hand that trembles holds the object within its resolution; one that the device cannot hold is as stiff as the
+// coupling.
+constexpr double kTremorNoiseMost_N = 2e-3;
 constexpr double kModelSlack = 2;  // for the tick of a jump of the encoder: the tool is corrected at its end
 
 void fail(std::string& text, const std::string& what) { text += (text.empty() ? "" : ", ") + what; }
@@ -78,6 +81,9 @@ std::string feel_failure(const FeelRun& run) {
   if (!(f.leash_share <= (jumps ? kModelSlack : kLeashSlack)))
     fail(text, fmt::format("stretches the coupling to {:.0f} % of its limit", 100 * f.leash_share));
   if (f.model_max_N > kModelSlack * f.force_limit_N) fail(text, fmt::format("winds up to {:.0f} N", f.model_max_N));
+  const bool held = f.object_N_per_m <= f.coupling_N_per_m;
+  if (run.manoeuvre == "tremor" && held && f.noise_N > kTremorNoiseMost_N)
+    fail(text, fmt::format("is rough by {:.1f} mN", 1e3 * f.noise_N));
   const std::uint32_t wanted = run.manoeuvre == "slow" ? Fault::kSamplesSparse : 0u;  // it must not be rendered
   if (wanted != 0 && f.fault == 0) fail(text, "renders too few samples");
   if ((f.fault & ~wanted) != 0) fail(text, "fault " + bit_names(fault_bit_texts(), f.fault));
@@ -128,9 +134,12 @@ std::string feel_json(const std::vector<FeelRun>& runs) {
                    {"force_limit_N", f.force_limit_N},
                    {"felt_N_per_m", f.felt_N_per_m},
                    {"noise_N", f.noise_N},
+                   {"coupling_N_per_m", f.coupling_N_per_m},
+                   {"object_N_per_m", f.object_N_per_m},
                    {"contacts", f.contacts},
                    {"port_J", f.port_J},
                    {"hand_J", f.hand_J},
+                   {"quantum_J", f.quantum_J},
                    {"fingers_J", f.fingers_J},
                    {"status", bit_names(status_bit_texts(), f.status)},
                    {"fault", bit_names(fault_bit_texts(), f.fault)},
