@@ -39,7 +39,8 @@ class Landing {
   Landing(const Model& model, const State& state, const Pose& from) PALPATE_RT
       : model_(model),
         state_(state),
-        gone_(twist_between(state.tool_w, from)) {
+        gone_(twist_between(state.tool_w, from)),
+        box_(root_box(model)) {
     const auto points = static_cast<std::int32_t>(model_.tool_point.size());
     for (std::int32_t i = 0; i < points && i < kMaxPieces; ++i) find_ends(i);  // bound: kMaxPieces
   }
@@ -81,11 +82,15 @@ class Landing {
   }
   // A capsule comes down on either end of what it has below it, as far as the body goes on.
   void add_line(const ToolPiece& piece, const PointState& point, Real gap_m, bool pressed) PALPATE_RT {
-    const Vec3 axis = rotate(state_.tool_w.orientation, rotate(piece.pose_tool.orientation, Vec3{0, 0, 1}));
-    const Vec3 middle = transform(state_.tool_w, piece.pose_tool.position_m);
-    const Real half = piece.half_extent_m[2], at = dot(point.closest_w - middle, axis),
+    if (line_of_ != &piece) {  // once for all parts
+      line_of_ = &piece;
+      axis_w_ = rotate(state_.tool_w.orientation, rotate(piece.pose_tool.orientation, Vec3{0, 0, 1}));
+      middle_w_ = transform(state_.tool_w, piece.pose_tool.position_m);
+    }
+    const Vec3 axis = axis_w_;
+    const Real half = piece.half_extent_m[2], at = dot(point.closest_w - middle_w_, axis),
                slope = dot(axis, point.normal_w);
-    const Box box = root_box(model_);
+    const Box& box = box_;
     Real from = min_of(-half - at, 0.0), to = max_of(half - at, 0.0);
     limit(axis.x, point.closest_w.x, box.lower.x, box.upper.x, from, to);
     limit(axis.y, point.closest_w.y, box.lower.y, box.upper.y, from, to);
@@ -167,6 +172,9 @@ class Landing {
   const Model& model_;
   const State& state_;
   const Twist gone_;
+  const Box box_;
+  const ToolPiece* line_of_ = nullptr;
+  Vec3 axis_w_, middle_w_;  // of that piece
   End end_[2 * kMaxPieces];
   Held hold_[kLandings];
   std::int32_t ends_ = 0, held_ = 0;

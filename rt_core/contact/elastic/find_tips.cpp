@@ -76,7 +76,7 @@ class Finder {
   void visit(std::int32_t index) PALPATE_RT {
     PointState& point = state_.point[index];
     const bool touched = point.triangle >= 0 && point.gap_m < 0;
-    RoundTip tip = round_tip(model_, index, carrier_w(model_, state_, piece_of(index)));
+    RoundTip tip = tip_at(index);
     if (tip.is_of_part()) return visit_part(index, tip, touched);
     if (!touched && is_far(index, tip)) return;
     ElasticRow& row = work_.row[index];
@@ -143,15 +143,29 @@ class Finder {
     tip.come_near(place_w + (abs_of(lean) < kLeastLean ? tip.margin_m * lean : 0.0) * axis);
   }
   // Farther off than tool and body have moved since its foot was looked for.
-  bool stays_apart(std::int32_t index, const RoundTip& tip, PointState& point) const PALPATE_RT {
+  bool stays_apart(std::int32_t index, const RoundTip& tip, PointState& point) PALPATE_RT {
     const Real moved = tool_moved_m(index, tip) + state_.elastic.swept_m;
     point.gap_bound_m -= moved;
     point.gap_m -= moved;
     return point.triangle >= 0 && point.gap_bound_m > 0;
   }
-  Real tool_moved_m(std::int32_t index, const RoundTip& tip) const PALPATE_RT {
+  Real tool_moved_m(std::int32_t index, const RoundTip& tip) PALPATE_RT {
+    if (!(tip_moved_m_ < 0)) return tip_moved_m_;
     const RoundTip before = round_tip(model_, index, carrier_previous_w(model_, state_, piece_of(index)));
-    return norm(tip.middle_w - before.middle_w) + norm(tip.half_axis_w - before.half_axis_w);
+    return tip_moved_m_ = norm(tip.middle_w - before.middle_w) + norm(tip.half_axis_w - before.half_axis_w);
+  }
+  // The same for every part of the surface that a piece touches: carried once.
+  RoundTip tip_at(std::int32_t index) PALPATE_RT {
+    const ToolPoint& point = model_.tool_point[static_cast<std::size_t>(index)];
+    const bool is_known = tip_.is_of_part() && point.begins_at > 0 && point.piece == piece_of(index - 1) &&
+                          point.position_tool_m == model_.tool_point[static_cast<std::size_t>(index - 1)].position_tool_m;
+    if (is_known) {
+      tip_.begins_at = point.begins_at;
+      tip_.margin_m = point.margin_m;
+      return tip_;
+    }
+    tip_moved_m_ = -1;
+    return tip_ = round_tip(model_, index, carrier_w(model_, state_, point.piece));
   }
   static void let_be(PointState& point, Real apart_m = 0) PALPATE_RT {
     point.gap_m = kHuge;
@@ -185,7 +199,7 @@ class Finder {
       let_be(point, place.is_there ? kBehind_m : 0.0);
       return false;
     }
-    point.gap_bound_m = 0;
+    point.gap_bound_m = apart_m - nearer_m_ - kNearPart_m;
     point.gap_m = apart_m;
     point.normal_w = unit_or(out, up);
     return false;
@@ -322,6 +336,8 @@ class Finder {
   Real let_go_[kMaxSoftModes];
   Real nearer_m_;  // no place of the body let go comes nearer than by this
   Real reach_m_ = 0;
+  RoundTip tip_{};         // of the point visited last
+  Real tip_moved_m_ = -1;  // in this tick; below 0: not asked
 };
 
 }  // namespace
