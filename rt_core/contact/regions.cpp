@@ -19,57 +19,63 @@ void sort_by_row(const Scratch& scratch, Clusters& out) PALPATE_RT {
   }
 }
 
-// What tells contacts apart, by rank and four at a time. Of an articulated tool one part is one region however it
-// touches, different fingers are different regions, and parts of one finger join as the distances say. Rigid tools go
-// by distance alone, and so do tips on an elastic body, each of which is a region. Whole numbers, exact as doubles.
-struct Kinship {
-  static constexpr std::int32_t kRanks = whole_lanes(kMaxContacts, 4);
-  double x[kRanks], y[kRanks], z[kRanks];
-  double piece[kRanks];
-  double group[kRanks];
-  double previous[kRanks];           // region of the last tick; of none a number of its own
-  std::int32_t begin[kMaxContacts];  // the first contact that may be of the same group
-  std::int32_t run[kMaxContacts];    // the first of those up to it that are of its part
+// Contacts that follow one another and are one region however far apart: of an articulated tool those of one part. All
+// others are runs of one contact. Different fingers are different regions, and parts of one finger join as the distances
+// say. Rigid tools go by distance alone, and so do tips on an elastic body, each of which is a region.
+struct Run {
+  Double4 lower, upper;  // corners of their box: x, y, z, 0
+  std::int32_t begin, end;
+  std::int32_t piece, group;
+  std::int32_t before;  // the run before it in its chain, or -1
 };
-// Contacts are compared with those of their chain alone: fifteen parts of five fingers have 115 fours of them instead
-// of 350. Groups that share a chain are told apart when compared.
+// Runs are compared with those of their chain alone. Groups that share a chain are told apart when compared.
 constexpr std::uint32_t kChains = 32;
 
-void find_kinship(const Model& model, const Scratch& scratch, const Clusters& out, Kinship& kin) PALPATE_RT {
+std::int32_t find_runs(const Model& model, const Scratch& scratch, const Clusters& out, Run* run) PALPATE_RT {
   const bool articulated = is_articulated(model), by_piece = articulated && !(model.params.elastic_soft > 0);
-  std::int32_t first[kChains];
-  for (std::int32_t& contact : first) contact = -1;                              // bound: kChains
-  for (std::int32_t i = 0; i < whole_lanes(out.contacts, 4); ++i) {              // bound: kMaxContacts
-    const std::int32_t at = out.order[i < out.contacts ? i : out.contacts - 1];  // none reads what fills the last four
-    const Contact& contact = scratch.contact[at];
+  std::int32_t last[kChains], count = 0;
+  for (std::int32_t& of_chain : last) of_chain = -1;     // bound: kChains
+  for (std::int32_t i = 0; i < out.contacts; ++i) {      // bound: kMaxContacts
+    const Contact& contact = scratch.contact[out.order[i]];
+    const Double4 place{contact.position_w.x, contact.position_w.y, contact.position_w.z, 0};
+    if (by_piece && count > 0 && run[count - 1].piece == contact.piece) {
+      Run& of = run[count - 1];
+      of.lower = place < of.lower ? place : of.lower;
+      of.upper = place > of.upper ? place : of.upper;
+      of.end = i + 1;
+      continue;
+    }
     const std::int32_t group = articulated ? model.piece[static_cast<std::size_t>(contact.piece)].group : 0;
-    kin.x[i] = contact.position_w.x;
-    kin.y[i] = contact.position_w.y;
-    kin.z[i] = contact.position_w.z;
-    kin.piece[i] = by_piece ? contact.piece : -1 - i;
-    kin.group[i] = group;
-    kin.previous[i] = contact.previous >= 0 ? contact.previous : -1 - i;
-    if (i >= out.contacts) continue;
-    std::int32_t& chain = first[static_cast<std::uint32_t>(group) % kChains];
-    if (chain < 0) chain = i;
-    kin.begin[i] = chain;
-    kin.run[i] = i > 0 && kin.piece[i] == kin.piece[i - 1] ? kin.run[i - 1] : i;
+    std::int32_t& of_chain = last[static_cast<std::uint32_t>(group) % kChains];
+    run[count] = {place, place, i, i + 1, contact.piece, group, of_chain};
+    of_chain = count++;
   }
+  return count;
 }
 
-// Of the four contacts from `j` on, those before `i` that are linked with it, as bits.
-std::uint32_t linked(const Kinship& kin, std::int32_t i, std::int32_t j, double near2, double far2) PALPATE_RT {
-  const Vec3x4 off =
-      Vec3x4{load4(kin.x + j), load4(kin.y + j), load4(kin.z + j)} - splat4(Vec3{kin.x[i], kin.y[i], kin.z[i]});
-  const Double4 distance2 = dot(off, off);
-  const Mask4 same = load4(kin.piece + j) == splat4(kin.piece[i]);
-  const Mask4 stays = (load4(kin.previous + j) == splat4(kin.previous[i])) & (distance2 <= splat4(far2));
-  const Mask4 kin_of = load4(kin.group + j) == splat4(kin.group[i]);
-  const std::uint32_t before = i - j < 4 ? (1u << (i - j)) - 1u : 15u;
-  return bits_of(kin_of & (same | stays | (distance2 < splat4(near2)))) & before;
+// Squared distance of their boxes, at most that of any two of their contacts, and as rounded: every step is monotonic.
+double apart2(const Run& a, const Run& b) PALPATE_RT {
+  const Double4 under = a.lower - b.upper, over = b.lower - a.upper, most = under > over ? under : over;
+  const Double4 gap = most > 0 ? most : Double4{};
+  return sum(gap * gap);
 }
 
-// Gives the contacts of two sets the lower of their labels. Bound: kMaxContacts.
+// Whether some contact of one is linked with one of the other.
+bool are_linked(const Scratch& scratch, const Clusters& out, const Run& a, const Run& b, double near2,
+                double far2) PALPATE_RT {
+  for (std::int32_t i = a.begin; i < a.end; ++i) {  // bound: kMaxContacts^2
+    const Contact& one = scratch.contact[out.order[i]];
+    for (std::int32_t j = b.begin; j < b.end; ++j) {
+      const Contact& other = scratch.contact[out.order[j]];
+      const double distance2 = squared_norm(one.position_w - other.position_w);
+      const bool stays = one.previous >= 0 && one.previous == other.previous && distance2 <= far2;
+      if (stays || distance2 < near2) return true;
+    }
+  }
+  return false;
+}
+
+// Gives the runs of two sets the lower of their labels. Bound: kMaxContacts.
 void unite(std::int32_t* set, std::int32_t count, std::int32_t a, std::int32_t b) PALPATE_RT {
   const std::int32_t low = a < b ? a : b, high = a < b ? b : a;
   for (std::int32_t i = high; i < count; ++i) {
@@ -231,39 +237,40 @@ void lose(const Model& model, State& state, Scratch& scratch, StillTouching stil
 void find_clusters(const Model& model, const Scratch& scratch, Clusters& out) PALPATE_RT {
   out.pairs = out.recalls = 0;
   sort_by_row(scratch, out);
-  Kinship kin;
-  find_kinship(model, scratch, out, kin);
+  Run run[kMaxContacts];
+  const std::int32_t runs = find_runs(model, scratch, out, run);
   const double near = model.params.cluster_distance_m, far = kSplitFactor * near;
-  std::int32_t set[kMaxContacts];  // rank of the lowest contact of each contact's set
+  std::int32_t set[kMaxContacts];  // lowest run of each run's set
   std::int32_t sets = 0;
-  for (std::int32_t i = 0; i < out.contacts; ++i) {  // bound: kMaxContacts
-    const std::int32_t run = kin.run[i];
-    set[i] = run == i ? i : set[run];
-    sets += run == i ? 1 : 0;
-    for (std::int32_t j = kin.begin[i] & ~3; j < run && sets > 1; j += 4) {  // bound: kMaxContacts / 4
-      out.pairs += 4;
-      for (std::uint32_t bits = linked(kin, i, j, near * near, far * far); bits != 0; bits &= bits - 1) {  // bound: 4
-        const std::int32_t other = set[j + __builtin_ctz(bits)];
-        if (set[i] == other) continue;
-        out.pairs += i + 1 - (set[i] < other ? other : set[i]);
-        unite(set, i + 1, set[i], other);
-        sets -= 1;
-      }
+  for (std::int32_t r = 0; r < runs; ++r) {  // bound: kMaxContacts
+    set[r] = r;
+    sets += 1;
+    for (std::int32_t q = run[r].before; q >= 0 && sets > 1; q = run[q].before) {  // bound: kMaxContacts
+      out.pairs += 1;
+      if (set[q] == set[r] || run[q].group != run[r].group || apart2(run[q], run[r]) > far * far) continue;
+      out.pairs += (run[q].end - run[q].begin) * (run[r].end - run[r].begin);
+      if (!are_linked(scratch, out, run[q], run[r], near * near, far * far)) continue;
+      out.pairs += r + 1 - (set[r] < set[q] ? set[q] : set[r]);
+      unite(set, r + 1, set[r], set[q]);
+      sets -= 1;
     }
   }
   out.count = 0;
-  for (std::int32_t i = 0; i < out.contacts; ++i) {  // bound: kMaxContacts; the lowest of a set comes before the others
-    const Contact& contact = scratch.contact[out.order[i]];
-    if (set[i] == i) {
-      out.of_rank[i] = out.count;
-      out.cluster[out.count] = {contact.row, 0, 0.0, 0.0, -1};
-      out.count += 1;
+  std::int32_t cluster_of[kMaxContacts];     // by run
+  for (std::int32_t r = 0; r < runs; ++r) {  // bound: kMaxContacts; the lowest of a set comes before the others
+    if (set[r] == r) {
+      out.cluster[out.count] = {scratch.contact[out.order[run[r].begin]].row, 0, 0.0, 0.0, -1};
+      cluster_of[r] = out.count++;
     }
-    out.of_rank[i] = out.of_rank[set[i]];
-    Cluster& cluster = out.cluster[out.of_rank[i]];
-    cluster.count += 1;
-    cluster.area_m2 += contact.area_m2;
-    cluster.depth_max_m = max_of(cluster.depth_max_m, contact.depth_m);
+    cluster_of[r] = cluster_of[set[r]];
+    Cluster& cluster = out.cluster[cluster_of[r]];
+    cluster.count += run[r].end - run[r].begin;
+    for (std::int32_t i = run[r].begin; i < run[r].end; ++i) {
+      const Contact& contact = scratch.contact[out.order[i]];
+      out.of_rank[i] = cluster_of[r];
+      cluster.area_m2 += contact.area_m2;
+      cluster.depth_max_m = max_of(cluster.depth_max_m, contact.depth_m);
+    }
   }
 }
 
