@@ -203,6 +203,23 @@ Real cbrt(Real x) PALPATE_RT {
   return x < 0 ? -result : result;
 }
 
+Double4 cube_roots(const Double4& x) PALPATE_RT {
+  using Int4 [[gnu::vector_size(16)]] = std::int32_t;
+  const auto two_to = [](const Int4& k) PALPATE_RT {
+    return __builtin_bit_cast(Double4, (__builtin_convertvector(k, Mask4) + 1023) << 52);
+  };
+  const Mask4 bits = __builtin_bit_cast(Mask4, x);
+  const Double4 mantissa = __builtin_bit_cast(Double4, (bits & 0x000fffffffffffff) | 0x3ff0000000000000);
+  const Int4 exponent = __builtin_convertvector(bits >> 52, Int4) - 1023, third = (exponent + 3000) / 3 - 1000;
+  const Double4 scaled = mantissa * two_to(exponent - 3 * third);
+  Double4 root = 0.94 + 0.136 * scaled;
+  for (int n = 0; n < 3; ++n) {  // bound: 3
+    const Double4 cube = root * root * root;
+    root = root - root * (cube - scaled) / (2.0 * cube + scaled);
+  }
+  return root * two_to(third);
+}
+
 Real sin(Real x) PALPATE_RT { return is_finite(x) ? sin_shifted(x, 0) : 0.0; }
 Real cos(Real x) PALPATE_RT { return is_finite(x) ? sin_shifted(x, 1) : 1.0; }
 

@@ -17,6 +17,8 @@ struct SinCos4 {
   Double4 sin, cos;
 };
 SinCos4 sin_cos(const Double4& x) PALPATE_RT;
+// cbrt() of four numbers from 1e-300 to 1e300.
+Double4 cube_roots(const Double4& x) PALPATE_RT;
 Real atan2(Real y, Real x) PALPATE_RT;
 Real asin(Real x) PALPATE_RT;  // clamped to [-1, 1]
 Real acos(Real x) PALPATE_RT;  // clamped to [-1, 1]

@@ -1,5 +1,6 @@
 #include "rt_core/contact/cubic_law.h"
 
+#include "rt_core/contact/cubic_law_lanes.h"
 #include "rt_core/limits.h"
 #include "rt_core/math.h"
 
@@ -37,6 +38,26 @@ Real law_depth_m(const CubicLaw& law, Real force_N) PALPATE_RT {
   const LawPoint edge = law_at(law, law.max_depth_m);
   if (force <= edge.force_N) return cubic_depth(law, force);
   return edge.tangent_N_per_m > 0 ? law.max_depth_m + (force - edge.force_N) / edge.tangent_N_per_m : 0.0;
+}
+
+Double4 law_depth_m(const CubicLaw& law, const Double4& force_N) PALPATE_RT {
+  const Real k1 = law.k1_N_per_m, k3 = law.k3_N_per_m3;
+  const Mask4 presses = force_N > Double4{};
+  const Double4 force = where(presses, force_N, splat4(1.0)), cube = force / splat4(k3);
+  const Mask4 usual = (cube > splat4(1e-300)) & (cube < splat4(1e300)) & (force < splat4(kHuge));
+  if (!(k1 > 0 && k3 > 0 && law.max_depth_m < kHuge) || bits_of(usual) != 15)
+    return Double4{law_depth_m(law, force_N[0]), law_depth_m(law, force_N[1]), law_depth_m(law, force_N[2]),
+                   law_depth_m(law, force_N[3])};
+  const Double4 linear = force / splat4(k1), cubic = math::cube_roots(cube), bound = linear < cubic ? linear : cubic;
+  const Double4 a = splat4(k1) * bound / force, b = splat4(k3) * bound * bound * bound / force;
+  Double4 y = splat4(1.0);
+  for (std::int32_t i = 0; i < kInverseLawIterations; ++i) {  // bound: kInverseLawIterations
+    const Double4 square = y * y;
+    y = (splat4(1.0) + splat4(2.0) * b * square * y) / (a + splat4(3.0) * b * square);
+  }
+  const LawPoint edge = law_at(law, law.max_depth_m);
+  const Double4 beyond = splat4(law.max_depth_m) + (force - splat4(edge.force_N)) / splat4(edge.tangent_N_per_m);
+  return where(presses, where(force <= splat4(edge.force_N), bound * y, beyond), Double4{});
 }
 
 }  // namespace palpate

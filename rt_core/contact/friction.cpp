@@ -1,7 +1,10 @@
 #include "rt_core/contact/friction.h"
 
+#include "rt_core/contact/cubic_law_lanes.h"
+#include "rt_core/contact/friction_lanes.h"
 #include "rt_core/limits.h"
 #include "rt_core/math.h"
+#include "rt_core/tool/pose_lanes.h"
 
 namespace palpate {
 
@@ -149,6 +152,22 @@ FrictionForce presliding_step(const FrictionParameters& parameters, const Fricti
   return result;
 }
 
+// static_limit_N() and, of those slipping, sliding_limit_N().
+Double4 limits_N(const FrictionParameters& parameters, const Double4& normal_N, std::uint32_t slipping) PALPATE_RT {
+  Double4 holds{};
+  const Double4 huge = splat4(kHuge), normal = normal_N < huge ? normal_N : huge, root = square_root(normal);
+  if (parameters.beta == 0.75)
+    holds = splat4(parameters.k_N) * (root * square_root(root));
+  else
+    for (std::uint32_t k = 0; k < 4; ++k) holds[k] = power_law(parameters.k_N, normal[k], parameters.beta);  // bound: 4
+  Double4 limit = where((normal_N > Double4{}) & (holds > Double4{}), holds, Double4{});
+  for (; slipping != 0; slipping &= slipping - 1) {  // bound: 4
+    const auto k = static_cast<std::uint32_t>(__builtin_ctz(slipping));
+    limit[k] = sliding_limit_N(parameters, normal_N[k]);
+  }
+  return limit;
+}
+
 }  // namespace
 
 Presliding preslide(Vec3 stretch, Vec3 step, Real slip_m) PALPATE_RT {
@@ -241,6 +260,31 @@ FrictionForce friction_step(const FrictionParameters& parameters, const Friction
   result.along_N_per_m = 0.0;
   result.across_N_per_m = min_of(result.across_N_per_m, sliding / max_of(kept, kNoStretch_m));
   return result;
+}
+
+bool sticks_by_fours(const FrictionParameters& parameters) PALPATE_RT {
+  return parameters.law == FrictionLaw::kReturnMap && parameters.tangential == TangentialLaw::kSeparable;
+}
+
+Sticking4 stick_four(const FrictionParameters& parameters, const FrictionLoad4& load, const Vec3x4& stretch_w,
+                     std::uint32_t touched, std::uint32_t slipping) PALPATE_RT {
+  const Vec3x4 start = tangential_part(stretch_w, load.normal_w), step = tangential_part(load.step_w, load.normal_w);
+  const Vec3x4 trial = start + step;
+  const Double4 length = length_of(trial), k1 = splat4(parameters.contact.k1_N_per_m);
+  const Mask4 has_way = length > splat4(kNoStretch_m);
+  const LawPoint4 tried = law_at(parameters.contact, length);
+  const Double4 secant = where(has_way, tried.force_N / length, k1), force = secant * length;
+  const Double4 limit = limits_N(parameters, load.force_N, slipping);
+  Sticking4 four;
+  four.which = touched & bits_of(force <= limit * splat4(kLimitSlack));
+  four.slip = slipping & bits_of(force > splat4(kSticksAgain) * limit);
+  four.stretch_w = trial;
+  four.direction_w = where(has_way, (splat4(1.0) / length) * trial, Vec3x4{});
+  four.force_w = -force * four.direction_w;
+  four.energy_J = law_energy_J(parameters.contact, length);
+  four.along_N_per_m = where(has_way, tried.tangent_N_per_m, k1);
+  four.across_N_per_m = secant;
+  return four;
 }
 
 }  // namespace palpate

@@ -15,9 +15,9 @@ static_assert(offsetof(Contact, normal_w) == offsetof(Contact, position_w) + 24 
               offsetof(Contact, weight) == offsetof(Contact, position_w) + 56);
 
 // One sum that is NaN or beyond kHuge if any of its terms is.
-bool usable(const State& state, const Contact& contact) PALPATE_RT {
+bool usable(const Region* region, const Contact& contact) PALPATE_RT {
   const std::int32_t slot = contact.region;
-  if (slot < 0 || slot >= kMaxRegions || !is_in_contact(state.region[slot])) return false;
+  if (slot < 0 || slot >= kMaxRegions || !is_in_contact(region[slot])) return false;
   const double* const number = &contact.position_w.x;
   return contact.depth_m > 0 && sum(abs_of(load4(number)) + abs_of(load4(number + 4))) <= kHuge;
 }
@@ -70,9 +70,11 @@ void sort_rows(State& state, Scratch& scratch) PALPATE_RT {
   if (!is_finite(state.tool_w)) contacts = 0;
   std::int32_t region_of[kMaxContacts];
   std::int32_t count_in[kMaxRegions] = {};
+  const Contact* const contact = scratch.contact.data();
+  const Region* const region = state.region.data();
   for (std::int32_t i = 0; i < contacts; ++i) {  // bound: kMaxContacts
-    const bool use = usable(state, scratch.contact[i]);
-    region_of[i] = use ? scratch.contact[i].region : -1;
+    const bool use = usable(region, contact[i]);
+    region_of[i] = use ? contact[i].region : -1;
     if (use) count_in[region_of[i]] += 1;
   }
   std::int32_t order[kMaxRegions];
@@ -162,10 +164,8 @@ Vec3 material_motion(const Model& model, const State& state, const RegionRows& r
   return total > 0 ? (1.0 / total) * sum : motion;
 }
 
-FrictionForce rub_region(const Model& model, const State& state, const FrictionParameters& parameters,
-                         const RegionRows& rows, FrictionLoad& load, Vec3 arm_w, Vec3 surface_w,
+FrictionForce rub_region(const FrictionParameters& parameters, FrictionLoad& load, Vec3 arm_w,
                          Region& region) PALPATE_RT {
-  load.step_w = material_motion(model, state, rows, region.centre_w) - surface_w;
   load.normal_w = region.normal_w;
   load.force_N = region.normal_force_N;
   load.depth_m = region.depth_equivalent_m;
@@ -193,7 +193,8 @@ TangentAxes tangent_axes(const FrictionForce& friction, Vec3 normal) PALPATE_RT 
 void slide(const Model& model, const State& state, Scratch& scratch, const FrictionParameters& parameters,
            const RegionRows& rows, FrictionLoad& load, Region& region) PALPATE_RT {
   const Vec3 arm = region.centre_w - pivot_w(state, rows);
-  const FrictionForce friction = rub_region(model, state, parameters, rows, load, arm, {}, region);
+  load.step_w = material_motion(model, state, rows, region.centre_w);
+  const FrictionForce friction = rub_region(parameters, load, arm, region);
   const TangentAxes axes = tangent_axes(friction, region.normal_w);
   ContactStiffness& stiffness = stiffness_of(scratch, region.hand);
   add_spring(stiffness, friction.along_N_per_m, axes.along, cross(arm, axes.along));

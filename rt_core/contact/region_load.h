@@ -148,17 +148,17 @@ inline std::int32_t count_solution(const RegionSolution& result, std::int32_t n,
 }
 
 // Friction at the region's centre, added to its wrench and energy. The caller fills region.depth_equivalent_m and
-// `load`'s tangent and depth rate; motion, normal and force are taken from the region. `arm_w`: of its centre
-// from the tool's origin; `surface_w`: how far the body's surface went since the last tick.
-FrictionForce rub_region(const Model& model, const State& state, const FrictionParameters& parameters,
-                         const RegionRows& rows, FrictionLoad& load, Vec3 arm_w, Vec3 surface_w,
+// `load`'s step, tangent and depth rate; normal and force are taken from the region. `arm_w`: of its centre from the
+// tool's origin.
+FrictionForce rub_region(const FrictionParameters& parameters, FrictionLoad& load, Vec3 arm_w,
                          Region& region) PALPATE_RT;
 // The directions of a friction's two stiffnesses.
 struct TangentAxes {
   Vec3 along, across;
 };
 TangentAxes tangent_axes(const FrictionForce& friction, Vec3 normal) PALPATE_RT;
-// Friction on a body that holds still: rub_region(), and its springs in scratch.stiffness.
+// Friction on a body that holds still: rub_region() with the step of the tool's material, and its springs in
+// scratch.stiffness.
 void slide(const Model& model, const State& state, Scratch& scratch, const FrictionParameters& parameters,
            const RegionRows& rows, FrictionLoad& load, Region& region) PALPATE_RT;
 

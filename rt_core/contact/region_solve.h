@@ -48,12 +48,12 @@ concept HasSteps = requires(const Laws& laws, RegionSystem& s) {
 };
 
 template <class Laws>
-constexpr Real enough_stepped_m() noexcept {
+inline constexpr Real kEnoughStepped_m = [] {
   if constexpr (requires { Laws::kEnoughStepped_m; })
     return Laws::kEnoughStepped_m;
   else
     return Laws::kEnough_m;
-}
+}();
 
 template <class Laws>
 void start(const Laws& laws, std::int32_t n, RegionSystem& s) PALPATE_RT {
@@ -127,12 +127,11 @@ bool foresees(const Laws& laws, RegionSystem& s, bool roughly, RegionSolution& r
 
 }  // namespace region_solve
 
-// Goes on with a solution until no more than enough_m is left, or after a step as little as the laws have for it, or a
-// step is foreseen: `roughly`, a longer one. Bound: Laws::kIterations steps.
+// Goes on with a solution until no more than enough_m is left, or after a step `stepped_m`, or a step is foreseen:
+// `roughly`, a longer one. Bound: Laws::kIterations steps.
 template <class Laws>
 void refine_regions(const Laws& laws, std::int32_t n, RegionSystem& system, Real enough_m, RegionSolution& result,
-                    bool roughly = false) PALPATE_RT {
-  constexpr Real stepped_m = region_solve::enough_stepped_m<Laws>();
+                    bool roughly = false, Real stepped_m = region_solve::kEnoughStepped_m<Laws>) PALPATE_RT {
   for (std::int32_t k = 0; k < Laws::kIterations; ++k) {  // bound: Laws::kIterations
     if (result.residual_m <= (result.steps > 0 ? max_of(enough_m, stepped_m) : enough_m)) break;
     result.steps += 1;

@@ -8,20 +8,21 @@ namespace palpate {
 namespace {
 
 void sort_by_row(const Scratch& scratch, Clusters& out) PALPATE_RT {
+  const Contact* const contact = scratch.contact.data();
   out.contacts = scratch.contact_count;
+  std::int32_t last = 0;                             // row; most are in their order
   for (std::int32_t i = 0; i < out.contacts; ++i) {  // insertion sort; bound: kMaxContacts^2 / 2
     std::int32_t at = i;
-    while (at > 0 && scratch.contact[out.order[at - 1]].row > scratch.contact[i].row) {
+    for (; at > 0 && last > contact[i].row && contact[out.order[at - 1]].row > contact[i].row; --at)
       out.order[at] = out.order[at - 1];
-      at -= 1;
-    }
     out.order[at] = i;
+    last = at == i ? contact[i].row : last;
   }
 }
 
 // Contacts that follow one another and are one region however far apart: of an articulated tool those of one part. All
-// others are runs of one contact. Different fingers are different regions, and parts of one finger join as the distances
-// say. Rigid tools go by distance alone, and so do tips on an elastic body, each of which is a region.
+// others are runs of one contact. Different fingers are different regions, and parts of one finger join as the
+// distances say. Rigid tools go by distance alone, and so do tips on an elastic body, each of which is a region.
 struct Run {
   Double4 lower, upper;  // corners of their box: x, y, z, 0
   std::int32_t begin, end;
@@ -33,10 +34,11 @@ constexpr std::uint32_t kChains = 32;
 
 std::int32_t find_runs(const Model& model, const Scratch& scratch, const Clusters& out, Run* run) PALPATE_RT {
   const bool articulated = is_articulated(model), by_piece = articulated && !(model.params.elastic_soft > 0);
+  const Contact* const contacts = scratch.contact.data();
   std::int32_t last[kChains], count = 0;
-  for (std::int32_t& of_chain : last) of_chain = -1;     // bound: kChains
-  for (std::int32_t i = 0; i < out.contacts; ++i) {      // bound: kMaxContacts
-    const Contact& contact = scratch.contact[out.order[i]];
+  for (std::int32_t& of_chain : last) of_chain = -1;  // bound: kChains
+  for (std::int32_t i = 0; i < out.contacts; ++i) {   // bound: kMaxContacts
+    const Contact& contact = contacts[out.order[i]];
     const Double4 place{contact.position_w.x, contact.position_w.y, contact.position_w.z, 0};
     if (by_piece && count > 0 && run[count - 1].piece == contact.piece) {
       Run& of = run[count - 1];
@@ -63,10 +65,11 @@ double apart2(const Run& a, const Run& b) PALPATE_RT {
 // Whether some contact of one is linked with one of the other.
 bool are_linked(const Scratch& scratch, const Clusters& out, const Run& a, const Run& b, double near2,
                 double far2) PALPATE_RT {
+  const Contact* const contact = scratch.contact.data();
   for (std::int32_t i = a.begin; i < a.end; ++i) {  // bound: kMaxContacts^2
-    const Contact& one = scratch.contact[out.order[i]];
+    const Contact& one = contact[out.order[i]];
     for (std::int32_t j = b.begin; j < b.end; ++j) {
-      const Contact& other = scratch.contact[out.order[j]];
+      const Contact& other = contact[out.order[j]];
       const double distance2 = squared_norm(one.position_w - other.position_w);
       const bool stays = one.previous >= 0 && one.previous == other.previous && distance2 <= far2;
       if (stays || distance2 < near2) return true;
@@ -114,8 +117,9 @@ void count_votes(const Scratch& scratch, const Clusters& clusters, Assignment& w
   for (std::int32_t c = 0; c < clusters.count; ++c) {                               // bound: kMaxContacts
     for (std::int32_t& vote : work.votes[c]) vote = 0;
   }
+  const Contact* const contact = scratch.contact.data();
   for (std::int32_t i = 0; i < clusters.contacts; ++i) {  // bound: kMaxContacts
-    const std::int32_t slot = scratch.contact[clusters.order[i]].previous, c = clusters.of_rank[i];
+    const std::int32_t slot = contact[clusters.order[i]].previous, c = clusters.of_rank[i];
     if (slot < 0 || slot >= kMaxRegions) continue;
     const std::int32_t votes = work.votes[c][slot] += 1;
     if (!work.takes_part[c]) continue;
@@ -204,17 +208,19 @@ void give_birth(State& state, std::int32_t slot) PALPATE_RT {
 // Labels contacts and points with their region. Contacts of clusters that got no slot leave the list: they render no
 // force, and everything after it may rely on contact.region being valid.
 void label(const Model& model, State& state, Scratch& scratch, const Clusters& clusters) PALPATE_RT {
+  Contact* const contacts = scratch.contact.data();
+  PointState* const point = state.point.data();
   for (std::int32_t i = 0; i < clusters.contacts; ++i) {  // bound: kMaxContacts
-    scratch.contact[clusters.order[i]].region = clusters.cluster[clusters.of_rank[i]].slot;
+    contacts[clusters.order[i]].region = clusters.cluster[clusters.of_rank[i]].slot;
   }
   const auto points = static_cast<std::int32_t>(model.tool_point.size());
-  for (std::int32_t i = 0; i < points; ++i) state.point[i].region = -1;  // bound: kMaxToolPoints
+  for (std::int32_t i = 0; i < points; ++i) point[i].region = -1;  // bound: kMaxToolPoints
   std::int32_t kept = 0;
   for (std::int32_t i = 0; i < clusters.contacts; ++i) {  // bound: kMaxContacts
-    const Contact& contact = scratch.contact[i];
+    const Contact& contact = contacts[i];
     if (contact.region < 0) continue;
-    state.point[contact.point].region = contact.region;
-    if (kept != i) scratch.contact[kept] = contact;
+    point[contact.point].region = contact.region;
+    if (kept != i) contacts[kept] = contact;
     kept += 1;
   }
   scratch.contact_count = kept;
@@ -256,6 +262,7 @@ void find_clusters(const Model& model, const Scratch& scratch, Clusters& out) PA
     }
   }
   out.count = 0;
+  const Contact* const contacts = scratch.contact.data();
   std::int32_t cluster_of[kMaxContacts];     // by run
   for (std::int32_t r = 0; r < runs; ++r) {  // bound: kMaxContacts; the lowest of a set comes before the others
     if (set[r] == r) {
@@ -266,7 +273,7 @@ void find_clusters(const Model& model, const Scratch& scratch, Clusters& out) PA
     Cluster& cluster = out.cluster[cluster_of[r]];
     cluster.count += run[r].end - run[r].begin;
     for (std::int32_t i = run[r].begin; i < run[r].end; ++i) {
-      const Contact& contact = scratch.contact[out.order[i]];
+      const Contact& contact = contacts[out.order[i]];
       out.of_rank[i] = cluster_of[r];
       cluster.area_m2 += contact.area_m2;
       cluster.depth_max_m = max_of(cluster.depth_max_m, contact.depth_m);

@@ -49,7 +49,9 @@ class Collider {
                                                                             now_(state.tool_w),
                                                                             before_(state.tool_previous_w),
                                                                             root_(root_box(model)),
-                                                                            share_(surface_work_share(model.params)) {
+                                                                            share_(surface_work_share(model.params)),
+                                                                            points_(state.point.data()),
+                                                                            tool_points_(model.tool_point.data()) {
     smooth_ = !model.corner_normal.empty();
     const ArticulationState& a = state.articulation;
     if (is_articulated(model)) now_of_.place(state.tool_w, a.motion_tool.data(), a.motion_tool.size());
@@ -71,7 +73,7 @@ class Collider {
     if (begin < end) scratch_.work.points += end - begin;
     for (std::int32_t i = begin; i < end; ++i) {  // bound: kMaxToolPoints over all pieces
       if (gap > kSearchMargin_m + kRefreshMargin_m) {
-        skip(state_.point[i], gap);
+        skip(points_[i], gap);
       } else {
         visit_point(i);
       }
@@ -87,8 +89,8 @@ class Collider {
 
  private:
   void visit_point(std::int32_t index) PALPATE_RT {
-    PointState& point = state_.point[index];
-    const Vec3 p = out_of(now_, model_.tool_point[static_cast<std::size_t>(index)].position_tool_m);
+    PointState& point = points_[index];
+    const Vec3 p = out_of(now_, tool_points_[index].position_tool_m);
     // Written so that a NaN in any term measures the point.
     if (point.gap_bound_m > kSearchMargin_m) {
       const Real bound = point.gap_bound_m - moved(index, p);
@@ -98,7 +100,7 @@ class Collider {
     }
     if (!(point.gap_m < 0)) {
       // Far from the body its box says as much as its surface, and costs nothing next to a cold search.
-      const Real gap = distance_to(root_, p) - model_.tool_point[static_cast<std::size_t>(index)].margin_m;
+      const Real gap = distance_to(root_, p) - tool_points_[index].margin_m;
       if (gap > kSearchMargin_m + kRefreshMargin_m) return skip(point, gap);
     }
     due_[due_count_] = index;
@@ -117,7 +119,7 @@ class Collider {
       if (left_ > 0 && (four.settled >> k & 1) != 0) {
         settle(due_[k], p, four, static_cast<std::uint32_t>(k));
       } else if (left_ > 0) {
-        measure(due_[k], p, closest_surface_point(model_, p, kHuge, state_.point[due_[k]].triangle));
+        measure(due_[k], p, closest_surface_point(model_, p, kHuge, points_[due_[k]].triangle));
       } else {
         if (next_first_ < 0) next_first_ = due_[k];
         hold(due_[k], p);
@@ -130,8 +132,8 @@ class Collider {
   // by its motion at most.
   void hold(std::int32_t index, Vec3 p) PALPATE_RT {
     scratch_.status |= Status::kPointsHeld;
-    PointState& point = state_.point[index];
-    const ToolPoint& tool_point = model_.tool_point[static_cast<std::size_t>(index)];
+    PointState& point = points_[index];
+    const ToolPoint& tool_point = tool_points_[index];
     const bool touched = point.gap_m < 0 && point.triangle >= 0;
     const Real gap =
         touched ? dot(p - point.closest_w, point.normal_w) - tool_point.margin_m : point.gap_bound_m - moved(index, p);
@@ -150,7 +152,7 @@ class Collider {
 
   Real moved(std::int32_t index, Vec3 p) PALPATE_RT {
     if (!knows_before_) look_back();
-    return norm(p - out_of(before_, model_.tool_point[static_cast<std::size_t>(index)].position_tool_m));
+    return norm(p - out_of(before_, tool_points_[index].position_tool_m));
   }
 
   // Where the piece was: few ticks ask.
@@ -165,8 +167,8 @@ class Collider {
   // measure() of one of four that is outside the body, with its nearest place proved.
   void settle(std::int32_t index, Vec3 p, const FourSettled& four, std::uint32_t k) PALPATE_RT {
     if (smooth_) return measure(index, p, settled_point(four, k));
-    const ToolPoint& tool_point = model_.tool_point[static_cast<std::size_t>(index)];
-    PointState& point = state_.point[index];
+    const ToolPoint& tool_point = tool_points_[index];
+    PointState& point = points_[index];
     left_ -= looked_at(four, k);
     scratch_.work.queries += 1;
     point.closest_w = four.closest_w[k];
@@ -177,8 +179,8 @@ class Collider {
   }
 
   void measure(std::int32_t index, Vec3 p, const SurfacePoint& surface) PALPATE_RT {
-    const ToolPoint& tool_point = model_.tool_point[static_cast<std::size_t>(index)];
-    PointState& point = state_.point[index];
+    const ToolPoint& tool_point = tool_points_[index];
+    PointState& point = points_[index];
     left_ -= surface.looked;
     scratch_.work.queries += 1;
     if (surface.stack_high_water > state_.high_water.traversal_stack) {
@@ -216,7 +218,7 @@ class Collider {
   // Contact with the smooth surface instead of its facets. Beyond a sharp edge the facet decides; below the focal
   // surface a point in contact keeps its last place (a god-object).
   void touch_smooth(std::int32_t index, Vec3 p, const SurfacePoint& surface, const ToolPoint& tool_point) PALPATE_RT {
-    PointState& point = state_.point[index];
+    PointState& point = points_[index];
     SurfaceFoot& foot = scratch_.foot[tool_point.piece];
     if (surface.truncated) scratch_.status |= Status::kTraversalTruncated;
     const SmoothFoot nearest = smooth_foot(model_, p, surface.triangle);
@@ -256,33 +258,34 @@ class Collider {
 
   // Adds a contact; when the pool is full the shallowest goes (ties: the higher index). Order stays by index.
   void keep(std::int32_t index, const PointState& point, const ToolPoint& tool_point) PALPATE_RT {
+    Contact* const contact = scratch_.contact.data();
     if (scratch_.contact_count == kMaxContacts) {
       scratch_.status |= Status::kContactsDropped;
       scratch_.work.pairs += kMaxContacts;
       std::int32_t shallowest = 0;
       for (std::int32_t i = 1; i < kMaxContacts; ++i) {  // bound: kMaxContacts
-        if (scratch_.contact[i].depth_m <= scratch_.contact[shallowest].depth_m) shallowest = i;
+        if (contact[i].depth_m <= contact[shallowest].depth_m) shallowest = i;
       }
-      if (!(-point.gap_m > scratch_.contact[shallowest].depth_m)) return;
+      if (!(-point.gap_m > contact[shallowest].depth_m)) return;
       for (std::int32_t i = shallowest; i + 1 < kMaxContacts; ++i) {  // bound: kMaxContacts
-        scratch_.contact[i] = scratch_.contact[i + 1];
+        contact[i] = contact[i + 1];
       }
       scratch_.contact_count -= 1;
     }
     std::int32_t at = scratch_.contact_count++;
-    for (; at > 0 && scratch_.contact[at - 1].row > index; --at) {  // bound: kMaxContacts
-      scratch_.contact[at] = scratch_.contact[at - 1];
+    for (; at > 0 && contact[at - 1].row > index; --at) {  // bound: kMaxContacts
+      contact[at] = contact[at - 1];
     }
-    scratch_.contact[at] = {.row = index,
-                            .point = index,
-                            .piece = tool_point.piece,
-                            .previous = point.region,
-                            .hand = hand_of(model_, tool_point.piece),
-                            .position_w = point.closest_w,
-                            .normal_w = point.normal_w,
-                            .depth_m = -point.gap_m,
-                            .weight = tool_point.weight,
-                            .area_m2 = tool_point.area_m2};
+    contact[at] = {.row = index,
+                   .point = index,
+                   .piece = tool_point.piece,
+                   .previous = point.region,
+                   .hand = hand_of(model_, tool_point.piece),
+                   .position_w = point.closest_w,
+                   .normal_w = point.normal_w,
+                   .depth_m = -point.gap_m,
+                   .weight = tool_point.weight,
+                   .area_m2 = tool_point.area_m2};
   }
 
   const Model& model_;
@@ -297,6 +300,8 @@ class Collider {
   const Box root_;
   bool smooth_ = false;
   const std::int32_t share_;  // of surface work
+  PointState* const points_;
+  const ToolPoint* const tool_points_;
   std::int32_t left_ = share_;
   std::int32_t next_first_ = -1;  // first point held
 };

@@ -174,20 +174,20 @@ void load_pieces(const Model& model, State& state, Scratch& scratch) PALPATE_RT 
   a.piece_force_tool_N.fill({});
   a.piece_torque_tool_Nm.fill({});
   const std::int32_t contacts = scratch.contact_count < kMaxContacts ? scratch.contact_count : kMaxContacts;
-  std::uint32_t loaded = 0;                      // pieces
-  for (std::int32_t i = 0; i < contacts; ++i) {  // bound: kMaxContacts
-    const Contact& contact = scratch.contact[i];
-    if (!(contact.force_N > 0)) continue;
-    const Vec3 force_w = contact.force_N * contact.normal_w;
-    a.piece_force_tool_N[contact.piece] += force_w;
-    a.piece_torque_tool_Nm[contact.piece] += cross(contact.position_w - state.tool_w.position_m, force_w);
-    loaded |= 1u << contact.piece;
-  }
+  const Contact* const contact = scratch.contact.data();
   const Quat to_tool = conjugate(state.tool_w.orientation);
-  for (; loaded != 0; loaded &= loaded - 1) {  // bound: kMaxPieces
-    const int piece = __builtin_ctz(loaded);
-    a.piece_force_tool_N[piece] = rotate(to_tool, a.piece_force_tool_N[piece]);
-    a.piece_torque_tool_Nm[piece] = rotate(to_tool, a.piece_torque_tool_Nm[piece]);
+  const Vec3 origin_w = state.tool_w.position_m;
+  for (std::int32_t i = 0; i < contacts;) {  // bound: kMaxContacts; those of a piece follow one another
+    const std::int32_t piece = contact[i].piece;
+    Vec3 force_w, torque_w;
+    for (; i < contacts && contact[i].piece == piece; ++i) {
+      if (!(contact[i].force_N > 0)) continue;
+      const Vec3 pushes_w = contact[i].force_N * contact[i].normal_w;
+      force_w += pushes_w;
+      torque_w += cross(contact[i].position_w - origin_w, pushes_w);
+    }
+    a.piece_force_tool_N[piece] += rotate(to_tool, force_w);
+    a.piece_torque_tool_Nm[piece] += rotate(to_tool, torque_w);
   }
   if (model.params.articulation == Articulation::kHand) balance_palm(model, state, scratch);
 }

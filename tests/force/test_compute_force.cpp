@@ -188,21 +188,22 @@ TEST(ComputeForce, CoupledRegionsMatchTheSolverAndOrderDoesNotMatter) {
   const Real scale = far_field_scale_m2_per_N(3e6, 0.47);
   const Real self = scale / 0.01, mutual = scale / std::hypot(0.012, 0.01);
   const Real f0 = s.state->region[0].normal_force_N, f5 = s.state->region[5].normal_force_N;
-  EXPECT_NEAR(s.scratch->system.shift_m[0], self * f0 + mutual * f5, 1e-15);
-  EXPECT_NEAR(f0, law_force_N(kLaw, 3e-3 - self * f0 - mutual * f5), 1e-12);
-  EXPECT_NEAR(f5, law_force_N(kLaw, 2e-3 - mutual * f0 - self * f5), 1e-12);
-  EXPECT_LT(s.scratch->residual_m, 1e-16);
+  // One step from a start within 5 um may leave 1e-11 m (coupled_points.cpp), here 1.7e-12: 13 nN on 7.7 kN/m.
+  EXPECT_NEAR(s.scratch->system.shift_m[0], self * f0 + mutual * f5, 1e-11);
+  EXPECT_NEAR(f0, law_force_N(kLaw, 3e-3 - self * f0 - mutual * f5), 1e-7);
+  EXPECT_NEAR(f5, law_force_N(kLaw, 2e-3 - mutual * f0 - self * f5), 1e-7);
+  EXPECT_LE(s.scratch->residual_m, 1e-11);
   EXPECT_NEAR(s.scratch->energy_J,
               law_energy_J(kLaw, 3e-3 - s.scratch->system.shift_m[0]) +
                   law_energy_J(kLaw, 2e-3 - s.scratch->system.shift_m[1]) +
                   0.5 * (self * f0 * f0 + 2 * mutual * f0 * f5 + self * f5 * f5),
-              1e-15);
+              1e-11 * (f0 + f5));
   s.reset_state();
   s.open_region(0, 1, 9);
   s.open_region(5, 2);
   s.run();
-  EXPECT_NEAR(s.state->region[0].normal_force_N, f0, 1e-13);
-  EXPECT_NEAR(s.state->region[5].normal_force_N, f5, 1e-13);
+  EXPECT_NEAR(s.state->region[0].normal_force_N, f0, 1e-7);
+  EXPECT_NEAR(s.state->region[5].normal_force_N, f5, 1e-7);
 }
 
 TEST(ComputeForce, PressLoopOfTwoCoupledRegionsReturnsNoEnergy) {
@@ -230,7 +231,7 @@ TEST(ComputeForce, PressLoopOfTwoCoupledRegionsReturnsNoEnergy) {
     if (i == 0) first_energy = s.scratch->energy_J;
   }
   EXPECT_LT(std::abs(work), 1e-11 * moved);
-  EXPECT_NEAR(s.scratch->energy_J, first_energy, 1e-15);
+  EXPECT_NEAR(s.scratch->energy_J, first_energy, 1e-11 * first_energy / 1e-3);  // 1e-11 of a depth of a millimetre
 }
 
 TEST(ComputeForce, StiffnessIsPositiveSemiDefiniteAndLosesTheSlipDirection) {

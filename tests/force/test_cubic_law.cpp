@@ -7,6 +7,7 @@
 
 #include "config/bake/contact_fit.h"
 #include "rt_core/contact/cubic_law.h"
+#include "rt_core/contact/cubic_law_lanes.h"
 
 namespace palpate {
 namespace {
@@ -48,6 +49,21 @@ TEST(CubicLaw, InverseOverAllScales) {
   EXPECT_LT(worst, 1e-15);                                                  // five Newton steps reach rounding: 4 ulp
   EXPECT_LT(std::abs(law_depth_m({1e9, 1e-300, kHuge}, 1) - 1e-9), 1e-24);  // nothing overflows
   EXPECT_NEAR(law_depth_m({1e-300, 1e15, kHuge}, 1), 1e-5, 1e-19);
+}
+
+// With and without a range, beyond it, without a force, and where one by one is asked for.
+TEST(CubicLaw, InversesOfFourAreTheSameToTheBit) {
+  std::mt19937_64 random(2);
+  std::uniform_real_distribution<Real> k1(-3, 6), k3(-3, 12), depth(-6, -1), force(-9, 6);
+  for (int i = 0; i < 20000; ++i) {
+    const CubicLaw law{i % 7 == 0 ? 0.0 : std::pow(10, k1(random)), i % 11 == 0 ? 0.0 : std::pow(10, k3(random)),
+                       i % 5 == 0 ? kHuge : std::pow(10, depth(random))};
+    Double4 target{};
+    for (int k = 0; k < 4; ++k) target[k] = std::pow(10, force(random));
+    target[i % 4] = i % 3 == 0 ? -target[i % 4] : i % 3 == 1 ? target[i % 4] : std::nan("");
+    const Double4 four = law_depth_m(law, target);
+    for (int k = 0; k < 4; ++k) ASSERT_EQ(four[k], law_depth_m(law, target[k])) << i << ' ' << k;
+  }
 }
 
 TEST(CubicLaw, ContinuesByItsTangentBeyondTheRange) {

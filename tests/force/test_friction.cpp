@@ -7,6 +7,7 @@
 #include <random>
 
 #include "rt_core/contact/friction.h"
+#include "rt_core/contact/friction_lanes.h"
 
 namespace palpate {
 namespace {
@@ -327,6 +328,62 @@ TEST(Friction, NoiseAfterASlideShakesThePapersForceNotTheReturnMaps) {
       EXPECT_LT(highest - lowest, 0.15);  // 20 um at the tangent stiffness of 3.6 kN/m is 0.07 N
     }
   }
+}
+
+// Four regions pushed about at random: those told to stick are as friction_step() has them, and nobody else sticks.
+TEST(Friction, FourThatStickAreTheSameToTheBit) {
+  std::mt19937_64 random(5);
+  std::normal_distribution<Real> normal;
+  std::uniform_real_distribution<Real> pressed(0, 5);
+  FrictionParameters p = worked_parameters();
+  p.contact.max_depth_m = 1e-3;  // so that some stretches are beyond the range
+  int stuck = 0, slipped = 0;
+  for (const Real beta : {0.75, 1.0, 0.8}) {
+    p.beta = beta;
+    ASSERT_TRUE(sticks_by_fours(p));
+    FrictionMemory memory[4];
+    for (int tick = 0; tick < 2000; ++tick) {
+      FrictionLoad load[4];
+      FrictionLoad4 four{};
+      Vec3x4 stretch{};
+      std::uint32_t touched = 0, slipping = 0;
+      for (std::uint32_t k = 0; k < 4; ++k) {
+        const Vec3 up = unit_or({normal(random), normal(random), normal(random)}, kUp);
+        const Real scale = tick % 50 == 0 ? 0.0 : 1e-3;
+        load[k] = load_of(p, 1e-3, scale * Vec3{normal(random), normal(random), normal(random)});
+        load[k].normal_w = up;
+        load[k].force_N = pressed(random);
+        four.step_w.set(k, load[k].step_w);
+        four.normal_w.set(k, up);
+        four.force_N[k] = load[k].force_N;
+        stretch.set(k, memory[k].stretch_w);
+        touched |= memory[k].mode != FrictionMode::kFree ? 1u << k : 0u;
+        slipping |= memory[k].mode == FrictionMode::kSlip ? 1u << k : 0u;
+      }
+      const Sticking4 told = stick_four(p, four, stretch, touched, slipping);
+      for (std::uint32_t k = 0; k < 4; ++k) {
+        const bool touched_before = memory[k].mode != FrictionMode::kFree;
+        const FrictionForce one = friction_step(p, load[k], memory[k]);
+        if ((told.which >> k & 1) == 0) {
+          slipped += touched_before ? 1 : 0;
+          EXPECT_TRUE(!touched_before || memory[k].mode == FrictionMode::kSlip);
+          continue;
+        }
+        stuck += 1;
+        ASSERT_EQ(told.force_w[k], one.force_w);
+        ASSERT_EQ(told.direction_w[k], one.direction_w);
+        ASSERT_EQ(told.stretch_w[k], memory[k].stretch_w);
+        ASSERT_EQ((told.slip >> k & 1) != 0, memory[k].mode == FrictionMode::kSlip);
+        ASSERT_EQ(told.energy_J[k], one.energy_J);
+        ASSERT_EQ(told.along_N_per_m[k], one.along_N_per_m);
+        ASSERT_EQ(told.across_N_per_m[k], one.across_N_per_m);
+        ASSERT_EQ(one.normal_gain_N, 0);
+        ASSERT_EQ(one.reversal_N_per_m, 0);
+      }
+    }
+  }
+  EXPECT_GT(stuck, 5000);
+  EXPECT_GT(slipped, 2000);
 }
 
 TEST(Friction, TurnsWithTheFrame) {

@@ -186,6 +186,16 @@ TEST(Math, SinesAndCosinesOfFourAreTheSameToTheBit) {
   }
 }
 
+TEST(Math, CubeRootsOfFourAreTheSameToTheBit) {
+  const std::vector<Real> points = all_magnitudes(20000, 12);
+  for (std::size_t i = 0; i + 4 <= points.size(); i += 4) {
+    Double4 x{};
+    for (int k = 0; k < 4; ++k) x[k] = std::clamp(std::abs(points[i + static_cast<std::size_t>(k)]), 1e-300, 1e300);
+    const Double4 four = math::cube_roots(x);
+    for (int k = 0; k < 4; ++k) ASSERT_EQ(four[k], math::cbrt(x[k])) << x[k];
+  }
+}
+
 TEST(Math, ArcSineAndArcCosine) {
   const auto points = dense_and_random(-1, 1, 20001, 10);
   EXPECT_LT(worst(points, math::asin, [](long double x) { return std::asin(x); }), kRelative);

@@ -178,8 +178,8 @@ class Rubbing {
     here.depth_equivalent_m = here.depth_max_m;
     FrictionLoad load;
     load.tangent_N_per_m = here.tangent_N_per_m;
-    const FrictionForce friction =
-        rub_region(model_, state_, law, rows_of(scratch_, r), load, arm_w(here), work_.rub[r].moved_w, here);
+    load.step_w = material_motion(model_, state_, rows_of(scratch_, r), here.centre_w) - work_.rub[r].moved_w;
+    const FrictionForce friction = rub_region(law, load, arm_w(here), here);
     const TangentAxes axes = tangent_axes(friction, here.normal_w);
     add(r, friction.along_N_per_m, axes.along);
     add(r, friction.across_N_per_m, axes.across);

@@ -157,8 +157,9 @@ class Finder {
   // The same for every part of the surface that a piece touches: carried once.
   RoundTip tip_at(std::int32_t index) PALPATE_RT {
     const ToolPoint& point = model_.tool_point[static_cast<std::size_t>(index)];
-    const bool is_known = tip_.is_of_part() && point.begins_at > 0 && point.piece == piece_of(index - 1) &&
-                          point.position_tool_m == model_.tool_point[static_cast<std::size_t>(index - 1)].position_tool_m;
+    const bool is_known =
+        tip_.is_of_part() && point.begins_at > 0 && point.piece == piece_of(index - 1) &&
+        point.position_tool_m == model_.tool_point[static_cast<std::size_t>(index - 1)].position_tool_m;
     if (is_known) {
       tip_.begins_at = point.begins_at;
       tip_.margin_m = point.margin_m;

@@ -3,6 +3,7 @@
 // an evaluation one by one (2026-11-26); docs/models_grasp.md has what they take now.
 #pragma once
 
+#include "rt_core/contact/cubic_law_lanes.h"
 #include "rt_core/contact/points/point_laws.h"
 #include "rt_core/lanes.h"
 
@@ -10,6 +11,8 @@ namespace palpate {
 
 // Rows of a matrix of regions: whole lanes.
 inline constexpr std::int32_t kRegionStride = whole_lanes(kMaxRegions, 4);
+
+struct ToolSprings;
 
 class CoupledPoints {
  public:
@@ -20,6 +23,9 @@ class CoupledPoints {
   // `compliance_m_per_N`: C, symmetric to the bit, in rows of kRegionStride. Bound: rows.
   CoupledPoints(const PointLaws& laws, const Real* compliance_m_per_N) PALPATE_RT;
 
+  // From where the last tick's forces `before_N`, of whole lanes, would have the surface, until no more is left than a
+  // micronewton; from start() where they are of no use.
+  RegionSolution solve(const Real* before_N, RegionSystem& system) const PALPATE_RT;
   void start(Real* shift_m) const PALPATE_RT;
   Real evaluate(const Real* shift_m, RegionSystem& system) const PALPATE_RT;
   bool newton_step(RegionSystem& system) const PALPATE_RT;
@@ -29,14 +35,9 @@ class CoupledPoints {
  private:
   struct Four;
   static constexpr std::int32_t kFours = kRegionStride / 4;
-  struct Load {
-    Double4 force_N, tangent_N_per_m;
-  };
-  Load law_at(const Double4& depth_m) const PALPATE_RT;
-  Double4 energy_at(const Double4& depth_m) const PALPATE_RT;
   void load_four(std::int32_t i, const Double4& shift_m, const Vec3x4& pivot_w, Four& four) const PALPATE_RT;
   void centre_four(std::int32_t i, const Vec3x4& last_normal_w, Four& four) const PALPATE_RT;
-  void press_four(std::int32_t i, State& state, Scratch& scratch) const PALPATE_RT;
+  void press_four(std::int32_t i, State& state, Scratch& scratch, ToolSprings& all) const PALPATE_RT;
   template <int kWide>
   void reduce_row(RegionSystem& system, std::int32_t j) const PALPATE_RT;
   bool factorise(RegionSystem& system, Real* pivot) const PALPATE_RT;

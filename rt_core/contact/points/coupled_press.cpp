@@ -1,19 +1,11 @@
 // press_regions() of points, four regions at a time and to the bit: 18,800 instructions one by one for fifteen regions
 // of 52 points (2026-11-26).
 #include "rt_core/contact/points/coupled_points.h"
+#include "rt_core/contact/points/spring_lanes.h"
 
 namespace palpate {
 
 namespace {
-
-Double4 length_of(const Vec3x4& v) PALPATE_RT { return square_root(dot(v, v)); }
-Vec3x4 tangential_part(const Vec3x4& a, const Vec3x4& n) PALPATE_RT { return a - dot(a, n) * n; }
-
-// As unit_or().
-Vec3x4 unit_or(const Vec3x4& v, const Vec3x4& fallback) PALPATE_RT {
-  const Double4 length = length_of(v);
-  return where((length > splat4(1e-300)) & (length < splat4(kHuge)), (splat4(1.0) / length) * v, fallback);
-}
 
 // Rotates v as the smallest rotation does that carries unit vector a onto unit vector b.
 Vec3x4 turned_with(const Vec3x4& a, const Vec3x4& b, const Vec3x4& v) PALPATE_RT {
@@ -34,39 +26,6 @@ Vec3x4 carried(const Vec3x4& stretch, const Vec3x4& from_normal, const Vec3x4& t
   return where(length > splat4(1e-15), (length_of(stretch) / length) * turned, Vec3x4{});
 }
 
-// Numbers of ContactStiffness, as many for each of four regions.
-struct Springs {
-  Double4 force[6] = {}, coupling[9] = {}, torque[6] = {};
-
-  // add_spring().
-  void add(const Double4& k_N_per_m, const Vec3x4& direction, const Vec3x4& turn) PALPATE_RT {
-    const Double4 u[3] = {direction.x, direction.y, direction.z}, m[3] = {turn.x, turn.y, turn.z};
-    int packed = 0;
-#pragma GCC unroll 3
-    for (int i = 0; i < 3; ++i) {  // bound: 3 x 3
-      const Double4 ku = k_N_per_m * u[i], km = k_N_per_m * m[i];
-#pragma GCC unroll 3
-      for (int j = 0; j < 3; ++j) {
-        coupling[3 * i + j] += ku * m[j];
-        if (j < i) continue;
-        force[packed] += ku * u[j];
-        torque[packed] += km * m[j];
-        packed += 1;
-      }
-    }
-  }
-  // stiffness_along_N_per_m().
-  Double4 along(const Vec3x4& n) const PALPATE_RT {
-    const Double4 diagonal = force[0] * n.x * n.x + force[3] * n.y * n.y + force[5] * n.z * n.z;
-    return diagonal + splat4(2.0) * (force[1] * n.x * n.y + force[2] * n.x * n.z + force[4] * n.y * n.z);
-  }
-  void add_to(ContactStiffness& sum, std::int32_t lane) const PALPATE_RT {
-    for (int i = 0; i < 6; ++i) sum.force[i] += force[i][lane];        // bound: 6
-    for (int i = 0; i < 9; ++i) sum.coupling[i] += coupling[i][lane];  // bound: 9
-    for (int i = 0; i < 6; ++i) sum.torque[i] += torque[i][lane];      // bound: 6
-  }
-};
-
 }  // namespace
 
 // Of four regions: their loads, and where those act.
@@ -83,14 +42,14 @@ void CoupledPoints::load_four(std::int32_t i, const Double4& shift, const Vec3x4
   const Double4 most = splat4(law_.max_depth_m);
   for (std::int32_t k = first_[i]; k < first_[i + 1]; ++k) {  // bound: rows
     const Double4 depth = depth_[k] - shift;
-    const Load load = law_at(depth);
+    const LawPoint4 load = law_at(law_, depth);
     const Double4 force = weight_[k] * load.force_N;
     const Vec3x4 turn = cross(place_[k] - pivot, normal_[k]);
     four.row_force[k] = force;
     four.resultant = four.resultant + force * normal_[k];
     four.torque = four.torque + force * turn;
     four.force += force;
-    four.energy += weight_[k] * energy_at(depth);
+    four.energy += weight_[k] * law_energy_J(law_, depth);
     four.beyond |= depth > most;
     four.springs.add(weight_[k] * load.tangent_N_per_m, normal_[k], turn);
   }
@@ -123,9 +82,10 @@ void CoupledPoints::centre_four(std::int32_t i, const Vec3x4& last_normal, Four&
 }
 
 // press() of region_load.cpp.
-void CoupledPoints::press_four(std::int32_t i, State& state, Scratch& scratch) const PALPATE_RT {
+void CoupledPoints::press_four(std::int32_t i, State& state, Scratch& scratch, ToolSprings& all) const PALPATE_RT {
   const std::int32_t regions = n_ - 4 * i < 4 ? n_ - 4 * i : 4;
   Vec3x4 pivot{}, stretch{}, last_normal{};
+  Double4 hand{};
   for (std::int32_t l = 0; l < regions; ++l) {  // bound: 4
     const Region& region = state.region[scratch.rows.slot[4 * i + l]];
     const auto lane = static_cast<std::uint32_t>(l);
@@ -153,15 +113,18 @@ void CoupledPoints::press_four(std::int32_t i, State& state, Scratch& scratch) c
     region.energy_J = energy[l];
     region.tangent_N_per_m = tangent[l];
     region.hand = rows[0].hand;
+    hand[l] = region.hand;
     if (four.beyond[l] != 0) scratch.status |= Status::kDepthBeyondRange;
     for (std::int32_t k = 0; k < rows.count; ++k) rows[k].force_N = four.row_force[first_[i] + k][l];
-    four.springs.add_to(stiffness_of(scratch, region.hand), l);
   }
+  all.add(four.springs, hand);
 }
 
 void CoupledPoints::press(State& state, Scratch& scratch) const PALPATE_RT {
   scratch.stiffness = scratch.other.stiffness = {};
-  for (std::int32_t i = 0; i < fours_; ++i) press_four(i, state, scratch);  // bound: kMaxContacts rows
+  ToolSprings all;
+  for (std::int32_t i = 0; i < fours_; ++i) press_four(i, state, scratch, all);  // bound: kMaxContacts rows
+  all.add_to(scratch);
 }
 
 }  // namespace palpate

@@ -1,8 +1,9 @@
 // The method `points`: cubic springs at the tool's points (contact/points/point_laws.h). Instructions of solve and
-// account with the coupled solve: 33 k and 25 k for 15 regions of 54 contacts, 13 k and 11 k for 6 of 19 (callgrind,
+// account with the coupled solve: 27 k and 14 k for 15 regions of 54 contacts, 11 k and 8 k for 6 of 19 (callgrind,
 // gcc 12 -O3, 2026-11-26).
 #include "rt_core/contact/contact.h"
 #include "rt_core/contact/points/coupled_points.h"
+#include "rt_core/contact/points/slide_together.h"
 #include "rt_core/contact/regions.h"
 
 namespace palpate {
@@ -88,7 +89,9 @@ void press_coupled(const Model& model, State& state, Scratch& scratch, PointLaws
     return press_regions(laws, state, scratch);
   }
   const CoupledPoints coupled(laws, scratch.system.compliance_m_per_N);
-  note_solution(solve_regions(coupled, laws.n, scratch.system), laws.n, scratch);
+  Real before_N[kMaxRegions] = {};
+  for (std::int32_t r = 0; r < laws.n; ++r) before_N[r] = state.region[scratch.rows.slot[r]].normal_force_N;
+  note_solution(coupled.solve(before_N, scratch.system), laws.n, scratch);
   coupled.press(state, scratch);
 }
 
@@ -140,24 +143,17 @@ void add_transferred(const Model& model, State& state, Scratch& scratch) PALPATE
   }
 }
 
-// Friction of one region: its tangential spring is the points' own law.
-void slide_on_points(const Model& model, const State& state, Scratch& scratch, std::int32_t r,
-                     Region& region) PALPATE_RT {
-  const FrictionParameters parameters = friction_parameters(model.params);
-  region.depth_equivalent_m = law_depth_m(parameters.contact, region.normal_force_N);
-  const Real own = is_coupled(model) ? scratch.system.compliance_m_per_N[r * (kRegionStride + 1)] : 0.0;
-  FrictionLoad load;
-  // With the surface yielding under the region, its stiffness is that of the two springs in series.
-  load.tangent_N_per_m = region.tangent_N_per_m / (1.0 + own * region.tangent_N_per_m);
-  const Real tangent = law_tangent_N_per_m(parameters.contact, region.depth_equivalent_m);
-  load.depth_rate = tangent > 0 ? load.tangent_N_per_m / tangent : 1.0;
-  slide(model, state, scratch, parameters, rows_of(scratch, r), load, region);
-}
-
 void account(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   if (carries_over(model.params.coupling_law)) add_transferred(model, state, scratch);
-  for (std::int32_t r = 0; r < scratch.rows.regions; ++r) {  // bound: kMaxRegions
-    slide_on_points(model, state, scratch, r, state.region[scratch.rows.slot[r]]);
+  const bool yields = is_coupled(model);
+  const FrictionParameters parameters = friction_parameters(model.params);
+  if (scratch.rows.regions > 1) {
+    slide_together(model, state, scratch, parameters, yields);
+  } else if (scratch.rows.regions == 1) {
+    Region& region = state.region[scratch.rows.slot[0]];
+    region.depth_equivalent_m = law_depth_m(parameters.contact, region.normal_force_N);
+    FrictionLoad load = load_on_points(scratch, parameters, yields, 0, region);
+    slide(model, state, scratch, parameters, rows_of(scratch, 0), load, region);
   }
   sum_up(model, state, scratch);
 }
