@@ -39,8 +39,7 @@ class Landing {
   Landing(const Model& model, const State& state, const Pose& from) PALPATE_RT
       : model_(model),
         state_(state),
-        gone_(twist_between(state.tool_w, from)),
-        box_(root_box(model)) {
+        gone_(twist_between(state.tool_w, from)) {
     const auto points = static_cast<std::int32_t>(model_.tool_point.size());
     for (std::int32_t i = 0; i < points && i < kMaxPieces; ++i) find_ends(i);  // bound: kMaxPieces
   }
@@ -86,6 +85,7 @@ class Landing {
       line_of_ = &piece;
       axis_w_ = rotate(state_.tool_w.orientation, rotate(piece.pose_tool.orientation, Vec3{0, 0, 1}));
       middle_w_ = transform(state_.tool_w, piece.pose_tool.position_m);
+      box_ = root_box(model_);
     }
     const Vec3 axis = axis_w_;
     const Real half = piece.half_extent_m[2], at = dot(point.closest_w - middle_w_, axis),
@@ -172,9 +172,9 @@ class Landing {
   const Model& model_;
   const State& state_;
   const Twist gone_;
-  const Box box_;
   const ToolPiece* line_of_ = nullptr;
   Vec3 axis_w_, middle_w_;  // of that piece
+  Box box_{};               // of the body
   End end_[2 * kMaxPieces];
   Held hold_[kLandings];
   std::int32_t ends_ = 0, held_ = 0;
