@@ -297,6 +297,7 @@ void CarriedSurface::place(const RoundTip& tip, std::int32_t triangle, Vec3 near
                            ElasticRow& row, Real force_N) const PALPATE_RT {
   CarriedTriangle last{model, y, shown, -1, {}, {}};
   row.tip = tip;
+  row.has_along = false;
   const Vec3 centre_w = row.placed_w = tip.centre_w();
   last.move_to(triangle);
   last.walk_below(near_w);
@@ -373,7 +374,10 @@ bool CarriedSurface::place_on_facet(Vec3 centre_w, std::int32_t triangle, Elasti
   return true;
 }
 
-void show_linear_modes(const Model& model, const ElasticRow& row, Real* along) PALPATE_RT {
+void show_linear_modes(const Model& model, ElasticRow& row) PALPATE_RT {
+  if (row.has_along) return;
+  row.has_along = true;
+  Real* const along = row.along;
   const Triangle& triangle = model.triangle[static_cast<std::size_t>(row.foot.triangle)];
   const Vec3 n = row.foot.normal_w;
   const std::int32_t count = model.params.elastic_linear;
@@ -398,6 +402,7 @@ void show_linear_modes(const Model& model, const ElasticRow& row, Real* along) P
     };
     along[m] = at(0) * n.x + at(1) * n.y + at(2) * n.z;
   }
+  for (; m < whole_lanes(count, 4); ++m) along[m] = 0;
 }
 
 }  // namespace palpate

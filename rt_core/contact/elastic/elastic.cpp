@@ -7,6 +7,7 @@
 // last tick: of a steady motion only its change is left to it, and a hold ends where rounding does.
 #include "rt_core/contact/contact.h"
 #include "rt_core/contact/elastic/linearised.h"
+#include "rt_core/contact/elastic/others_push.h"
 #include "rt_core/contact/regions.h"
 #include "rt_core/contact/tips/tip_check.h"
 #include "rt_core/image_check.h"
@@ -279,6 +280,19 @@ ImageResult check_data(const Model& model) noexcept {
 
 std::size_t work_bytes(const Model&) noexcept { return sizeof(ElasticWork); }
 
+Real linear_reach_m(const Model& model) noexcept {
+  Real most = 0;
+  for (std::int32_t v = 0; v < static_cast<std::int32_t>(model.vertex_m.size()); ++v) {
+    Real square = 0;
+    for (std::int32_t i = 0; i < 3 * model.params.elastic_linear; ++i) {
+      const auto one = static_cast<Real>(linear_shapes(model, v)[i]);
+      square += one * one;
+    }
+    most = max_of(most, square);
+  }
+  return square_root(most);
+}
+
 // The shapes' reaches and the parts' seeds. Nothing else is read before the tick has written it.
 void create_work(const Model& model, void* block) noexcept {
   ElasticWork& work = *static_cast<ElasticWork*>(block);
@@ -292,6 +306,7 @@ void create_work(const Model& model, void* block) noexcept {
     }
     work.reach_m[t] = square_root(most);
   }
+  work.linear_reach_m = linear_reach_m(model);
   for (std::size_t i = 0; i < model.tool_point.size(); ++i)
     if (model.tool_point[i].begins_at > 0) work.seeds[i] = spread_over_part(model, model.tool_point[i].begins_at);
 }
@@ -305,8 +320,8 @@ void add_most_work(const Model& model, const SceneSizes& n, Work& work) noexcept
   work.queries += 2 * n.points;  // a capsule asks three times
   add_most_regions(n, kSolvesOfFriction * TipLaws::kIterations, work);
   const bool in_parts = touches_in_parts(model);
-  work.shown +=
-      n.points * (2 * place + terms(soft) + (in_parts ? kMostPartLooks * kPartLookTerms + kPartVisitTerms : 0));
+  work.shown += n.points * (2 * place + terms(soft) + 2 * kPushTerms +
+                            (in_parts ? kMostPartLooks * kPartLookTerms + kPartVisitTerms : 0));
   work.rubbed += in_parts ? 2 * kLandings : 0;
   work.soft_pairs += soft_work(pair);
   work.tip_laws += kLineLaws * kSolvesOfFriction *

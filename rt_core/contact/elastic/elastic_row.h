@@ -51,6 +51,7 @@ struct ElasticRow {
   // each amplitude, the other way; and of c, c1, the curvature and beta in those two the slopes, and the bends 11, 12
   // and 22.
   bool has_slide;
+  bool has_along;  // is in `along`, of each linear mode in lanes of four: how far it moves the surface along the normal
   Real slide[2][kMaxSoftModes];
   Real number_slope[2][elastic_layout::kOwnSlopes], number_bend[3][elastic_layout::kOwnSlopes];
   Real modulus_slope[2];
@@ -59,6 +60,7 @@ struct ElasticRow {
   Vec3 modulus_gradient;
   Vec3 rise;  // gradient of the tip's height: the normal but for the facets' share
   Vec3 c_gradient, c1_gradient, curvature_gradient, beta_gradient;
+  alignas(32) Real along[kMaxLinearModes];  // m/J^1/2
 };
 
 // A capsule's step along its axis with the line's law and lean there, in terms of vertices summed up: with three modes
@@ -87,8 +89,7 @@ struct CarriedSurface {
   bool place_on_facet(Vec3 centre_w, std::int32_t triangle, ElasticRow& row) const PALPATE_RT;
 };
 
-// How far each linear mode moves the surface along a row's normal, m/J^1/2. The travel at one row per newton at another
-// is the product of both.
-void show_linear_modes(const Model& model, const ElasticRow& row, Real* along) PALPATE_RT;
+// Writes row.along, once a place. The travel at one row per newton at another is the product of both.
+void show_linear_modes(const Model& model, ElasticRow& row) PALPATE_RT;
 
 }  // namespace palpate

@@ -13,6 +13,7 @@ struct ElasticWork {
   Real y[elastic_layout::kMaxTerms];        // products of the amplitudes: those the rows were placed with, then the new
   Real y_begun[elastic_layout::kMaxTerms];  // as the tick found it
   Real reach_m[elastic_layout::kMaxTerms];  // largest displacement of each shape; written when the Scratch is made
+  Real linear_reach_m;                      // and of all linear modes together, m/J^1/2; likewise
   PartSeeds seeds[kMaxPieces];              // by tool point, of the part that it touches; likewise
   BodyRub rub[kMaxRegions];                 // by region of the tick
   ToolTangent tangent;                      // of the normals' springs, then of all

@@ -1,6 +1,7 @@
 // Which tips may touch an elastic body, and where.
 #include "rt_core/contact/elastic/carried_edge.h"
 #include "rt_core/contact/elastic/linearised.h"
+#include "rt_core/contact/elastic/others_push.h"
 #include "rt_core/contact/regions.h"
 #include "rt_core/surface/body_box.h"
 #include "rt_core/surface/closest_point.h"
@@ -73,65 +74,115 @@ class Finder {
     nearer_m_ = most_let_go_m(model, work_, work_.reach_m, let_go_);
   }
 
+  // A tip that touched in the last tick, then all others. Whether the first do is told when all of them stand
+  // somewhere: what they press comes out towards one another.
+  bool has_touched(std::int32_t index) const PALPATE_RT {
+    return state_.point[index].triangle >= 0 && state_.point[index].gap_m < 0;
+  }
+  void stand(std::int32_t index) PALPATE_RT {
+    const Real force_N = force_of(index);
+    nearer_m_ = kHuge;  // asks how far the body let go comes only when it has lifted off
+    bound_m_[index] = 0;
+    stands_[index] = is_of_part(index) ? place_part(index, true) : place_touched(index);
+    if (!(stands_[index] && force_N > 0)) return;
+    push_.add(work_.row[index], force_N);
+  }
+  void settle(std::int32_t index) PALPATE_RT {
+    if (!stands_[index]) return;
+    if (!is_of_part(index)) return settle_row(index);
+    nearer_m_ = let_go_there_m(work_.row[index].foot.triangle);
+    settle_part(index);
+  }
+  // `all_overlap`: nobody has to be looked for, or is held by others alone.
+  void meet_others(bool all_overlap) PALPATE_RT {
+    nearer_m_ = most_let_go_m(model_, work_, work_.reach_m, let_go_);
+    if (all_overlap) return;
+    *surface_.shown += push_.count() * kPushTerms;
+    push_m_ = push_.most_m(model_, work_.linear_reach_m);
+  }
+  bool overlaps(std::int32_t index) const PALPATE_RT { return stands_[index] && work_.row[index].travel_m > 0; }
   void visit(std::int32_t index) PALPATE_RT {
-    PointState& point = state_.point[index];
-    const bool touched = point.triangle >= 0 && point.gap_m < 0;
-    RoundTip tip = tip_at(index);
-    if (tip.is_of_part()) return visit_part(index, tip, touched);
-    if (!touched && is_far(index, tip)) return;
-    ElasticRow& row = work_.row[index];
-    if (touched) tip.come_near(point.closest_w);
-    const bool followed = touched && has_stayed(point, tip);
-    const Real force_N = point.region >= 0 ? state_.region[point.region].normal_force_N : 0.0;
-    if (followed) {
-      surface_.place(tip, point.triangle, point.closest_w, nearer_m_, box_, row, force_N);
-      // Lifted off: looked for from the next tick on.
-      if (row.foot.triangle >= 0) return free_depth(row) > 0 ? keep(index, row) : let_lift(point, row, 0);
-    }
-    if (!search(tip, point, touched && !followed ? -1 : point.triangle)) return;
-    surface_.place(tip, point.triangle, point.closest_w, nearer_m_, box_, row, force_N);
-    if (row.foot.triangle < 0) {
-      hold(point);
+    bound_m_[index] = 0;
+    if (is_of_part(index)) {
+      if (place_part(index, false)) settle_part(index);
       return;
     }
-    if (free_depth(row) > 0) return keep(index, row);
-    let_lift(point, row, reach_m_);
+    const RoundTip tip = tip_at(index);
+    if (!is_far(index, tip) && look_for(index, tip, state_.point[index].triangle)) settle_row(index);
   }
 
  private:
+  bool is_of_part(std::int32_t index) const PALPATE_RT {
+    return model_.tool_point[static_cast<std::size_t>(index)].begins_at > 0;
+  }
+  Real force_of(std::int32_t index) const PALPATE_RT {
+    const std::int32_t region = state_.point[index].region;
+    return region >= 0 ? state_.region[region].normal_force_N : 0.0;
+  }
+  bool place_touched(std::int32_t index) PALPATE_RT {
+    const PointState& point = state_.point[index];
+    RoundTip tip = tip_at(index);
+    tip.come_near(point.closest_w);
+    const bool followed = has_stayed(point, tip);
+    if (followed) {
+      surface_.place(tip, point.triangle, point.closest_w, nearer_m_, box_, work_.row[index], force_of(index));
+      if (work_.row[index].foot.triangle >= 0) return true;
+    }
+    return look_for(index, tip, followed ? point.triangle : -1);
+  }
+  bool look_for(std::int32_t index, RoundTip tip, std::int32_t warm) PALPATE_RT {
+    PointState& point = state_.point[index];
+    ElasticRow& row = work_.row[index];
+    if (!search(tip, point, warm)) return false;
+    surface_.place(tip, point.triangle, point.closest_w, nearer_m_ + push_m_, box_, row, force_of(index));
+    bound_m_[index] = reach_m_;
+    return row.foot.triangle >= 0 || hold(point);
+  }
+  void settle_row(std::int32_t index) PALPATE_RT {
+    // Lifted off where its foot was followed: looked for from the next tick on.
+    const ElasticRow& row = work_.row[index];
+    const Real depth_m = free_depth(index);
+    depth_m > 0 ? keep(index, row, depth_m) : let_lift(state_.point[index], row, depth_m, bound_m_[index]);
+  }
+
   // A part of the surface is not looked for among all facets: a foot that touches is followed from where it was, over
   // as many as a walk takes, one that is apart comes near (part_search.h). Until it is there the part does not touch.
-  void visit_part(std::int32_t index, RoundTip& tip, bool touched) PALPATE_RT {
+  bool place_part(std::int32_t index, bool touched) PALPATE_RT {
     PointState& point = state_.point[index];
-    if (!touched && stays_apart(index, tip, point)) return;
+    RoundTip tip = tip_at(index);
+    if (!touched && stays_apart(index, tip, point)) return false;
     if (touched)
       stand_above(point.closest_w, point.normal_w, tip);
     else if (!come_near_part(index, tip, point))
-      return;
+      return false;
     ElasticRow& row = work_.row[index];
     const Vec3 near = touched ? point.closest_w : tip.centre_w();
-    const Real force_N = point.region >= 0 ? state_.region[point.region].normal_force_N : 0.0;
-    if (touched) nearer_m_ = kHuge;  // asks how far the body let go comes only when it has lifted off
+    const Real force_N = force_of(index);
     *surface_.shown += kPartVisitTerms;
-    surface_.place(tip, point.triangle, near, nearer_m_, box_, row, force_N);
+    surface_.place(tip, point.triangle, near, nearer_m_ + push_m_, box_, row, force_N);
     for (std::int32_t i = 0; i < kFurtherWalks && row.foot.state == FootState::kFar; ++i)
-      surface_.place(tip, row.foot.triangle, tip.centre_w(), nearer_m_, box_, row, force_N);
+      surface_.place(tip, row.foot.triangle, tip.centre_w(), nearer_m_ + push_m_, box_, row, force_N);
     point.triangle = row.foot.triangle;
     point.closest_w = row.foot.foot_w;
     if (row.foot.state == FootState::kFar) {
       hold(point);
       point.closest_w = displaced(point.triangle);
-      return let_be(point);
+      let_be(point);
+      return false;
     }
-    if (touched && !(row.travel_m > 0)) nearer_m_ = let_go_there_m(point.triangle);
     // From behind: another part is in between.
-    if (!touched && row.foot.height_m < 0) return let_be(point);
-    if (free_depth(row) > 0) {
-      keep(index, row);
-      point.gap_bound_m = -(row.travel_m + row.leads_m);
-      return;
+    if (!touched && row.foot.height_m < 0) {
+      let_be(point);
+      return false;
     }
-    let_lift(point, row, 0);
+    return true;
+  }
+  void settle_part(std::int32_t index) PALPATE_RT {
+    PointState& point = state_.point[index];
+    const ElasticRow& row = work_.row[index];
+    const Real depth_m = free_depth(index);
+    if (depth_m > 0) return keep(index, row, depth_m);
+    let_lift(point, row, depth_m, 0);
     point.gap_m = -(row.travel_m + row.leads_m);
   }
   // A capsule's place right above one of a part; one that leans more stands over the rim that it leans to, where its
@@ -157,14 +208,16 @@ class Finder {
   // The same for every part of the surface that a piece touches: carried once.
   RoundTip tip_at(std::int32_t index) PALPATE_RT {
     const ToolPoint& point = model_.tool_point[static_cast<std::size_t>(index)];
-    const bool is_known =
-        tip_.is_of_part() && point.begins_at > 0 && point.piece == piece_of(index - 1) &&
-        point.position_tool_m == model_.tool_point[static_cast<std::size_t>(index - 1)].position_tool_m;
-    if (is_known) {
-      tip_.begins_at = point.begins_at;
-      tip_.margin_m = point.margin_m;
-      return tip_;
+    if (tip_of_ >= 0 && is_of_part(index) && is_of_part(tip_of_)) {
+      const ToolPoint& last = model_.tool_point[static_cast<std::size_t>(tip_of_)];
+      if (point.piece == last.piece && point.position_tool_m == last.position_tool_m) {
+        tip_of_ = index;
+        tip_.begins_at = point.begins_at;
+        tip_.margin_m = point.margin_m;
+        return tip_;
+      }
     }
+    tip_of_ = index;
     tip_moved_m_ = -1;
     return tip_ = round_tip(model_, index, carrier_w(model_, state_, point.piece));
   }
@@ -195,12 +248,12 @@ class Finder {
     const Real apart_m = norm(out) - tip.margin_m;
     nearer_m_ = let_go_there_m(place.triangle);
     const bool is_above = place.is_there && dot(out, up) > kGrazing * norm(out);
-    if (is_above && !(apart_m - nearer_m_ > kNearPart_m)) return true;
+    if (is_above && !(apart_m - nearer_m_ - push_m_ > kNearPart_m)) return true;
     if (!is_above) {
       let_be(point, place.is_there ? kBehind_m : 0.0);
       return false;
     }
-    point.gap_bound_m = apart_m - nearer_m_ - kNearPart_m;
+    point.gap_bound_m = apart_m - nearer_m_ - push_m_ - kNearPart_m;
     point.gap_m = apart_m;
     point.normal_w = unit_or(out, up);
     return false;
@@ -224,16 +277,22 @@ class Finder {
   std::int32_t piece_of(std::int32_t index) const PALPATE_RT {
     return model_.tool_point[static_cast<std::size_t>(index)].piece;
   }
-  // On the body let go; or as it stands, where friction or another finger holds it towards the tip.
-  Real free_depth(const ElasticRow& row) const PALPATE_RT {
+  // On the body let go; or as it stands, where friction or another finger holds it towards the tip. By the linear modes
+  // the others hold it, too: told by the soft modes' surface alone, a thumb's tip that the squeeze of fingers pressed
+  // with 0.4 N touched in every other tick (2026-11-26).
+  Real free_depth(std::int32_t index) const PALPATE_RT {
+    ElasticRow& row = work_.row[index];
     const Real depth = row.travel_m + row.leads_m;
-    if (!(depth + nearer_m_ > 0)) return depth + nearer_m_;
-    return depth + max_of(dot(row.pull, let_go_, model_.params.elastic_soft), 0.0);
+    if (!(depth + nearer_m_ + push_m_ > 0)) return depth + nearer_m_ + push_m_;
+    const Real alone = depth + max_of(dot(row.pull, let_go_, model_.params.elastic_soft), 0.0);
+    if (alone > 0 || !(alone + push_m_ > 0)) return alone;
+    *surface_.shown += kPushTerms;
+    return alone + push_.outwards_m(model_, row);
   }
 
   // About where its foot was.
   static bool has_stayed(const PointState& point, const RoundTip& tip) PALPATE_RT {
-    const Real reach = abs_of(point.gap_m + tip.margin_m) + kFollowed_m;
+    const Real reach = abs_of(point.gap_bound_m + tip.margin_m) + kFollowed_m;
     return squared_norm(tip.centre_w() - point.closest_w) < reach * reach;
   }
 
@@ -245,7 +304,7 @@ class Finder {
     const Real tool_m = tool_moved_m(index, tip);
     const Real box = distance_to(box_, tip.middle_w) - tip.margin_m - half - moved_m_;
     const Real bound = max_of(point.gap_bound_m - tool_m - state_.elastic.swept_m, box);
-    if (!(bound > kSearchMargin_m)) return false;
+    if (!(bound > push_m_ + kSearchMargin_m)) return false;
     point.gap_m = point.gap_bound_m = bound;
     return true;
   }
@@ -287,7 +346,7 @@ class Finder {
     point.normal_w = best.normal_w;
     reach_m_ = bound - tip.margin_m - norm(tip.half_axis_w) * kThird - model_.params.smooth_slack_m -
                (state_.elastic.moved != 0 ? moved_m_ + norm(moved) : 0.0);
-    if (best.signed_distance_m < 0 || !(reach_m_ > nearer_m_ + kSearchMargin_m)) return true;
+    if (best.signed_distance_m < 0 || !(reach_m_ > nearer_m_ + push_m_ + kSearchMargin_m)) return true;
     point.gap_m = point.gap_bound_m = reach_m_ - nearer_m_;
     return false;
   }
@@ -299,15 +358,15 @@ class Finder {
     return false;
   }
 
-  void let_lift(PointState& point, const ElasticRow& row, Real bound_m) const PALPATE_RT {
+  void let_lift(PointState& point, const ElasticRow& row, Real depth_m, Real bound_m) const PALPATE_RT {
     point.closest_w = row.foot.foot_w;
     point.normal_w = row.foot.normal_w;
     point.triangle = row.foot.triangle;
-    point.gap_m = -free_depth(row);
+    point.gap_m = -depth_m;
     point.gap_bound_m = min_of(bound_m, point.gap_m);
   }
 
-  void keep(std::int32_t index, const ElasticRow& row) PALPATE_RT {
+  void keep(std::int32_t index, const ElasticRow& row, Real depth_m) PALPATE_RT {
     PointState& point = state_.point[index];
     const ToolPoint& tool_point = model_.tool_point[static_cast<std::size_t>(index)];
     Contact& contact = scratch_.contact[scratch_.contact_count++];
@@ -320,11 +379,12 @@ class Finder {
     // A capsule: below where its axis was found to be deepest, with which the next tick begins.
     point.closest_w = row.foot.foot_w + (row.tip.centre_w() - row.placed_w);
     contact.normal_w = point.normal_w = row.foot.normal_w;
-    contact.depth_m = free_depth(row);
+    contact.depth_m = depth_m;
     contact.weight = tool_point.weight;
     contact.area_m2 = tool_point.area_m2;
     point.triangle = row.foot.triangle;
-    point.gap_m = point.gap_bound_m = -contact.depth_m;
+    point.gap_m = -depth_m;
+    point.gap_bound_m = -(row.travel_m + row.leads_m);
   }
 
   const Model& model_;
@@ -337,8 +397,13 @@ class Finder {
   Real let_go_[kMaxSoftModes];
   Real nearer_m_;  // no place of the body let go comes nearer than by this
   Real reach_m_ = 0;
-  RoundTip tip_{};         // of the point visited last
+  OthersPush push_;
+  Real push_m_ = 0;  // nor by more than this for what tips press
+  RoundTip tip_{};   // of the point visited last
+  std::int32_t tip_of_ = -1;
   Real tip_moved_m_ = -1;  // in this tick; below 0: not asked
+  bool stands_[kMaxPieces];
+  Real bound_m_[kMaxPieces];
 };
 
 }  // namespace
@@ -370,7 +435,14 @@ void find_elastic_tips(const Model& model, State& state, Scratch& scratch) PALPA
   Finder finder(model, state, scratch);
   const auto points = static_cast<std::int32_t>(model.tool_point.size()),
              pieces = static_cast<std::int32_t>(model.piece.size());
-  for (std::int32_t i = 0; i < points; ++i) finder.visit(i);  // bound: kMaxPieces
+  bool touched[kMaxPieces], all_overlap = true;
+  for (std::int32_t i = 0; i < points; ++i) {  // bound: kMaxPieces
+    touched[i] = finder.has_touched(i);
+    if (touched[i]) finder.stand(i);
+    all_overlap = all_overlap && (points == 1 || (touched[i] && finder.overlaps(i)));
+  }
+  finder.meet_others(all_overlap);
+  for (std::int32_t i = 0; i < points; ++i) touched[i] ? finder.settle(i) : finder.visit(i);
   state.high_water.contacts =
       state.high_water.contacts < scratch.contact_count ? scratch.contact_count : state.high_water.contacts;
   scratch.work.points += points > pieces ? points : pieces;

@@ -14,14 +14,12 @@ Real dot_lanes(const Real* a, const Real* b, std::int32_t n) PALPATE_RT {
 
 }  // namespace
 
-void ModePairs::meet_modes(const Model& model, const ElasticRow* const* row, std::int32_t n) PALPATE_RT {
-  Real along[kMaxRegions][kMaxLinearModes];
+void ModePairs::meet_modes(const Model& model, ElasticRow* const* row, std::int32_t n) PALPATE_RT {
   const std::int32_t modes = model.params.elastic_linear;
   for (std::int32_t r = 0; r < n; ++r) {  // bound: kMaxRegions^2 kMaxLinearModes / 8
-    show_linear_modes(model, *row[r], along[r]);
-    for (std::int32_t m = modes; m < whole_lanes(modes, 4); ++m) along[r][m] = 0;
+    show_linear_modes(model, *row[r]);
     for (std::int32_t j = 0; j <= r; ++j)
-      by_modes_m_per_N_[r][j] = by_modes_m_per_N_[j][r] = dot_lanes(along[r], along[j], modes);
+      by_modes_m_per_N_[r][j] = by_modes_m_per_N_[j][r] = dot_lanes(row[r]->along, row[j]->along, modes);
   }
 }
 
@@ -56,7 +54,7 @@ void ModePairs::near(std::int32_t r, std::int32_t b, const Double4& shared) PALP
   store(fall_[r] + b, value / square * (splat4(1.0) + by_cut * (by_cut + root) / (root * root)));
 }
 
-void ModePairs::link(const Model& model, const ElasticRow* const* row, std::int32_t n) PALPATE_RT {
+void ModePairs::link(const Model& model, ElasticRow* const* row, std::int32_t n) PALPATE_RT {
   meet_modes(model, row, n);
   stand(model, row, n);
   for (std::int32_t r = 0; r < n; ++r) {  // bound: kMaxRegions^2 / 4

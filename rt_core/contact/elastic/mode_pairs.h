@@ -12,14 +12,14 @@ struct ModePairs {
   Real share[kMaxRegions][kMaxRegions];           // of the modes' travel under a region, what another's newton makes
 
   // `row`: of each of n regions.
-  void link(const Model& model, const ElasticRow* const* row, std::int32_t n) PALPATE_RT;
+  void link(const Model& model, ElasticRow* const* row, std::int32_t n) PALPATE_RT;
   // Slope along the surface of what the others' forces move under each region. The near field's alone: the linear modes
   // are straight between the vertices, and their slope would step from facet to facet, by 1.3 % of the force on a
   // pinched wall (2026-11-23).
   void pull_aside(std::int32_t n, const Real* force_N, Vec3* aside) const PALPATE_RT;
 
  private:
-  void meet_modes(const Model& model, const ElasticRow* const* row, std::int32_t n) PALPATE_RT;
+  void meet_modes(const Model& model, ElasticRow* const* row, std::int32_t n) PALPATE_RT;
   void stand(const Model& model, const ElasticRow* const* row, std::int32_t n) PALPATE_RT;
   // Of region r with the four from b on, which have `shared` by the modes.
   void near(std::int32_t r, std::int32_t b, const Double4& shared) PALPATE_RT;
