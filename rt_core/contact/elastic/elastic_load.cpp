@@ -3,6 +3,13 @@
 
 namespace palpate {
 
+namespace {
+
+// Of I + g H g, whose pivots are 1 and more without what is of second order in the forces.
+constexpr Real kLeastPivot = 0.1;
+
+}  // namespace
+
 void ElasticLoad::start(Real* shift_m) const PALPATE_RT {
   Real bend[kMaxRegions], force_N[kMaxRegions];
   for (std::int32_t r = 0; r < n; ++r) force_N[r] = before_N[r] > 0 ? before_N[r] : begins_N(r);  // bound: kMaxRegions
@@ -51,27 +58,43 @@ bool ElasticLoad::newton_step_of_two(RegionSystem& s) const PALPATE_RT {
   return true;
 }
 
+bool ElasticLoad::factor(const RegionSystem& s, Real second_order, FactorLanes& system) const PALPATE_RT {
+  const Real* g = s.root_tangent;
+  Real force_N[kMaxRegions];
+  for (std::int32_t r = 0; r < n; ++r) force_N[r] = second_order * s.force_N[r];  // bound: kMaxRegions
+  end_lanes(n, force_N);
+  for (std::int32_t j = 0; j < n; ++j) {  // bound: kMaxRegions^2 / 8 steps of four
+    for (std::int32_t b = j / kRegionLanes * kRegionLanes; b < n; b += kRegionLanes)
+      store(system.column[j] + b, splat4(g[j]) * pair.bends(force_N, j, b) * load4(g + b));
+    system.column[j][j] = 1.0 + g[j] * own_bend(j, second_order) * g[j];
+  }
+  if (!system.factor(n)) return false;
+  for (std::int32_t r = 0; r < n; ++r) {  // bound: kMaxRegions
+    if (second_order > 0 && !(system.inverse[r] * system.inverse[r] * kLeastPivot < 1)) return false;
+  }
+  return true;
+}
+
 bool ElasticLoad::newton_step(RegionSystem& s) const PALPATE_RT {
   if (n == 2) return newton_step_of_two(s);
   FactorLanes system;
   const Real* g = s.root_tangent;
   Real y[kMaxRegions], by_force[kMaxRegions], second[kMaxRegions];
-  for (std::int32_t j = 0; j < n; ++j) {  // bound: kMaxRegions^2 / 8 steps of four
-    for (std::int32_t b = j / kRegionLanes * kRegionLanes; b < n; b += kRegionLanes)
-      store(system.column[j] + b, splat4(g[j]) * pair.bends(s.force_N, j, b) * load4(g + b));
-    system.column[j][j] = 1.0 + g[j] * own_bend_m_per_N[j] * g[j];
-    y[j] = -g[j] * s.residual_m[j];
-  }
+  for (std::int32_t j = 0; j < n; ++j) y[j] = -g[j] * s.residual_m[j];  // bound: kMaxRegions
   end_lanes(n, y);
-  if (!system.factor(n)) return false;
+  Real order = 1.0;
+  if (!factor(s, order, system)) {
+    order = 0.0;
+    if (!factor(s, order, system)) return false;
+  }
   system.solve(n, y);
   for (std::int32_t b = 0; b < n; b += kRegionLanes) {  // bound: kMaxRegions / 4
     store(y + b, load4(y + b) * load4(g + b));
-    store(by_force + b, load4(y + b) * load4(s.force_N + b));
+    store(by_force + b, splat4(order) * load4(y + b) * load4(s.force_N + b));
   }
   pair.apply(n, y, by_force, s.step_m, second);
   for (std::int32_t r = 0; r < n; ++r) {  // bound: kMaxRegions
-    s.step_m[r] += s.residual_m[r] + s.force_N[r] * second[r] + own_bend_m_per_N[r] * y[r];
+    s.step_m[r] += s.residual_m[r] + order * s.force_N[r] * second[r] + own_bend(r, order) * y[r];
     change_N[r] = y[r];
     s.step_m[r] = bent_step_m(r, s);
   }

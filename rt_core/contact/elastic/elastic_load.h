@@ -142,6 +142,11 @@ struct ElasticLoad : TipLaws {
   Real evaluate(const Real* shift_m, RegionSystem& s) const PALPATE_RT;
   bool newton_step(RegionSystem& s) const PALPATE_RT;
   bool newton_step_of_two(RegionSystem& s) const PALPATE_RT;
+  // I + g H g of newton_step(); H with its second order, in the forces, or without.
+  bool factor(const RegionSystem& s, Real second_order, FactorLanes& system) const PALPATE_RT;
+  Real own_bend(std::int32_t r, Real second_order) const PALPATE_RT {
+    return second_order > 0 ? own_bend_m_per_N[r] : region[r].far.c0_m_per_N;
+  }
   bool foresees(RegionSystem& s, Real most) const PALPATE_RT;
   // A Newton step that knows how a law bends, as the power of the dent that it is there: of a power under a body that
   // gives much it finds the force at once, where Newton's went out to ten times the dent or back by half of it.
