@@ -135,7 +135,7 @@ void solve_pressed(const Model& model, State& state, Scratch& scratch, Count sof
   for (std::int32_t r = 0; r < regions; ++r) {  // bound: kMaxRegions
     Real& root_tangent = scratch.system.root_tangent[r];
     root_tangent = load.told_root_tangent(r, force_N[r], root_tangent);
-    state.region[scratch.rows.slot[r]].tangent_N_per_m = load.place_N_per_m(r, force_N[r], root_tangent);
+    state.region[scratch.rows.slot[r]].tangent_N_per_m = load.rubbed_N_per_m(r, root_tangent);
   }
   body.tell_tangent(force_N);
 }

@@ -51,6 +51,13 @@ struct ElasticLoad : TipLaws {
     const Real tangent = root_tangent * root_tangent;
     return tangent / (1.0 + far_slope_m_per_N(own[r].far, force_N) * tangent);
   }
+  // Mindlin's, which friction's spring is a share of: of the dent and c. c1 is what the whole body's travel makes of
+  // the place: where it halves what the place gives, a spring with it grew by a quarter for 2 % of the force, and a
+  // thumb that stuck turned the tool to and fro (2026-11-26).
+  Real rubbed_N_per_m(std::int32_t r, Real root_tangent) const PALPATE_RT {
+    const Real tangent = root_tangent * root_tangent;
+    return tangent / (1.0 + own[r].far.c0_m_per_N * tangent);
+  }
   // A part that is hardly touched is told as stiff as one well in contact: from next to no force Newton's step went
   // 0.16 mm into the seat of a clip, and the next tick said 800 N (2026-11-26).
   Real told_root_tangent(std::int32_t r, Real force_N, Real root_tangent) const PALPATE_RT {

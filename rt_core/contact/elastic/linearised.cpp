@@ -343,7 +343,7 @@ void Linearised<Count>::tell_tangent(const Real* force_N) const PALPATE_RT {
     if (regions() > 1) return tell_pairs(size, force_N);
     ToolTangent::Spring spring;
     aim_normal(size, 0, spring);
-    work_.tangent.add(size, state_.region[scratch_.rows.slot[0]].tangent_N_per_m, spring);
+    work_.tangent.add(size, load_.place_N_per_m(0, force_N[0], scratch_.system.root_tangent[0]), spring);
   });
 }
 
