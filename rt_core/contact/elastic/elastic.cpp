@@ -31,6 +31,10 @@ constexpr std::int32_t kSolvesOfFriction = 2;
 // Of lines the tangents' forces after a short step do, too: a thousandth of the force.
 constexpr Real kEnoughToSlip_m = 1e-9;
 
+// Of a solve that is so far off the energy of the pairs may have no least: their second order, cubic in the forces, is
+// told up to those of the last tick. Without it there is one.
+constexpr Real kNoAnswer_m = 1e-4;
+
 // What the places ask of the modes, in tip laws evaluated: two of them, and sums over numbers and modes.
 constexpr std::int32_t kPlaceLaws = 5;
 // A line's law, in tip laws.
@@ -44,11 +48,17 @@ std::int32_t laws_in(const ElasticLoad& load, std::int32_t tips) PALPATE_RT {
 }
 
 // Shifts and forces of the regions; of several, where another solve may follow, as exactly as to tell who slips.
-RegionSolution solve_forces(const ElasticLoad& load, std::int32_t laws, Scratch& scratch, bool is_last,
+RegionSolution solve_forces(ElasticLoad& load, std::int32_t laws, Scratch& scratch, bool is_last,
                             Real* force_N) PALPATE_RT {
   RegionSolution result;
   if (load.n > 1) {
-    result = solve_regions(load, load.n, scratch.system, is_last ? ElasticLoad::kEnough_m : kEnoughToSlip_m, !is_last);
+    const Real enough_m = is_last ? ElasticLoad::kEnough_m : kEnoughToSlip_m;
+    result = solve_regions(load, load.n, scratch.system, enough_m, !is_last);
+    if (!(result.residual_m <= kNoAnswer_m)) {
+      scratch.work.tip_laws += count_solution(result, load.n, laws, scratch.work);
+      load.pair.drop_second_order(load.n);
+      result = solve_regions(load, load.n, scratch.system, enough_m, !is_last);
+    }
   } else {
     const TravelResult alone = solve_travel(load.region[0], load.shift_alone_m(0));
     scratch.work.tip_laws += alone.evaluations * laws;
@@ -318,13 +328,13 @@ void add_most_work(const Model& model, const SceneSizes& n, Work& work) noexcept
   const std::int32_t place = (3 * (kFootWalk + 2) + 6) * terms(soft) + kMaxTurn + kSlideWork;
   add_most_points(model, n, work);
   work.queries += 2 * n.points;  // a capsule asks three times
-  add_most_regions(n, kSolvesOfFriction * TipLaws::kIterations, work);
+  add_most_regions(n, 2 * kSolvesOfFriction * TipLaws::kIterations, work);
   const bool in_parts = touches_in_parts(model);
   work.shown += n.points * (2 * place + terms(soft) + 2 * kPushTerms +
                             (in_parts ? kMostPartLooks * kPartLookTerms + kPartVisitTerms : 0));
   work.rubbed += in_parts ? 2 * kLandings : 0;
   work.soft_pairs += soft_work(pair);
-  work.tip_laws += kLineLaws * kSolvesOfFriction *
+  work.tip_laws += 2 * kLineLaws * kSolvesOfFriction *
                        (kSeriesIterations + 1 + TipLaws::kIterations * (kStepHalvings + 1)) * n.contacts +
                    kPlaceLaws * n.regions;
   work.linearised += kSolvesOfFriction * n.regions;

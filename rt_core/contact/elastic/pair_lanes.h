@@ -37,6 +37,14 @@ struct PairLanes {
       store(own + b, o);
     }
   }
+  void drop_second_order(std::int32_t n) PALPATE_RT {
+    for (std::int32_t j = 0; j < n; ++j) {  // bound: kMaxRegions^2 / 4
+      for (std::int32_t b = 0; b < n; b += kRegionLanes) {
+        store(h_m_per_N2[j] + b, Double4{});
+        store(h_across_m_per_N2[j] + b, Double4{});
+      }
+    }
+  }
   // dW/dF, and d2W/dF2 on the diagonal.
   void slopes(std::int32_t n, const Real* force_N, Real* slope, Real* bend) const PALPATE_RT {
     Real half_square[kMaxRegions];
