@@ -206,8 +206,8 @@ struct BvhNode {
 // Convex piece of the tool: a core shape (tool frame) rounded by a margin, as in "sphere = point + radius".
 struct ToolPiece {
   Pose pose_tool;           // piece frame in the tool frame; axis of revolution = piece z
-  double half_extent_m[3];  // core: capsule (-, -, half length); cylinder, cone (radius, radius, half length); box half
-                            // sides
+  double half_extent_m[3];  // core: capsule (what its ends leave to a solid's edges, of 1; half length); cylinder, cone
+                            // (radius, radius, half length); box half sides; a solid's plate (half sides, 0)
   double margin_m;          // rounding radius added to the core
   double bounding_radius_m;  // of core and margin, about pose_tool.position_m
   PieceShape shape;

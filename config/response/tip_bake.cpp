@@ -66,6 +66,7 @@ void check_stiffness(const TipLaw& law, const LocalLaw& local) {
 }  // namespace
 
 Indenter tip_indenter(const PieceDesc& piece) {
+  if (piece.is_of_solid && piece.shape == PieceShape::kBox) return {TipProfile::kFlat, piece.radius_m, 0};
   const PieceCard& card = card_of(piece.shape);
   return card.tip != nullptr ? card.tip(piece) : Indenter{TipProfile::kSphere, piece.radius_m, 0};
 }
@@ -131,8 +132,7 @@ class TipReader {
     tip.indenter = tip_indenter(piece_);
     const double angle = scene_.tip.half_angle_rad;
     if (tip.indenter.profile == TipProfile::kSphere) tip.indenter = sphere();
-    if (tip.indenter.profile == TipProfile::kFlat)
-      tip.indenter.radius_m = auto_or(scene_.tip.radius_m, piece_.radius_m);
+    if (tip.indenter.profile == TipProfile::kFlat) tip.indenter.radius_m = auto_or(stated_radius_m(), piece_.radius_m);
     if (tip.indenter.profile == TipProfile::kCone && !is_auto(angle))
       tip.indenter.tan_half_angle = math::sin(angle) / math::cos(angle);
     if (tip.indenter.profile == TipProfile::kSphere && !(tip.depth_max_m <= tip.indenter.radius_m))
@@ -149,6 +149,7 @@ class TipReader {
   [[noreturn]] void fail(const std::string& key, const std::string& what) const {
     throw ConfigError(scene_.source.where(key) + ": " + what);
   }
+  double stated_radius_m() const { return piece_.is_of_solid ? kAuto : scene_.tip.radius_m; }
   static double auto_or(double stated, double otherwise) { return is_auto(stated) ? otherwise : stated; }
 
   // Curvatures 1/m of the body where it is touched: stated, or those of its shape.
@@ -181,14 +182,16 @@ class TipReader {
   Indenter sphere() const {
     double first = 0, second = 0;
     body_curvature(first, second);
-    const double radius = auto_or(scene_.tip.radius_m, piece_.radius_m);
+    const double radius = auto_or(stated_radius_m(), piece_.radius_m);
     const double a = 1 / radius + first, b = 1 / radius + second;
     if (!(a > 0 && b > 0))
       fail(
           "contact.tip.body_radius_1_mm",
           "the hollow of the body is tighter than the sphere: they conform, and no contact law of one point holds; use "
           "a smaller sphere or a tabulated response");
-    return {scene_.tip.sphere == SphereLaw::kExact ? TipProfile::kSphere : TipProfile::kParabola,
+    // Beyond an edge's radius there is no circle left, only the edge.
+    const bool is_within = !piece_.is_of_solid || scene_.contact.max_depth_m <= radius;
+    return {scene_.tip.sphere == SphereLaw::kExact && is_within ? TipProfile::kSphere : TipProfile::kParabola,
             elliptic_radius_m(a, b), 0};
   }
 
@@ -263,6 +266,17 @@ std::string describe_law(const TipDesc& tip, const TipLaw& law) {
   return text;
 }
 
+// What boxes and hulls were taken apart into.
+void describe_solids(const std::vector<PieceDesc>& pieces, ResponseReport& report) {
+  const auto count = [&](PieceShape shape) {
+    return std::to_string(
+        std::ranges::count_if(pieces, [&](const PieceDesc& p) { return p.is_of_solid && p.shape == shape; }));
+  };
+  if (std::ranges::none_of(pieces, &PieceDesc::is_of_solid)) return;
+  report.tip.push_back("boxes and hulls touch with " + count(PieceShape::kCapsule) + " edges, as lines, and " +
+                       count(PieceShape::kBox) + " faces, as flat tips");
+}
+
 }  // namespace
 
 void bake_response(const SceneDesc& scene, ImageContents& image, ResponseReport& report,
@@ -299,9 +313,11 @@ void bake_response(const SceneDesc& scene, ImageContents& image, ResponseReport&
     } catch (const ConfigError& error) {
       throw ConfigError(scene.source.where("contact") + ": " + error.what());
     }
+    if (pieces[i].is_of_solid) continue;
     report.tip.push_back(line);
     report.tip.push_back(describe_law(tips.back(), image.tip_law.back()));
   }
+  describe_solids(pieces, report);
   bake_pairs(scene, tips, image, report);
 }
 

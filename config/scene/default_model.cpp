@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "config/scene/config_error.h"
+#include "config/tool/rounded_solid.h"
 
 namespace palpate {
 
@@ -18,6 +19,7 @@ void complete(SceneDesc& scene) {
   if (scene.contact.backend == Backend::kElastic) {
     if (!scene.source.has("contact.law")) scene.contact.law = ContactLaw::kTool;
     if (!scene.source.has("hand.points_per_part")) scene.hand.points_per_part = 1;
+    take_apart_solids(scene);
   }
   // Whole tips have no points' springs: of the laws they take, the default is the one without a constant to choose.
   if (!scene.source.has("friction.law") && scene.contact.backend != Backend::kNodal && is_tip_law(scene.contact.law))
@@ -38,8 +40,10 @@ bool leaves_error_open(const SceneDesc& scene) {
          std::ranges::none_of(scene.source.line, [](const auto& key) { return key.first.starts_with("body.elastic"); });
 }
 
-bool takes_every_key(const SceneDesc& scene) {
+// The scene with what its method brings, if that takes all that it states.
+bool takes_every_key(SceneDesc& scene) {
   try {
+    complete(scene);
     check_scene(scene);
     check_effects(scene);
     return true;
@@ -52,7 +56,6 @@ bool try_elastic(SceneDesc& scene) {
   if (scene.articulation != Articulation::kRigid) return false;
   SceneDesc elastic = scene;
   elastic.contact.backend = Backend::kElastic;
-  complete(elastic);
   if (!takes_every_key(elastic)) return false;
   elastic.default_model = std::string("an elastic body, since ") + kModulus +
                           " is stated and no law of contact is; contact.backend or contact.law says otherwise";

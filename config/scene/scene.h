@@ -211,6 +211,10 @@ struct PieceDesc {
   std::int32_t hand = 1;   // 2: of the tool in the second hand, device.holds = "two_tools"
   std::string table_file;  // contact.law = "table": the presses made with this tip; empty: the scene's
   Vec3 slide_m;            // gripper: how far it has moved when the gripper is open; described where it is when closed
+  // Of a box or hull that was taken apart (config/tool/rounded_solid.h): a capsule along an edge, with what its lower
+  // and upper end leave to the other edges there, or a box without thickness on a face, a flat tip of radius_m.
+  bool is_of_solid = false;
+  double end_left[2] = {0, 0};
 };
 
 // Of thumb, index, middle, ring and little finger.

@@ -158,8 +158,13 @@ void check_tips(const SceneDesc& scene) {
   for (std::size_t i = 0; i < scene.piece.size(); ++i) {
     const PieceDesc& piece = scene.piece[i];
     const std::string label = "tool.piece[" + std::to_string(i) + "]";
-    if (piece.points == 0) continue;
+    if (piece.points == 0 || piece.is_of_solid) continue;
     const PieceCard& card = card_of(piece.shape);
+    if (scene.contact.backend == Backend::kElastic &&
+        (piece.shape == PieceShape::kBox || piece.shape == PieceShape::kHull))
+      fail(scene, label + ".points",
+           std::to_string(piece.points) + "; an elastic body is touched by all of a " +
+               std::string(word_of(piece.shape)) + ": remove it, or set points = 0 where it does not touch");
     if (card.tip == nullptr)
       fail(scene, label + ".shape",
            "a " + std::string(word_of(piece.shape)) + " has no tip law; allowed " +
@@ -421,7 +426,7 @@ void check_tool(const SceneDesc& scene) {
   for (std::int32_t i = 0; i < count; ++i) {
     const std::string label = "tool.piece[" + std::to_string(i) + "]";
     const PieceDesc& piece = scene.piece[static_cast<std::size_t>(i)];
-    check_piece(scene, piece, label);
+    if (!piece.is_of_solid) check_piece(scene, piece, label);
     points += piece.points;
   }
   if (points < 1 || points > kMaxToolPoints)

@@ -242,8 +242,8 @@ const KeySpec kPiece[] = {
                                          "it"),
     integer<&PieceDesc::points>(
         "points", 0, kMaxToolPoints,
-        "most tool points to spread; each costs about 800 instructions a tick; sphere: 1; box: 8 or more; "
-        "0: never touches"),
+        "most tool points to spread; each costs about 800 instructions a tick; sphere: 1; box: 8 or more, with "
+        "contact.backend = \"elastic\" left out; 0: never touches"),
     text<&PieceDesc::table_file>("table_file", 4096, "its own presses, instead of contact.table.file"),
     integer<&PieceDesc::hand>("hand", 1, 2, "with device.holds = \"two_tools\": the hand that holds the piece"),
     integer<&PieceDesc::part>("part", 0, 1 << 20, "label in recordings"),

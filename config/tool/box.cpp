@@ -32,6 +32,7 @@ double reach_m(const PieceCore& core) {
 
 // The surface of the finest lattice with at most `count` points, refined where its step is longest.
 std::vector<Vec3> points(const PieceCore& core, std::int32_t count) {
+  if (count == 1) return {Vec3{}};  // of a plate (rounded_solid.h)
   std::array<std::int32_t, 3> n{2, 2, 2};
   const auto surface = [](const std::array<std::int32_t, 3>& m) {
     return m[0] * m[1] * m[2] - std::max(0, m[0] - 2) * std::max(0, m[1] - 2) * std::max(0, m[2] - 2);

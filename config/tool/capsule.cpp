@@ -16,7 +16,8 @@ Refusal check(const PieceDesc& piece) {
 }
 
 PieceCore core(const PieceDesc& piece) {
-  return {piece.shape, piece.touches, {0, 0, std::max(0.0, 0.5 * piece.length_m - piece.radius_m)}, piece.radius_m, {}};
+  const double half = std::max(0.0, 0.5 * piece.length_m - piece.radius_m);
+  return {piece.shape, piece.touches, {piece.end_left[0], piece.end_left[1], half}, piece.radius_m, {}};
 }
 double reach_m(const PieceCore& core) { return core.half_extent_m[2]; }
 

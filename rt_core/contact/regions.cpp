@@ -245,7 +245,8 @@ void find_clusters(const Model& model, const Scratch& scratch, Clusters& out) PA
   sort_by_row(scratch, out);
   Run run[kMaxContacts];
   const std::int32_t runs = find_runs(model, scratch, out, run);
-  const double near = model.params.cluster_distance_m, far = kSplitFactor * near;
+  // Of a solid's edges that meet at a corner each is a region, too, wherever they touch.
+  const double near = model.params.elastic_soft > 0 ? 0.0 : model.params.cluster_distance_m, far = kSplitFactor * near;
   std::int32_t set[kMaxContacts];  // lowest run of each run's set
   std::int32_t sets = 0;
   for (std::int32_t r = 0; r < runs; ++r) {  // bound: kMaxContacts

@@ -124,7 +124,11 @@ TipDent dent_of(const Model& model, const ElasticRow& row, double depth_m) {
   const RestFoot foot = rest_foot(model, row.foot);
   dent.foot_m = foot.place_m;
   dent.rest = {-foot.normal, turned(dent.now.along, inward, -foot.normal)};
-  if (row.tip.is_ball()) return dent;
+  if (row.tip.is_plate()) {
+    const double crest = std::max(row.curvature_1_per_m, 1e-9);
+    dent.across_m = dent.along_m = std::min(std::sqrt(depth_m / crest), row.tip.flat_m);
+  }
+  if (!row.tip.is_line()) return dent;
   // As far as it is straight from where its force acts, and the body bends away.
   const double straight = dent.across_m + (1 - std::abs(row.tip.along)) * norm(row.tip.half_axis_w);
   const double longest = std::min(straight, kLongest * dent.across_m);

@@ -137,7 +137,7 @@ bool is_part(const Model& model, std::int32_t triangle) PALPATE_RT {
 EdgePlace come_along(const EdgePlace& on, CarriedTriangle& last, ElasticRow& row) PALPATE_RT {
   RoundTip& tip = row.tip;
   const Real square = squared_norm(on.along_w);
-  if (tip.is_ball() || !(square > 0)) return on;
+  if (!tip.is_line() || !(square > 0)) return on;
   const Vec3 axis = unit_or(tip.half_axis_w, {}), edge = (1.0 / square) * on.along_w;
   const Real across = max_of(1 - dot(axis, edge) * dot(axis, on.along_w), kLeastAcross);
   const Real half = norm(tip.half_axis_w), step = dot(on.place_w - row.placed_w, axis) / across;

@@ -268,10 +268,10 @@ void turn_on_edge(Count soft, const EdgePlace& on, const Double4 (&corner)[3][kM
     for (std::int32_t b = a; b < soft; ++b, ++pair) row.turn[pair] -= bend * dot(across[a], across[b]);
 }
 
-// How the height bends along a capsule's axis, at height t above a surface of curvature k by k / (1 + k t); none below
+// How the height bends along an axis, at height t above a surface of curvature k by k / (1 + k t); none below
 // zero.
-Real height_bend(const foot::Corners& corners, const ElasticRow& row) PALPATE_RT {
-  const Vec3 n = row.foot.normal_w, axis = row.tip.half_axis_w;
+Real height_bend(const foot::Corners& corners, const ElasticRow& row, Vec3 axis) PALPATE_RT {
+  const Vec3 n = row.foot.normal_w;
   Vec3 mixed;
   for (int k = 0; k < 3; ++k) mixed += row.foot.weight[k] * corners.u[k];  // bound: 3
   Real turned = 0;
@@ -280,8 +280,14 @@ Real height_bend(const foot::Corners& corners, const ElasticRow& row) PALPATE_RT
   return max_of(turned / (norm(mixed) * squared_norm(axis)), 0.0);
 }
 
-// The axis's own lean lowers a capsule's line towards the surface's tangent (line_law.h).
+// How much sooner than where it stands a capsule that leans may touch: the axis's own lean lowers its line towards the
+// surface's tangent (line_law.h), and a solid's edge or plate may come down on its end.
 Real lead_of(const RoundTip& tip, Vec3 normal_w) PALPATE_RT {
+  if (tip.is_of_solid()) {
+    const Real along = dot(normal_w, tip.half_axis_w), across = dot(normal_w, tip.half_across_w);
+    return abs_of(along) + along * tip.along + abs_of(across) + across * tip.across;
+  }
+  if (!tip.is_of_part()) return 0;
   const Real lean = dot(normal_w, unit_or(tip.half_axis_w, {}));
   return 0.5 * tip.margin_m * lean * lean;
 }
@@ -317,8 +323,8 @@ void CarriedSurface::place(const RoundTip& tip, std::int32_t triangle, Vec3 near
   if (!found && on.edge < 0 && !place_on_facet(centre_w, triangle, row)) return;
   const FacetSag sag = found ? smooth_sag(model, last, row.foot) : FacetSag{};
   row.travel_m = on.is_behind ? -kHuge : tip.margin_m - row.foot.height_m;
-  row.leads_m = tip.is_of_part() && found ? lead_of(tip, row.foot.normal_w) : 0.0;
-  if (!(row.travel_m + row.leads_m + nearer_m > 0)) {
+  row.leads_m = found || tip.is_of_solid() ? lead_of(tip, row.foot.normal_w) : 0.0;
+  if (!(row.travel_m + row.leads_m + nearer_m > 0) || tip.stands_on_end(row.foot.normal_w)) {
     // Newton's steps to a foot that is too far; with the terms below they count themselves (24,962 instructions against
     // 24,522 without, half_shell, 2026-11-23).
     *shown += 2 * terms(model.params.elastic_soft);
@@ -334,13 +340,18 @@ void CarriedSurface::place(const RoundTip& tip, std::int32_t triangle, Vec3 near
         {last.vertex[0], n[0], inverse[0]}, {last.vertex[1], n[1], inverse[1]}, {last.vertex[2], n[2], inverse[2]}};
     const Real below = travel_slope(turns, sag, row, last, slopes.travel);
     show_place_numbers(model, row);
-    if (!tip.is_ball()) step_m = stand_on_line(model, box, height_bend(last.corners, row), force_N, row);
+    if (tip.is_line())
+      step_m = stand_on_line(model, box, height_bend(last.corners, row, tip.half_axis_w), force_N, row);
+    if (tip.is_plate()) {
+      const Vec3 along_w = tip.half_axis_w, across_w = tip.half_across_w;
+      stand_on_plate({height_bend(last.corners, row, along_w), height_bend(last.corners, row, across_w)}, force_N, row);
+    }
     if (row.has_slide) slide_slopes(turns, row, last, below, slopes.slide);
   } else {
     show_place_numbers(model, row);
     row.rise = row.foot.normal_w;
     slopes.travel = facet_slope(row);
-    if (!tip.is_ball()) stand_on_line(model, box, 0, force_N, row);
+    if (tip.is_line()) stand_on_line(model, box, 0, force_N, row);
   }
   with_mode_count(model.params.elastic_soft, [&](auto n) PALPATE_RT {
     Double4 corner[3][kMaxSoftModes];
@@ -350,10 +361,10 @@ void CarriedSurface::place(const RoundTip& tip, std::int32_t triangle, Vec3 near
       show_modes<false>(model, n, y, slopes, row, corner);
     if (on.edge >= 0) turn_on_edge(n, on, corner, row);
     if (!found) return;
-    if (tip.is_ball())
-      turn_with_foot(n, row, corner);
-    else
+    if (tip.is_line())
       turn_with_line(n, step_m, row, corner);
+    else
+      turn_with_foot(n, row, corner);
   });
   *shown += (found ? 8 : 6) * terms(model.params.elastic_soft) + (tip.is_ball() ? 0 : kSlideWork);
 }

@@ -244,6 +244,13 @@ bool has_drawn_shapes(const Model& model) noexcept {
          static_cast<float>(static_cast<std::int32_t>(count)) == count;
 }
 
+// Of solids (config/tool/rounded_solid.h): plates have two axes and a flat tip, edges leave less than all.
+bool is_sound(const ToolPiece& piece, const TipLaw& law) noexcept {
+  const double* half = piece.half_extent_m;
+  if (piece.shape == PieceShape::kBox) return half[0] > 1e-6 && half[1] > 1e-6 && law.half_power == 2;
+  return piece.shape != PieceShape::kCapsule || (half[0] >= 0 && half[0] < 1 && half[1] >= 0 && half[1] < 1);
+}
+
 // A row for every point: one of a piece, or one for each part of the surface.
 ImageResult check_points(const Model& model) noexcept {
   if (model.tool_point.size() > static_cast<std::size_t>(kMaxPieces)) return broken("n_tool_point", 0);
@@ -252,6 +259,8 @@ ImageResult check_points(const Model& model) noexcept {
     const auto piece = static_cast<std::size_t>(point.piece);
     if (point.begins_at != 0 && !in_range(point.begins_at, model.triangle.size()))
       return broken("tool_point.begins_at", i);
+    if (piece < model.tip_law.size() && !is_sound(model.piece[piece], model.tip_law[piece]))
+      return broken("piece.half_extent_m", piece);
     if (point.begins_at == 0 && model.piece[piece].point_count > 1) return not_together("piece.tip_points", piece);
   }
   return {};

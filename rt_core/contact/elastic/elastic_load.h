@@ -76,12 +76,12 @@ struct ElasticLoad : TipLaws {
     const LawPoint point = tip_at(tip[i], e);
     const Real energy = tip_energy_J(tip[i], e), f = point.force_N;
     Vec3 aside = f * (stands.rise - stands.foot.normal_w + pair_aside[r]);
-    if (!law[i].is_line) aside += place_force(r, i, e, energy, f).along(stands);
+    if (!law[i].is_line && !law[i].is_plate) aside += place_force(r, i, e, energy, f).along(stands);
     // Never steeper than 45 degrees: far beyond the range the second power of the force is no physics.
     const Real length = norm(aside), share = length > f ? f / length : 1.0;
     // Where the second order goes on by its tangent, and off the smooth surface, no press of the bake has been.
-    const bool is_beyond =
-        e > tip[i].local.tip->depth_max_m || f > own[r].far.force_max_N || stands.foot.state != FootState::kFound;
+    const Real range_m = law[i].is_plate ? stands.tip.depth_max_m : tip[i].local.tip->depth_max_m;
+    const bool is_beyond = e > range_m || f > own[r].far.force_max_N || stands.foot.state != FootState::kFound;
     RowLoad out{point, energy, stands.tip.centre_w(), share * aside, is_beyond};
     if (law[i].is_line) lean(i, e, out);
     return out;

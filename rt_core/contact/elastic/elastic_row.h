@@ -25,26 +25,47 @@ struct RoundTip {
   Real modulus_Pa = 0, depth_max_m = 0;  // of a capsule's law: E*
   Real along = 0;                        // where on the axis it touches, -1 to 1
   std::int32_t begins_at = 0;            // ToolPoint::begins_at
+  // Of a solid (config/tool/rounded_solid.h): what its ends leave to other edges; or a plate, the other half axis, on
+  // both of which a flat tip of flat_m stands where the body meets it.
+  Real leaves[2] = {0, 0};
+  Vec3 half_across_w;
+  Real flat_m = 0, across = 0;
 
   bool is_of_part() const PALPATE_RT { return begins_at > 0; }
-  Vec3 centre_w() const PALPATE_RT { return middle_w + along * half_axis_w; }
+  bool is_plate() const PALPATE_RT { return flat_m > 0; }
+  bool is_edge() const PALPATE_RT { return leaves[0] > 0 || leaves[1] > 0; }
+  bool is_of_solid() const PALPATE_RT { return is_plate() || is_edge(); }
+  // Whether an edge stands on its end, where others have all of the ball.
+  bool stands_on_end(Vec3 normal_w) const PALPATE_RT {
+    const Real lean = dot(normal_w, half_axis_w), level = (1 - LineLaw::kStands) * squared_norm(half_axis_w);
+    return leaves[lean < 0 ? 1 : 0] > 0 && lean * lean > level;
+  }
+  // A plate that the body leans away from by 60 degrees, below which it stands back (line_place.h).
+  bool turns_away(Vec3 normal_w) const PALPATE_RT {
+    const Vec3 out_w = cross(half_axis_w, half_across_w);
+    const Real facing = dot(normal_w, out_w);
+    return is_plate() && !(facing < 0 && 4 * facing * facing > squared_norm(out_w));
+  }
+  Vec3 centre_w() const PALPATE_RT { return middle_w + along * half_axis_w + across * half_across_w; }
   bool is_ball() const PALPATE_RT { return !(squared_norm(half_axis_w) > 0); }
+  bool is_line() const PALPATE_RT { return squared_norm(half_axis_w) > 0 && !is_plate(); }
   void come_near(Vec3 w) PALPATE_RT {
     if (!is_ball()) along = clamp_to(dot(w - middle_w, half_axis_w) / squared_norm(half_axis_w), -1.0, 1.0);
+    if (is_plate()) across = clamp_to(dot(w - middle_w, half_across_w) / squared_norm(half_across_w), -1.0, 1.0);
   }
 };
 
 struct ElasticRow {
-  SmoothFoot foot;                       // on the carried surface
-  RoundTip tip;                          // where the next tick takes it
-  Vec3 placed_w;                         // its centre here
-  LineLaw::Shape line;                   // of a capsule, where the next tick takes it
-  Real arm_m;                            // and LineLaw::Lean there
-  LineLaw::Point told;                   // at the depth kTold, whatever leans
-  Real dent_m;                           // how deep about the line is under the force that it had; 0: had none
-  Real travel_m;                         // how far the carried surface and the tip overlap; < 0 apart
-  Real leads_m;                          // of a part: how much sooner than that a capsule touches that leans; else 0
-  Real pull[kMaxSoftModes];              // d travel / d p
+  SmoothFoot foot;           // on the carried surface
+  RoundTip tip;              // where the next tick takes it
+  Vec3 placed_w;             // its centre here
+  LineLaw::Shape line;       // of a capsule, where the next tick takes it
+  Real arm_m;                // and LineLaw::Lean there
+  LineLaw::Point told;       // at the depth kTold, whatever leans
+  Real dent_m;               // how deep about the line is under the force that it had; 0: had none
+  Real travel_m;             // how far the carried surface and the tip overlap; < 0 apart
+  Real leads_m;              // of a part or solid: how much sooner than that a capsule touches that leans; else 0
+  Real pull[kMaxSoftModes];  // d travel / d p
   Real turn[elastic_layout::kMaxPairs];  // d2 travel / d p2, with the foot's slide
   Vec3 sweep_w[kMaxSoftModes];           // of the material at the foot, by each amplitude
   // Of a ball or flat tip that had a force, on the smooth surface or an edge: the foot's area coordinates 1 and 2 by

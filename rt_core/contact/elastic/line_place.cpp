@@ -13,6 +13,8 @@ constexpr Real kMostSlide = 0.5;  // of the half axis, in one step
 // A place of a part stands on it, whatever the line that leans does beyond: on the rim it would have no side.
 constexpr Real kInset_m = 1e-5;
 constexpr Real kSkewed = 1e-3;  // an axis that leaves a side of the body's box slower than so does not
+// A plate is the flat tip of one that lies on it: from a lean of 30 degrees on it stands back, by two radii at 60.
+constexpr Real kLeansAway = 0.25, kStandsBack = 4;
 // Beyond the body an end is that of the body: steeper than round by so much for every radius that is cut off.
 constexpr Real kSteeper = 10, kSteepest = 10;
 
@@ -74,16 +76,20 @@ Real stand_on_line(const Model& model, const Box& box, Real bend_1_per_m, Real f
   const Real along = bend / (1.0 - bend * clamp_to(row.foot.height_m, 0.0, radius));
   const Reach reach = reach_of(model, box, axis, radius, row);
   LineLaw::Shape& line = row.line;
-  line = {radius, (1 + before) * half, (1 - before) * half, 1, 1, lean, along, 2 * row.curvature_1_per_m - along,
-          false};
+  line = {
+      radius, (1 + before) * half, (1 - before) * half, 1, 1, lean, along, 2 * row.curvature_1_per_m - along, false, 0,
+      0};
   // The line stands beside the foot where it leans.
   line.left_end = cut(reach.left_m - radius * lean, radius, line.left_m);
   line.right_end = cut(reach.right_m + radius * lean, radius, line.right_m);
+  // An end that the body leaves is no corner of its own.
+  line.left_leaves = row.tip.leaves[0] * clamp_to(2 - line.left_end, 0.0, 1.0);
+  line.right_leaves = row.tip.leaves[1] * clamp_to(2 - line.right_end, 0.0, 1.0);
   line.right_m = max_of(line.right_m, -line.left_m);
   // On a part's edge that it crosses: a ball.
   if (row.tip.is_of_part() && row.foot.state == FootState::kEdge) line.left_m = line.right_m = line.lean = 0;
   const LineLaw law(line, row.tip.modulus_Pa * row.modulus, kHuge);
-  if (row.tip.is_of_part()) row.leads_m = max_of(-law.touches_at_m(), 0.0);
+  if (row.tip.is_of_part() || row.tip.is_edge()) row.leads_m = max_of(-law.touches_at_m(), 0.0);
   const Real told_m = kTold * row.tip.depth_max_m;
   row.told = law.at(told_m + law.touches_at_m());
   const bool had = force_N > 0 && row.told.force_N > 0;
@@ -104,6 +110,27 @@ Real stand_on_line(const Model& model, const Box& box, Real bend_1_per_m, Real f
   line.left_m += step;
   line.right_m -= step;
   return step;
+}
+
+// The plate's tip is to be where it is deepest, on a tangent paraboloid; the plate itself, tilted on what is flat,
+// bears beside its middle by 2/3 b^2 tilt / e, as a round punch does, which is a paraboloid of its own.
+void stand_on_plate(PlateBends bend, Real force_N, ElasticRow& row) PALPATE_RT {
+  RoundTip& tip = row.tip;
+  const Real square = tip.flat_m * tip.flat_m, dent = force_N / (2 * tip.modulus_Pa * row.modulus * tip.flat_m);
+  const Vec3 out = unit_or(cross(tip.half_axis_w, tip.half_across_w), {});
+  const Real own = 1.5 * max_of(dent, kLeastDepth * tip.flat_m) / square;
+  const auto go = [&](Vec3 half_w, Real most_1_per_m, Real& at) PALPATE_RT {
+    const Real half = norm(half_w), lean = -dot(row.rise, half_w) / half, from = at * half;
+    const Real bends = min_of(most_1_per_m, kMostBend / tip.margin_m);
+    const Real to = clamp_to((lean + bends * from) / (bends + own), -half, half), step = to - from;
+    row.travel_m += step * (lean - 0.5 * bends * step) - 0.5 * own * to * to;
+    at = to / half;
+  };
+  const Real lean2 = 1 - dot(row.rise, out) * dot(row.rise, out);
+  row.leads_m = 0;
+  row.travel_m -= kStandsBack * tip.flat_m * max_of(lean2 - kLeansAway, 0.0);
+  go(tip.half_axis_w, bend.along_1_per_m, tip.along);
+  go(tip.half_across_w, bend.across_1_per_m, tip.across);
 }
 
 }  // namespace palpate

@@ -10,4 +10,10 @@ namespace palpate {
 // how far it went.
 Real stand_on_line(const Model& model, const Box& box, Real bend_1_per_m, Real force_N, ElasticRow& row) PALPATE_RT;
 
+// Along both of a plate's axes.
+struct PlateBends {
+  Real along_1_per_m, across_1_per_m;  // of the height
+};
+void stand_on_plate(PlateBends bend, Real force_N, ElasticRow& row) PALPATE_RT;
+
 }  // namespace palpate

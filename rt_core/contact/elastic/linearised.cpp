@@ -419,6 +419,7 @@ void Linearised<Count>::add_tip(Contact& contact, std::int32_t at) PALPATE_RT {
   tip.scale = load_.law[at].scale;
   tip.place = &load_.law[at].terms;
   if (load_.law[at].is_line) tip.become(load_.law[at].line);
+  if (load_.law[at].is_plate) tip.local = {&load_.law[at].plate, nullptr};
   load_.placed[at] = &row;
   contact.position_w = row.foot.foot_w;
   contact.normal_w = row.foot.normal_w;

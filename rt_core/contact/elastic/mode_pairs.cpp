@@ -34,6 +34,7 @@ void ModePairs::stand(const Model& model, const ElasticRow* const* row, std::int
       normal_[i][r] = up[i];
     }
     core_m_[r] = NearField::kCore * one.tip.margin_m;
+    solid_m_[r] = one.tip.is_of_solid() ? NearField::kSolid * one.tip.margin_m : 0.0;
     cut_1_per_m_[r] = field_.cut_1_per_m(r < n ? by_modes_m_per_N_[r][r] : 0.0, one.c_m_per_N);
   }
 }
@@ -49,9 +50,14 @@ void ModePairs::near(std::int32_t r, std::int32_t b, const Double4& shared) PALP
   const Double4 cut = splat4(0.5) * (splat4(cut_1_per_m_[r]) + load4(cut_1_per_m_ + b));
   const Double4 length = square_root(square), by_cut = length * cut, root = square_root(by_cut * by_cut + splat4(1.0));
   const Double4 value = splat4(field_.scale_m2_per_N) * part / length * (splat4(1.0) - by_cut / root);
-  store(linear_m_per_N[r] + b, shared + value);
+  // Of two parts of a solid 1 / r becomes r / (r^2 + d^2).
+  const Double4 own = splat4(solid_m_[r]) * load4(solid_m_ + b) / square,
+                apart_share = splat4(1.0) / (splat4(1.0) + own);
+  const Double4 near = splat4(field_.scale_m2_per_N) * part / length;
+  store(linear_m_per_N[r] + b, shared + (value + near * (apart_share - splat4(1.0))));
   // K = s / r - s c / sqrt(r^2 c^2 + 1): dK/dr = -K / r (1 + x (x + root) / root^2) with x = r c
-  store(fall_[r] + b, value / square * (splat4(1.0) + by_cut * (by_cut + root) / (root * root)));
+  const Double4 less = near * (apart_share * apart_share * (splat4(1.0) - own) - splat4(1.0));
+  store(fall_[r] + b, value / square * (splat4(1.0) + by_cut * (by_cut + root) / (root * root)) + less / square);
 }
 
 void ModePairs::link(const Model& model, ElasticRow* const* row, std::int32_t n) PALPATE_RT {

@@ -35,6 +35,7 @@ struct ModePairs {
   NearField field_{0};
   Real by_modes_m_per_N_[kMaxRegions][kMaxRegions];
   Real foot_[3][kMaxRegions], normal_[3][kMaxRegions], core_m_[kMaxRegions], cut_1_per_m_[kMaxRegions];
+  Real solid_m_[kMaxRegions];            // NearField::kSolid, of parts of solids
   Real fall_[kMaxRegions][kMaxRegions];  // near field's slope over the distance; zero on the diagonal
 };
 

@@ -21,6 +21,9 @@ struct NearField {
   }
   // Two tips at one place: the mean of 1/r over a contact a fifth of their radii wide is finite.
   static constexpr Real kCore = 0.1;  // of the radii
+  // Parts of a solid meet at its corners, where each has a share of one contact, which is all in their own laws: 1 / r
+  // between them is r / (r^2 + d^2), d of the edges' radius. Boundary elements: docs/models_elastic.md.
+  static constexpr Real kSolid = 0.75;
 };
 
 }  // namespace palpate

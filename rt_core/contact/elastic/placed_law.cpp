@@ -64,10 +64,29 @@ void place_line(const TipLaw& law, const ElasticRow& row, PlacedLaw& out) PALPAT
   if (abs_of(out.terms.between_N_per_m25) > 0 || abs_of(out.terms.third_N_per_m3) > 0) out.line.tell_root();
 }
 
+// dF = 2 E* a de (Jaeger 1995), a = sqrt(e / k) on a body of curvature k until the flat tip's. It is narrower towards
+// the face's ends.
+constexpr Real kFlat = 1e-4;  // of the tip's radius: a crest no higher is flat
+void place_plate(const TipLaw& law, const ElasticRow& row, PlacedLaw& out) PALPATE_RT {
+  const RoundTip& tip = row.tip;
+  const Real narrower = (1 - tip.along * tip.along / 6) * (1 - tip.across * tip.across / 6);
+  const Real radius = tip.flat_m * narrower, crest = row.curvature_1_per_m * radius * radius;
+  const Real share = max_of(-row.c_m_per_N, 0.0) * 2 * tip.modulus_Pa * radius * row.modulus;
+  out.scale = row.modulus / (1.0 - min_of(share, kMostOfPunch));
+  out.is_plate = true;
+  out.plate = law;
+  out.plate.coefficient = 2 * tip.modulus_Pa * radius;
+  if (!(crest > kFlat * radius)) return;
+  out.plate.half_power = 3;
+  out.plate.coefficient = 4.0 / 3 * tip.modulus_Pa / square_root(row.curvature_1_per_m);
+  out.plate.depth_max_m = crest;
+}
+
 }  // namespace
 
 void place_law(const TipLaw& law, const ElasticRow& row, PlacedLaw& out) PALPATE_RT {
-  if (!row.tip.is_ball() && law.half_power == 3) return place_line(law, row, out);
+  if (row.tip.is_line() && law.half_power == 3) return place_line(law, row, out);
+  if (row.tip.is_plate()) return place_plate(law, row, out);
   const Real rho = max_of(-row.c_m_per_N, 0.0), c_falls = rho > 0 ? -1.0 : 0.0;
   if (law.half_power == 2) {
     const Real share = rho * law.coefficient * row.modulus, gain = 1.0 / (1.0 - min_of(share, kMostOfPunch));

@@ -14,6 +14,9 @@ struct PlacedLaw {
   // Of a capsule, instead of the tip's law.
   bool is_line = false;
   LineLaw line;
+  // Of a plate, likewise: Hertz' on the body's crest until the contact is as wide as the flat tip, then its tangent.
+  bool is_plate = false;
+  TipLaw plate;
 };
 void place_law(const TipLaw& law, const ElasticRow& row, PlacedLaw& out) PALPATE_RT;
 

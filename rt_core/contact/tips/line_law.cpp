@@ -19,6 +19,19 @@ constexpr Real kPlace = 0.7745966692414834;  // of Gauss' three points, sqrt 0.6
 
 Double4 at_least(const Double4& a, Real b) PALPATE_RT { return a > b ? a : splat4(b); }
 
+// Of spans whose depth is d + rises t + falls t^2, each: int d and int d^2.
+struct Integrals {
+  Double4 first, square;
+  Integrals(const Double4& half, const Double4& middle, const Double4& depth, const Double4& rises,
+            const Double4& falls) PALPATE_RT {
+    // From the middle the depth is d0 + d1 x + d2 x^2, x from -1 to 1.
+    const Double4 bent = falls * middle, d0 = depth + middle * (rises + bent), d1 = half * (rises + 2 * bent);
+    const Double4 d2 = half * half * falls;
+    first = half * (2 * d0 + (2.0 / 3) * d2);
+    square = half * (2 * d0 * d0 + (2.0 / 3) * (d1 * d1 + 2 * d0 * d2) + 0.4 * d2 * d2);
+  }
+};
+
 // use(share, place t, depth there) at Gauss' three places of every span.
 template <class Use>
 void at_gauss_places(const Double4& half, const Double4& middle, const Double4& depth, const Double4& rises,
@@ -43,6 +56,9 @@ LineLaw::LineLaw(const Shape& s, Real modulus_Pa, Real depth_max_m) PALPATE_RT {
   along_ = s.along_1_per_m * s.radius_m;
   across_ = max_of(1 + s.across_1_per_m * s.radius_m, 0.25);
   circle_ = s.is_circle ? kCircle : 0.0;
+  is_shared_ = s.left_leaves > 0 || s.right_leaves > 0;
+  leaves_ = Double4{s.left_leaves > 0 ? 1 - end_share(1 - s.left_leaves, s.lean) : 0.0,
+                    s.right_leaves > 0 ? 1 - end_share(1 - s.right_leaves, s.lean) : 0.0, 0, 0};
   rise_ = 1 + along_;
   tilt_ = rise_ * s.lean;
   lowered_ = 0.5 * rise_ * s.lean * s.lean;
@@ -77,13 +93,20 @@ LineLaw::Spans LineLaw::spans_at(Real e) const PALPATE_RT {
   s.from = Double4{near[0], near[1], left, left};
   s.to = Double4{max_of(far[0], near[0]), max_of(far[1], near[1]), max_of(right, left), left};
   s.depth = Double4{at_end[0], at_end[1], here, 0};
-  const Double4 half = 0.5 * (s.to - s.from), middle = 0.5 * (s.to + s.from);
-  // From the middle of a span the depth is d0 + d1 x + d2 x^2, x from -1 to 1.
-  const Double4 bent = falls_ * middle, d0 = s.depth + middle * (rises_ + bent), d1 = half * (rises_ + 2 * bent);
-  const Double4 d2 = half * half * falls_;
-  s.first = sum(half * (2 * d0 + (2.0 / 3) * d2));
-  s.square = sum(half * (2 * d0 * d0 + (2.0 / 3) * (d1 * d1 + 2 * d0 * d2) + 0.4 * d2 * d2));
-  s.length = 2 * sum(half);
+  const Double4 half = 0.5 * (s.to - s.from);
+  const Integrals all(half, 0.5 * (s.to + s.from), s.depth, rises_, falls_);
+  s.own_first = s.first = sum(all.first);
+  s.own_square = s.square = sum(all.square);
+  s.own_length = s.length = 2 * sum(half);
+  if (is_shared_) {
+    const Double4 from = at_least(inverse_bend_ * (slope_ - root), -0.5 * whole), to = inverse_bend_ * (slope_ + root);
+    s.ball_half = 0.5 * (at_least(to - from, 0.0));
+    s.ball_middle = from + s.ball_half;
+    const Integrals balls(s.ball_half, s.ball_middle, s.depth, rises_, falls_);
+    s.own_first -= sum(leaves_ * balls.first);
+    s.own_square -= sum(leaves_ * balls.square);
+    s.own_length -= 2 * sum(leaves_ * s.ball_half);
+  }
   const Double4 inverse = 1.0 / at_least(root, kLeast);
   const bool straight = s.to[2] > s.from[2];
   // Caps that are met, twice where both roots are beyond the end; sides of a straight part that ends before it.
@@ -103,7 +126,7 @@ LineLaw::Logs LineLaw::logs_of(const Spans& s) const PALPATE_RT {
   l.circle = circle_ * j / (s.first * root);
   const Real less = 1 - l.circle;
   l.left = 1.0 / less;
-  l.energy = inverse * under / (over * kRoot2) * less * j;
+  l.energy = inverse * under / (over * kRoot2) * less * (0.5 * s.own_square);
   l.falls = 0.25 + z1 * (ua - ub);
   l.bends = z2 * (ua - ub) - z1 * z1 * (ua * ua + 2 * kC / under - ub * ub);
   return l;
@@ -113,9 +136,9 @@ bool LineLaw::measure(Real e) const PALPATE_RT {
   if (!(e == measured_at_)) {
     measured_at_ = e;
     spans_ = spans_at(e);
-    if (spans_.first > 0 && spans_.square > 0) logs_ = logs_of(spans_);
+    if (spans_.own_first > 0 && spans_.own_square > 0) logs_ = logs_of(spans_);
   }
-  return spans_.first > 0 && spans_.square > 0;
+  return spans_.own_first > 0 && spans_.own_square > 0;
 }
 
 void LineLaw::keep(Real e_m) const PALPATE_RT {
@@ -126,15 +149,22 @@ void LineLaw::keep(Real e_m) const PALPATE_RT {
   if (!measure(e)) return;
   const Spans& s = spans_;
   const Logs& l = logs_;
-  // ln E = ln C + ln J + ln (1 - X), q = J / I, ln L = 5 ln I - 3 ln J, ln X = ln q - ln L / 2.
+  // ln E = ln C + ln J + ln (1 - X), q = J / I, ln L = 5 ln I - 3 ln J, ln X = ln q - ln L / 2; its own J only in the
+  // second term.
   const Real i1 = 1.0 / s.first, q = 0.5 * s.square * i1, lq = 1.0 / q, li = s.length * i1;
   const Real ratio1 = 5 * li - 3 * lq, q1 = 1 - li * q;             // q': of q
   const Real li1 = s.ends * i1 - li * li, q2 = -li1 * q - li * q1;  // q''
   const Real lq1 = -q1 * lq * lq, ratio2 = 5 * li1 - 3 * lq1;
   const Real x1 = q1 * lq - 0.5 * ratio1, x2 = (q2 - q1 * q1 * lq) * lq - 0.5 * ratio2;
   const Real x = l.circle * l.left;
-  const Real by = -l.falls * ratio1 + lq - x * x1;
-  const Real by2 = -l.falls * ratio2 - l.bends * ratio1 * ratio1 + lq1 - x * (x2 + x1 * x1 * l.left);
+  Real own = lq, own1 = lq1;
+  if (is_shared_) {
+    const Real per_j = 2.0 / s.own_square;
+    own = s.own_first * per_j;
+    own1 = s.own_length * per_j - own * own;
+  }
+  const Real by = -l.falls * ratio1 + own - x * x1;
+  const Real by2 = -l.falls * ratio2 - l.bends * ratio1 * ratio1 + own1 - x * (x2 + x1 * x1 * l.left);
   const Real unit = modulus_Pa_ * radius_m_, force = l.energy * by, tangent = l.energy * (by * by + by2);
   out.tangent_N_per_m = unit * tangent;
   out.force_N = unit * radius_m_ * (force + tangent * beyond);
@@ -158,10 +188,19 @@ LineLaw::Lean LineLaw::lean_at(Real e_m) const PALPATE_RT {
   };
   at_gauss_places(half, middle, s.depth, rises_, falls_, add);
   const Real j = 0.5 * s.square, i1 = 1.0 / s.first, by_i = i1 * sum(half * arm), by_j = sum(half * moment) / j;
-  const Real li = s.length * i1, lq = s.first / j, x = l.circle * l.left;
-  const auto slope = [&](Real of_i, Real of_j)
-                         PALPATE_RT { return of_j - l.falls * (5 * of_i - 3 * of_j) - x * (2.5 * of_j - 3.5 * of_i); };
-  const Real force = slope(li, lq), pressed = slope(by_i, by_j) / force;
+  const Real li = s.length * i1, lq = s.first / j, x = l.circle * l.left, own_j = 0.5 * s.own_square;
+  const auto slope = [&](Real of_i, Real of_j, Real of_own) PALPATE_RT {
+    return of_own - l.falls * (5 * of_i - 3 * of_j) - x * (2.5 * of_j - 3.5 * of_i);
+  };
+  Real own = by_j;
+  if (is_shared_) {
+    Double4 less{};
+    const auto add_ball = [&](Real share, const Double4& t, const Double4& d)
+                              PALPATE_RT { less += share * d * (place + way * t); };
+    at_gauss_places(s.ball_half, s.ball_middle, s.depth, rises_, falls_, add_ball);
+    own = (sum(half * moment) - sum(leaves_ * s.ball_half * less)) / own_j;
+  }
+  const Real force = slope(li, lq, is_shared_ ? s.own_first / own_j : lq), pressed = slope(by_i, by_j, own) / force;
   out.to_pressure_m = radius_m_ * (rise_ * pressed - tilt_);
   const Real spread = sum(half * square) - pressed * (2 * sum(half * arm) - pressed * s.length);
   out.arm_m = radius_m_ * max_of(rise_ * (rise_ * spread * i1 - 1), 0.0);

@@ -16,8 +16,11 @@ namespace palpate {
 // for 1 <= L <= 1e4. X is a circle instead of a parabola. Forces, moment and stiffness are its slopes. Nothing is
 // fitted to boundary elements, beside which the force is at most 2.1 % off for straight halves of 0 to 4 radii,
 // curvatures along to 0.25 / R and depths of 0.02 to 0.3 R, leaning 7 % (2026-11-26, tests/elastic/test_line_law.cpp).
-// The axis's own lean lowers the line towards the surface's tangent: lowered = (1 + k R) R lean^2 / 2, and d leans by
-// (1 + k R) of it, so that one that leans far is the ball at its end, wherever it stands.
+// Of a solid's edge, which meets others at its ends, J in the energy (not in L and X) is less by what it leaves to them
+// of the ball there, as far as that goes beyond the end and back to the edge's middle: each of the edges that meet has
+// one, and together they are to have one. The axis's own lean lowers the line towards the surface's tangent: lowered =
+// (1 + k R) R lean^2 / 2, and d leans by (1 + k R) of it, so that one that leans far is the ball at its end, wherever
+// it stands.
 class LineLaw {
  public:
   // Of how deep it is: so near to a depth its tangent there tells the force within 1e-10 of it.
@@ -28,7 +31,15 @@ class LineLaw {
     Real lean;                           // slope of the depth along the axis
     Real along_1_per_m, across_1_per_m;  // of the body; along not below zero
     bool is_circle;                      // otherwise a parabola
+    // Of a solid's edge: what of the ball at either end other edges of that corner have where the edge does not lean.
+    Real left_leaves = 0, right_leaves = 0;
   };
+  // The share that an edge has of the ball at its end: `level` where it does not lean, and less the nearer it comes to
+  // standing on that end, none within 12 degrees of it, so that such edges need not be looked at.
+  static constexpr Real kStands = 0.04;
+  static Real end_share(Real level, Real lean) PALPATE_RT {
+    return level * max_of(1 - lean * lean - kStands, 0.0) * (1 / (1 - kStands));
+  }
   struct Point {
     Real force_N, tangent_N_per_m, energy_J;
     Real root_force;  // cubic; a place's terms (line_energies) ask for it three times
@@ -65,9 +76,11 @@ class LineLaw {
  private:
   // Where the line is in the surface: lanes of the caps beyond the left and the right end, and the straight part.
   struct Spans {
-    Double4 from, to;                  // caps: outwards from the end; straight: from where the tip stands
-    Double4 depth;                     // at 0 there
-    Real square, first, length, ends;  // 2 J, I, l, dl/de
+    Double4 from, to;                        // caps: outwards from the end; straight: from where the tip stands
+    Double4 depth;                           // at 0 there
+    Real square, first, length, ends;        // 2 J, I, l, dl/de
+    Real own_square, own_first, own_length;  // less what the ends leave of the balls there
+    Double4 ball_half, ball_middle;          // outwards from the end
   };
   // Logarithms' slopes: of C by L's, and its second; X.
   struct Logs {
@@ -79,7 +92,7 @@ class LineLaw {
     return abs_of(e_m - kept_at_m_) <= kNear * (kept_at_m_ - touches_at_m()) && kept_.force_N > 0;
   }
   void keep(Real e_m) const PALPATE_RT;
-  bool measure(Real e) const PALPATE_RT;  // false: nothing touches
+  bool measure(Real e) const PALPATE_RT;  // false: nothing of its own touches
   Spans spans_at(Real e) const PALPATE_RT;
   Logs logs_of(const Spans& spans) const PALPATE_RT;
 
@@ -89,7 +102,8 @@ class LineLaw {
   Real lowered_, touches_at_;
   Double4 beyond_, slope_, bend_, inverse_bend_;
   Double4 rises_, falls_;  // of the depth along a cap and the straight part: slope and half of the bend
-  bool needs_root_ = false;
+  Double4 leaves_;         // of the balls at the ends, to others
+  bool is_shared_, needs_root_ = false;
   mutable Real kept_at_m_, measured_at_;
   mutable Point kept_;
   mutable Spans spans_;
