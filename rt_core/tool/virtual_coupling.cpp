@@ -22,10 +22,10 @@ constexpr Real kSwingCalm = 4;
 
 // How far the tool may go by itself, of the coupling's longest stretch, when the hand goes `hand` of it; `calm`: under
 // a hand at rest. Friction that may give energy back needs the wide step: held to the narrow one its surplus grew to
-// kUnstable in a slide of heart_compass_paper (2026-11-23). While no force is rendered there is nothing to step, and
-// what asks whether the tool starts inside the body must not wait until it has come out. While the coupling's end
-// stands apart (safety/seat.h) the end gives way to a surplus, so that such friction does without: with the wide step
-// its force swung in 2 ticks after gaps (heart_compass_paper, 2026-11-25).
+// kUnstable in a slide of heart_compass_paper with that friction (2026-11-23). While no force is rendered there is
+// nothing to step, and what asks whether the tool starts inside the body must not wait until it has come out. While the
+// coupling's end stands apart (safety/seat.h) the end gives way to a surplus, so that such friction does without: with
+// the wide step its force swung in 2 ticks after gaps (heart_compass_paper, 2026-11-25).
 Real own_share(const ModelParams& p, const State& state, Real hand, Real calm) PALPATE_RT {
   const bool gives = p.friction_law == FrictionLaw::kPaper || p.friction_law == FrictionLaw::kPreslidingPaper;
   return (gives && state.apart == 0) || state.safety.mode != Mode::kForce

@@ -24,14 +24,18 @@ int add_swings(Vec3 value, SwingMeter (&swing)[3]) {
   return std::max({swing[0].turns(), swing[1].turns(), swing[2].turns()});
 }
 
-// RMS about the mean, from sample `begin` on.
-double spread(const std::vector<Vec3>& sample, std::size_t begin) {
+Vec3 mean_of(const std::vector<Vec3>& sample, std::size_t begin) {
   Vec3 sum;
+  for (std::size_t i = begin; i < sample.size(); ++i) sum += sample[i];
+  return (1.0 / static_cast<double>(std::max<std::size_t>(1, sample.size() - begin))) * sum;
+}
+// RMS about the mean along a direction, from sample `begin` on.
+double spread(const std::vector<Vec3>& sample, std::size_t begin, Vec3 along) {
+  const Vec3 mean = mean_of(sample, begin);
   double squares = 0;
-  for (std::size_t i = begin; i < sample.size(); ++i) sum += sample[i] - sample[begin];
-  const double share = 1.0 / static_cast<double>(std::max<std::size_t>(1, sample.size() - begin));
-  for (std::size_t i = begin; i < sample.size(); ++i) squares += squared_norm(sample[i] - sample[begin] - share * sum);
-  return std::sqrt(share * squares);
+  for (std::size_t i = begin; i < sample.size(); ++i)
+    squares += dot(sample[i] - mean, along) * dot(sample[i] - mean, along);
+  return std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, sample.size() - begin)));
 }
 
 }  // namespace
@@ -179,7 +183,9 @@ double FeelMeters::noise() const {
 }
 
 double FeelMeters::object_stiffness() const {
-  const double moved_m = spread(tool_m_, last_second()), changed_N = spread(contact_N_, last_second());
+  const Vec3 pressed = unit_or(mean_of(contact_N_, last_second()), {});
+  const double moved_m = spread(tool_m_, last_second(), pressed),
+               changed_N = spread(contact_N_, last_second(), pressed);
   return moved_m > 1e-9 ? changed_N / moved_m : 0;
 }
 

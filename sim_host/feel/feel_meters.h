@@ -29,7 +29,8 @@ struct FeelFigures {
   double felt_N_per_m = 0;   // rise of the force over the way of the handle, between half and all of the largest force
   double noise_N = 0;        // RMS at 50 to 500 Hz in the last second
   double coupling_N_per_m = 0;  // of the scene
-  // The object's own stiffness in the last second: RMS of its force over that of the tool, about their means; 0: still.
+  // The object's own stiffness where it pressed in the last second: RMS of its force over that of the tool along the
+  // mean force, about their means; 0: still.
   double object_N_per_m = 0;
   int contacts = 0;      // times the force rose from zero
   double port_J = 0;     // most that one contact returned at the motors, more than handle and fingers gave it

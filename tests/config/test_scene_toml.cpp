@@ -240,7 +240,7 @@ TEST(SceneToml, TheEncoderIsSmoothedWhereFrictionHoldsTheHandle) {
     return (s.position ? std::string("position ") + law(s.of_position) : "") +
            (s.angle ? std::string("angle ") + law(s.of_angle) : "");
   };
-  EXPECT_EQ(smooths(""), "position angle ");  // the shipped device: 0.06 N of 0.057, 0.5 mN m of 0.48
+  EXPECT_EQ(smooths(""), "position angle ");  // the shipped device: 0.06 N of 0.059, 0.5 mN m of 0.48
   EXPECT_EQ(smooths("smooth_encoder = \"auto\"\n"), "position angle ");
   EXPECT_EQ(smooths("smooth_encoder = false\n"), "");
   const std::string k2 = "coupling_N_per_m = 2000\n";  // a step is 60 mN

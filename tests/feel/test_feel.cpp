@@ -94,7 +94,7 @@ TEST_F(FeelScene, AHoldIsAtRestBecauseFrictionHoldsTheSmoothedHandle) {
   EXPECT_LT(unrest_N(model, scene_, options), 0.05);
 }
 
-// A device with 40 mN where the motion asks for 57 is smoothed by its edges, and comes to rest with them too.
+// A device with 40 mN where the motion asks for 59 is smoothed by its edges, and comes to rest with them too.
 TEST_F(FeelScene, AHoldIsAtRestWhereEdgesAreFollowed) {
   scene_.device.friction_N = 0.04;
   Model model = compiled_.model();
@@ -462,6 +462,34 @@ TEST(FeelVerdict, NamesWhatFails) {
       feel_failure(run),
       "swings in 3 ticks, torque swings in 4 ticks, steps by 20 %, torque steps by 30 %, stretches the coupling to "
       "1200 % of its limit, winds up to 104 N, fault DeviceSilent");
+}
+
+// What a trembling hand hears is the encoder's; of an object that the device cannot hold it is the device's own.
+TEST(FeelFailure, ATremorIsJudgedWhereTheObjectIsSofterThanTheCoupling) {
+  FeelRun run{"s", "tremor", {}};
+  run.figures.noise_N = 2.1e-3;
+  run.figures.coupling_N_per_m = 2000;
+  run.figures.object_N_per_m = 1500;
+  EXPECT_EQ(feel_failure(run), "is rough by 2.1 mN");
+  run.figures.object_N_per_m = 2500;
+  EXPECT_EQ(feel_failure(run), "");
+  run.figures.object_N_per_m = 1500;
+  run.figures.noise_N = 1.9e-3;
+  EXPECT_EQ(feel_failure(run), "");
+  run.manoeuvre = "tap";
+  run.figures.noise_N = 0.1;
+  EXPECT_EQ(feel_failure(run), "");
+}
+
+// A drawn device's tremor may give the hand what its encoder's steps make of the way, a tap a hundredth of a
+// millijoule.
+TEST(FeelFailure, ATremorMayGiveWhatTheStepsMake) {
+  FeelRun run{"s", "tremor", {}};
+  run.figures.hand_J = 5e-4;
+  EXPECT_THAT(drawn_failure(Manoeuvre::kTremor, run), testing::HasSubstr("gives the hand 0.5 mJ"));
+  run.figures.quantum_J = 6e-4;
+  EXPECT_EQ(drawn_failure(Manoeuvre::kTremor, run), "");
+  EXPECT_THAT(drawn_failure(Manoeuvre::kTap, run), testing::HasSubstr("gives the hand 0.5 mJ"));
 }
 
 }  // namespace

@@ -131,7 +131,7 @@ TEST(FeelMeters, TheFirstTurnOfASwingCounts) {
 TEST(FeelMeters, SeeTorqueAndTheLeash) {
   ModelParams params = test::tiny_params();
   const auto figures = [&](double torque_Nm, double stretch_m, double stretch_rad) {
-    FeelMeters meters(params, 0, 0);
+    FeelMeters meters(params, FeelSetup{});
     FeelTick tick;
     for (int i = 0; i < 20; ++i) {
       tick.time_s = 1e-3 * i;
@@ -159,12 +159,45 @@ TEST(FeelMeters, SeeTorqueAndTheLeash) {
   EXPECT_EQ(figures(0.1, 0, 1).leash_share, 0);
 }
 
+// A handle that goes 3 mm along one axis and 4 along another, 7 of an encoder's steps of 30 um behind 2 N/mm and 5 of
+// 40 mN of friction; the object on the tool is a spring of 1.5 N/mm where it presses, whatever the tool does along it.
+// Without contact the way counts nothing.
+TEST(FeelMeters, TellTheObjectAndWhatAnEncoderCanGive) {
+  ModelParams params = test::tiny_params();
+  params.coupling_N_per_m = 2000;
+  FeelSetup setup;
+  setup.plant.encoder_m = 3e-5;
+  setup.plant.friction_N = 0.04;
+  for (const double force_N : {0.0, 1.0}) {
+    FeelMeters meters(params, setup);
+    FeelTick tick;
+    tick.output.device_w.force_N.y = force_N;
+    meters.add(tick);
+    for (int i = 0; i < 10; ++i) {
+      tick.handle_w.position_m += Vec3{3e-4, -4e-4, 0};
+      meters.add(tick);
+    }
+    EXPECT_NEAR(meters.figures().quantum_J, force_N > 0 ? 0.06 * 7e-3 - 0.04 * 5e-3 : 0, 1e-12);
+    EXPECT_EQ(meters.figures().object_N_per_m, 0);  // a still tool
+  }
+  FeelMeters pressed(params, setup);
+  FeelTick tick;
+  for (int i = 0; i < 12; ++i) {
+    const double aside_m = 1e-4 * (i % 3), in_m = 1e-5 * (i % 4);
+    tick.output.tool_w.position_m = {0, -in_m, aside_m};
+    tick.output.contact_w.force_N = {0, 7 + 1500 * in_m, 0};
+    pressed.add(tick);
+  }
+  EXPECT_NEAR(pressed.figures().object_N_per_m, 1500, 1e-6);
+  EXPECT_EQ(pressed.figures().coupling_N_per_m, 2000);
+}
+
 // Of a device that makes a spring's force by itself, motors that follow the handle are no step, whatever the command
 // says; what they change beyond that is, and so is their swinging.
 TEST(FeelMeters, AStepIsWhatTheDeviceHadNotMadeByItself) {
   ModelParams params = test::tiny_params();
   const auto figures = [&](double unmoved_N, double swing_N) {
-    FeelMeters meters(params, 0, 0);
+    FeelMeters meters(params, FeelSetup{});
     FeelTick tick;
     for (int i = 0; i < 20; ++i) {
       tick.output.device_w.force_N.x = std::min(params.force_max_N, 0.8 * i);

@@ -156,7 +156,7 @@ TEST(DeviceProfile, AnArmIsReadInSiUnits) {
 TEST(DeviceProfile, ASmoothedSceneAsksForTheFrictionThatHoldsTheHandle) {
   DeviceProfile profile = good();
   ModelParams asks = scene();
-  profile.friction_N = 0.08;     // sqrt(2500 / 0.1) / 158 = 1.0007 times 2500 N/m times 30 um is 0.07505
+  profile.friction_N = 0.08;     // sqrt(2500 / 0.1) / 153 = 1.0334 times 2500 N/m times 30 um is 0.07751
   profile.friction_Nm = 6.4e-4;  // 0.633 times 1 N m/rad times 1 mrad
   EXPECT_EQ(profile_contradictions(profile, asks), "");  // as told: nothing is asked
   asks.encoder_step_m = 3e-5;
@@ -164,7 +164,7 @@ TEST(DeviceProfile, ASmoothedSceneAsksForTheFrictionThatHoldsTheHandle) {
   EXPECT_EQ(profile_contradictions(profile, asks), "");
   profile.friction_N = 0.075;
   EXPECT_EQ(profile_contradictions(profile, asks),
-            "device.friction_N: the scene smooths the encoder, which asks for 0.0750541 N of friction, the device has "
+            "device.friction_N: the scene smooths the encoder, which asks for 0.0775068 N of friction, the device has "
             "0.075 N; bake the scene with this profile (--with PROFILE), or with device.smooth_encoder = false");
   asks.encoder_law_m = EncoderLaw::kEdges;
   EXPECT_EQ(profile_contradictions(profile, asks), "");

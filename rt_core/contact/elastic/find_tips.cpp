@@ -333,7 +333,8 @@ class Finder {
     const Real tool_m = tool_moved_m(index, tip);
     const Real box = distance_to(box_, tip.middle_w) - tip.margin_m - half - moved_m_;
     const Real bound = max_of(point.gap_bound_m - tool_m - state_.elastic.swept_m, box);
-    if (!(bound > push_m_ + kSearchMargin_m)) return false;
+    // Parts of one solid press the body away from one another, not out between them.
+    if (!(bound > (tip.is_of_solid() ? 0 : push_m_) + kSearchMargin_m)) return false;
     point.gap_m = point.gap_bound_m = bound;
     return true;
   }
@@ -438,35 +439,6 @@ class Finder {
 };
 
 }  // namespace
-
-RoundTip round_tip(const Model& model, std::int32_t index, const Pose& carrier) PALPATE_RT {
-  const ToolPoint& point = model.tool_point[static_cast<std::size_t>(index)];
-  const ToolPiece& piece = model.piece[static_cast<std::size_t>(point.piece)];
-  RoundTip tip;
-  tip.margin_m = point.margin_m;
-  tip.middle_w = transform(carrier, point.position_tool_m);
-  tip.begins_at = point.begins_at;
-  if (piece.shape == PieceShape::kCapsule && point.position_tool_m == piece.pose_tool.position_m)
-    tip.half_axis_w =
-        rotate(carrier.orientation, rotate(piece.pose_tool.orientation, Vec3{0, 0, piece.half_extent_m[2]}));
-  if (piece.shape == PieceShape::kBox) {
-    const Quat turn = carrier.orientation * piece.pose_tool.orientation;
-    tip.half_axis_w = rotate(turn, Vec3{piece.half_extent_m[0], 0, 0});
-    tip.half_across_w = rotate(turn, Vec3{0, piece.half_extent_m[1], 0});
-  }
-  if (tip.is_ball()) return tip;
-  const TipLaw& law = model.tip_law[static_cast<std::size_t>(point.piece)];
-  tip.depth_max_m = law.depth_max_m;
-  if (piece.shape == PieceShape::kBox) {
-    const Real nu = model.params.poisson_ratio;
-    tip.modulus_Pa = model.params.youngs_modulus_Pa / (1 - nu * nu);
-    tip.flat_m = 0.5 * law.coefficient / tip.modulus_Pa;
-  } else {
-    tip.modulus_Pa = 0.75 * law.coefficient / square_root(tip.margin_m);
-    for (int i = 0; i < 2; ++i) tip.leaves[i] = piece.half_extent_m[i];  // bound: 2
-  }
-  return tip;
-}
 
 void find_elastic_tips(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   scratch.contact_count = scratch.surface_work = 0;
