@@ -58,7 +58,7 @@ inline ObserverGains observer_gains(const ObserverTimes& times, Real step, Real 
 }
 
 // One axis: how far the told position lies from the track, `ahead`, and its velocity, which is brought up to date.
-// Returns the correction of the track. Numbers that are none give none.
+// Returns the correction of the track.
 inline Real corrected(const ObserverGains& g, Real ahead, Real& velocity) PALPATE_RT {
   // A motion the track cannot follow drags it along, and its velocity in about 5 ms.
   constexpr Real kCatchUp_s = 5e-3;
@@ -67,13 +67,14 @@ inline Real corrected(const ObserverGains& g, Real ahead, Real& velocity) PALPAT
   if (outside == 0) velocity *= g.kept;
   if (outside * velocity < 0) velocity *= g.kept_back;
   velocity += min_of(g.per_s, 1 / kCatchUp_s) * over + g.velocity * outside;
-  if (!(abs_of(velocity) < kHuge)) velocity = 0;
   return over + g.position * outside;
 }
 
 // One axis: what is told now lies `ahead` of where the handle was taken to be a tick ago. Returns by how much it moved.
 inline Real observe(const ObserverGains& g, Real ahead, Real& per_s, Real& apart) PALPATE_RT {
-  if (!(abs_of(apart) <= 2 * g.most)) apart = 0;  // a state spoilt in memory
+  // A state spoilt in memory: nothing goes a metre, or turns by a radian, in a tick.
+  if (!(abs_of(apart) <= 2 * g.most)) apart = 0;
+  if (!(abs_of(g.period_s * per_s) <= 1)) per_s = 0;
   const Real expected = apart + g.period_s * per_s;
   const Real track = expected + corrected(g, ahead - expected, per_s), on = g.period_s * per_s;
   const Real moved = clamp_to(on + g.eased * (track - on), ahead - g.most, ahead + g.most);

@@ -23,21 +23,22 @@
 namespace palpate {
 
 struct SmoothedHandle {
-  Real usual_inertia, least_share;
+  Real usual_inertia, least_share, held_below_rad_per_s;
 };
-inline constexpr SmoothedHandle kSmoothedPosition{0.1, 0.98};
-// The same mass 32 mm from the axis. A coupling's own bound leaves 0.625 of K Delta where friction makes it (2 f_c /
-// Delta, of which 0.8 is taken), and what turns the handle is coupling and object in series: 0.6 is enough where the
-// object is turned by no more than three times the coupling's stiffness, as by tips of 1.7 N/mm 70 mm apart.
-inline constexpr SmoothedHandle kSmoothedAngle{1e-4, 0.6};
+inline constexpr SmoothedHandle kSmoothedPosition{0.1, 0.98, 153};
+// The same mass 32 mm from the axis, on its track (kObservedAngle). A coupling's own bound leaves 0.625 of K Delta
+// where friction makes it (2 f_c / Delta, of which 0.8 is taken), and what turns the handle is coupling and object in
+// series: 0.6 is enough where the object is turned by no more than three times the coupling's stiffness, as by tips
+// of 1.7 N/mm 70 mm apart.
+inline constexpr SmoothedHandle kSmoothedAngle{1e-4, 0.6, 158};
 
 inline Real friction_to_smooth(EncoderLaw law, const SmoothedHandle& handle, Real stiffness, Real step, Real inertia) {
   constexpr Real kEdgeShare = 0.62, kHeavy = 4;  // times the usual
   if (law == EncoderLaw::kEdges)
     return kEdgeShare * max_of(1, inertia / (kHeavy * handle.usual_inertia)) * stiffness * step;
-  constexpr Real kHeldBelow_rad_per_s = 153, kMostShare = 2;  // kObserverReach and half a step
+  constexpr Real kMostShare = 2;  // kObserverReach and half a step
   const Real own_rad_per_s = square_root(stiffness / min_of(inertia, handle.usual_inertia));
-  return clamp_to(own_rad_per_s / kHeldBelow_rad_per_s, handle.least_share, kMostShare) * stiffness * step;
+  return clamp_to(own_rad_per_s / handle.held_below_rad_per_s, handle.least_share, kMostShare) * stiffness * step;
 }
 
 // How a handle with so much friction is observed if it is smoothed at all, and what that asks for.

@@ -139,7 +139,7 @@ void FeelMeters::add_energy(const FeelTick& tick) {
     hand_begin_J_ = tick.energy.to_hand_J() - tick.fingers_J;
     quantum_J_ = 0;
   }
-  if (touching) {
+  if (touching && !handle_.empty()) {
     const Vec3 way = tick.handle_w.position_m - handle_.back();
     const double along_axes_m = std::abs(way.x) + std::abs(way.y) + std::abs(way.z);
     quantum_J_ += params_.coupling_N_per_m * encoder_m_ * along_axes_m - friction_N_ * norm(way);
