@@ -86,6 +86,7 @@ FeelMeters::FeelMeters(const ModelParams& params, const FeelSetup& setup)
                     torque_swings(params, setup.encoder_rad)} {
   figures_.force_limit_N = params.force_max_N;
   figures_.coupling_N_per_m = params.coupling_N_per_m;
+  figures_.local = params.local_period_s > 0;
 }
 
 void FeelMeters::add(const FeelTick& tick) {

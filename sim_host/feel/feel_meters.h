@@ -27,7 +27,8 @@ struct FeelFigures {
   double leash_share = 0;
   double force_limit_N = 0;  // the device's largest force: no object is pressed harder
   double felt_N_per_m = 0;   // rise of the force over the way of the handle, between half and all of the largest force
-  double noise_N = 0;        // RMS at 50 to 500 Hz in the last second
+  double noise_N = 0;        // RMS of the commands at 50 to 500 Hz in the last second
+  bool local = false;        // the device makes the force between commands by itself
   double coupling_N_per_m = 0;  // of the scene
   // The object's own stiffness where it pressed in the last second: RMS of its force over that of the tool along the
   // mean force, about their means; 0: still.

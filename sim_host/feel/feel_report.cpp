@@ -81,7 +81,7 @@ std::string feel_failure(const FeelRun& run) {
   if (!(f.leash_share <= (jumps ? kModelSlack : kLeashSlack)))
     fail(text, fmt::format("stretches the coupling to {:.0f} % of its limit", 100 * f.leash_share));
   if (f.model_max_N > kModelSlack * f.force_limit_N) fail(text, fmt::format("winds up to {:.0f} N", f.model_max_N));
-  const bool held = f.object_N_per_m <= f.coupling_N_per_m;
+  const bool held = !f.local && f.object_N_per_m <= f.coupling_N_per_m;
   if (run.manoeuvre == "tremor" && held && f.noise_N > kTremorNoiseMost_N)
     fail(text, fmt::format("is rough by {:.1f} mN", 1e3 * f.noise_N));
   const std::uint32_t wanted = run.manoeuvre == "slow" ? Fault::kSamplesSparse : 0u;  // it must not be rendered

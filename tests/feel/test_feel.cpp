@@ -474,6 +474,9 @@ TEST(FeelFailure, ATremorIsJudgedWhereTheObjectIsSofterThanTheCoupling) {
   run.figures.object_N_per_m = 2500;
   EXPECT_EQ(feel_failure(run), "");
   run.figures.object_N_per_m = 1500;
+  run.figures.local = true;  // a coupling several times as stiff, whose noise is told beside it
+  EXPECT_EQ(feel_failure(run), "");
+  run.figures.local = false;
   run.figures.noise_N = 1.9e-3;
   EXPECT_EQ(feel_failure(run), "");
   run.manoeuvre = "tap";
