@@ -54,7 +54,7 @@ namespace palpate {
   X(rubbed, kAccount, 1300, "regions rubbed")                                              \
   X(beams, kAccount, 200, "beams of skeletons")                                            \
   X(carried, kAccount, 60, "beams times regions they carry to")                            \
-  X(grouped, kAccount, 1550, "clusters of pushing nodes given a place")                    \
+  X(grouped, kAccount, 1700, "clusters of pushing nodes given a place")                    \
   X(joined, kAccount, 27, "pairs of pushing nodes compared, and places recalled")          \
   X(summed, kAccount, 9.8, "vectors multiplied and added")                                 \
   X(other_balances, kAccount, 4500, "second hands' tools balanced")                        \
