@@ -54,8 +54,8 @@ namespace palpate {
   X(rubbed, kAccount, 1300, "regions rubbed")                                              \
   X(beams, kAccount, 200, "beams of skeletons")                                            \
   X(carried, kAccount, 60, "beams times regions they carry to")                            \
-  X(grouped, kAccount, 1700, "clusters of pushing nodes given a place")                    \
-  X(joined, kAccount, 27, "pairs of pushing nodes compared, and places recalled")          \
+  X(grouped, kAccount, 1550, "clusters of pushing nodes given a place")                    \
+  X(joined, kAccount, 31, "pairs of pushing nodes compared, and places recalled")          \
   X(summed, kAccount, 9.8, "vectors multiplied and added")                                 \
   X(other_balances, kAccount, 4500, "second hands' tools balanced")                        \
   X(other_outputs, kSafety, 3000, "second hands' wrenches limited")
