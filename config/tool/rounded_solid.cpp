@@ -39,9 +39,11 @@ Vec3 rotation_vector(Quat q) {
   const double sine = norm(v);
   return sine > 0 ? (2 * math::atan2(sine, q.w) / sine) * v : Vec3{};
 }
+// Carries z to a unit vector.
+Quat upright(Vec3 z) { return z.z > -0.999 ? rotation_between({0, 0, 1}, z) : Quat{0, 1, 0, 0}; }
 // Carries x to `x` and z to `z`, which are at right angles.
 Quat frame(Vec3 x, Vec3 z) {
-  const Quat up = z.z > -0.999 ? rotation_between({0, 0, 1}, z) : Quat{0, 1, 0, 0};
+  const Quat up = upright(z);
   const Vec3 turned = rotate(conjugate(up), x);
   const double half = 0.5 * math::atan2(turned.y, turned.x);
   return up * Quat{math::cos(half), 0, 0, math::sin(half)};
@@ -127,8 +129,7 @@ class Solid {
   }
   PieceDesc capsule(const Edge& edge) const {
     const Vec3 from = corner_[edge.from], to = corner_[edge.to], along = unit_or(to - from, {0, 0, 1});
-    PieceDesc out = part(PieceShape::kCapsule, 0.5 * (from + to),
-                         along.z > -0.999 ? rotation_between({0, 0, 1}, along) : Quat{0, 1, 0, 0});
+    PieceDesc out = part(PieceShape::kCapsule, 0.5 * (from + to), upright(along));
     out.radius_m = margin_m_;
     out.margin_m = kAuto;
     out.length_m = norm(to - from) + 2 * margin_m_;

@@ -16,8 +16,8 @@ constexpr double kStepShareMax =
     0.10;  // of the largest force, in one tick; the output keeps below it (kOutputStepShare)
 // The tool goes on by its prediction and is corrected at the tick's end: 1.05 in a push at 0.5 m/s (2026-11-25).
 constexpr double kLeashSlack = 1.1;
-// A hand that trembles holds the object within its resolution; one that the device cannot hold is as stiff as the
-// coupling.
+// What a trembling hand hears of the encoder. Of an object stiffer than the coupling it feels the coupling, whose noise
+// is the device's own.
 constexpr double kTremorNoiseMost_N = 2e-3;
 constexpr double kModelSlack = 2;  // for the tick of a jump of the encoder: the tool is corrected at its end
 

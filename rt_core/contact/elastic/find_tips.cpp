@@ -458,7 +458,8 @@ void find_elastic_tips(const Model& model, State& state, Scratch& scratch) PALPA
   finder.meet_others(all_overlap);
   // A solid's parts take turns: near a crest all of its edges are about as near, and with the first ones first what a
   // tick may look at never came to the face that lay on it (2026-11-26).
-  const bool in_turns = round_tip(model, points - 1, {}).is_of_solid();
+  const bool in_turns =
+      is_of_solid(model.piece[static_cast<std::size_t>(model.tool_point[static_cast<std::size_t>(points - 1)].piece)]);
   const auto first = in_turns ? static_cast<std::int32_t>(state.tick % static_cast<std::uint64_t>(points)) : 0;
   for (std::int32_t i = 0; i < points; ++i) {  // bound: kMaxPieces
     const std::int32_t index = first + i < points ? first + i : first + i - points;

@@ -19,6 +19,11 @@ CarriedSurface look(const Model& model, const State& state, Scratch& scratch, st
 void let_go(const Model& model, const SoftEnergy& energy, Real* step) PALPATE_RT;
 // Of a tool point: a capsule that touches all over has its point in its middle; at one end, there.
 RoundTip round_tip(const Model& model, std::int32_t index, const Pose& carrier) PALPATE_RT;
+// Whether its tips are edges or plates of a solid (RoundTip::is_of_solid).
+inline bool is_of_solid(const ToolPiece& piece) PALPATE_RT {
+  const bool leaves = piece.half_extent_m[0] > 0 || piece.half_extent_m[1] > 0;
+  return piece.shape == PieceShape::kBox || (piece.shape == PieceShape::kCapsule && leaves);
+}
 // The rows of this tick (ContactMethod::find_rows).
 void find_elastic_tips(const Model& model, State& state, Scratch& scratch) PALPATE_RT;
 
