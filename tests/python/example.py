@@ -25,8 +25,10 @@ with tempfile.TemporaryDirectory() as folder:
     before = {2: 'palpate.run("config/scenes/ellipsoid_mallet.toml", 1.0, record="run.plr")', 4: "watched = start_a_run()"}
 
     def start_a_run():
+        # A busy machine misses samples, which is the machine's verdict: 21 of 1478 beside a build (2026-11-27).
         run = subprocess.Popen(["palpate", "run", "config/scenes/ellipsoid_mallet.toml", "--device", "loopback",
-                                "--duration", "1.5", "--telemetry", "./run.telemetry"], stdout=subprocess.DEVNULL)
+                                "--duration", "1.5", "--telemetry", "./run.telemetry", "--allow", "stale=100"],
+                               stdout=subprocess.DEVNULL)
         while not os.path.exists("run.telemetry"):
             assert run.poll() is None, "palpate run ended before it began"
             time.sleep(0.01)
