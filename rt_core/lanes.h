@@ -118,14 +118,6 @@ inline Double4 where(const Mask4& mask, const Double4& a, const Double4& b) PALP
 inline Vec3x4 where(const Mask4& mask, const Vec3x4& a, const Vec3x4& b) PALPATE_RT {
   return {mask ? a.x : b.x, mask ? a.y : b.y, mask ? a.z : b.z};
 }
-inline Double4 length_of(const Vec3x4& v) PALPATE_RT { return square_root(dot(v, v)); }
-inline Vec3x4 tangential_part(const Vec3x4& a, const Vec3x4& n) PALPATE_RT { return a - dot(a, n) * n; }
-
-// As unit_or().
-inline Vec3x4 unit_or(const Vec3x4& v, const Vec3x4& fallback) PALPATE_RT {
-  const Double4 length = length_of(v);
-  return where((length > splat4(1e-300)) & (length < splat4(kHuge)), (splat4(1.0) / length) * v, fallback);
-}
 // Four vectors that follow one another in memory.
 inline Vec3x4 load4(const Vec3* from) PALPATE_RT {
   static_assert(sizeof(Vec3) == 3 * sizeof(double));

@@ -4,6 +4,7 @@
 #include "rt_core/contact/friction_lanes.h"
 #include "rt_core/limits.h"
 #include "rt_core/math.h"
+#include "rt_core/tool/pose_lanes.h"
 
 namespace palpate {
 

@@ -1,9 +1,18 @@
-// Poses four at a time, by the operations of vec.h.
+// Vectors and poses four at a time, by the operations of vec.h.
 #pragma once
 
 #include "rt_core/lanes.h"
 
 namespace palpate {
+
+inline Double4 length_of(const Vec3x4& v) PALPATE_RT { return square_root(dot(v, v)); }
+inline Vec3x4 tangential_part(const Vec3x4& a, const Vec3x4& n) PALPATE_RT { return a - dot(a, n) * n; }
+
+// As unit_or().
+inline Vec3x4 unit_or(const Vec3x4& v, const Vec3x4& fallback) PALPATE_RT {
+  const Double4 length = length_of(v);
+  return where((length > splat4(1e-300)) & (length < splat4(kHuge)), (splat4(1.0) / length) * v, fallback);
+}
 
 struct Quat4 {
   Double4 w;

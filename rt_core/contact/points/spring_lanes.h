@@ -3,7 +3,7 @@
 
 #include "rt_core/contact/problem.h"
 #include "rt_core/contact/region_load.h"
-#include "rt_core/lanes.h"
+#include "rt_core/tool/pose_lanes.h"
 
 namespace palpate {
 
