@@ -37,7 +37,8 @@ struct Smoothing {
 };
 inline Smoothing smoothing_of(const DeviceDesc& d, double coupling_N_per_m, double coupling_Nm_per_rad) {
   Smoothing s{smoothing_need(kSmoothedPosition, coupling_N_per_m, d.encoder_step_m, d.mass_kg, d.friction_N),
-              smoothing_need(kSmoothedAngle, coupling_Nm_per_rad, d.encoder_step_rad, d.inertia_kg_m2, d.friction_Nm),
+              smoothing_need(d.local_Hz > 0 ? kSmoothedFirmAngle : kSmoothedAngle, coupling_Nm_per_rad,
+                             d.encoder_step_rad, d.inertia_kg_m2, d.friction_Nm),
               d.friction_N, d.friction_Nm};
   const bool own_steps = d.holds == HeldPart::kTool || d.holds == HeldPart::kTwoTools;
   s.position = own_steps && d.encoder_step_m > 0 && d.smooth_encoder.value_or(d.friction_N >= s.of_position.friction);

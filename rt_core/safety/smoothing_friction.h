@@ -31,6 +31,11 @@ inline constexpr SmoothedHandle kSmoothedPosition{0.1, 0.98, 153};
 // series: 0.6 is enough where the object is turned by no more than three times the coupling's stiffness, as by tips
 // of 1.7 N/mm 70 mm apart.
 inline constexpr SmoothedHandle kSmoothedAngle{1e-4, 0.6, 158};
+// Held by the local model's coupling, several times as stiff, an object may turn the tool ten times as stiffly as the
+// coupling of the angle does, and the handle feels all of that: on its track the angle of a compass on heart_compass
+// went to and fro by a step, 9 mN at the tip (2026-11-27). From 0.9 of the coupling on it takes what a position does;
+// with less it is followed by its edges.
+inline constexpr SmoothedHandle kSmoothedFirmAngle{1e-4, 0.98, 158};
 
 inline Real friction_to_smooth(EncoderLaw law, const SmoothedHandle& handle, Real stiffness, Real step, Real inertia) {
   constexpr Real kEdgeShare = 0.62, kHeavy = 4;  // times the usual

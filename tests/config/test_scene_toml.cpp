@@ -253,6 +253,7 @@ TEST(SceneToml, TheEncoderIsSmoothedWhereFrictionHoldsTheHandle) {
   const std::string stiff_turn = "damping_Nms_per_rad = 0.01\ncoupling_Nm_per_rad = 2.5\n";  // 2.5 mN m a step
   EXPECT_EQ(smooths("friction_Nm = 2.6e-3\n" + stiff_turn), "position angle ");
   EXPECT_EQ(smooths("friction_Nm = 1.6e-3\n" + stiff_turn), "position angle by edges ");
+  EXPECT_EQ(smooths("local_kHz = 10\n"), "angle by edges ");  // gripped firmly
   EXPECT_EQ(smooths("encoder_step_mm = 0\n"), "angle ");
   EXPECT_EQ(smooths("holds = \"body\"\n"), "");
   // A device with a loop of its own follows its edges by itself: the controller is told the step alone.

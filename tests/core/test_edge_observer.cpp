@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "rt_core/safety/edge_observer.h"
+#include "rt_core/safety/encoder_observer.h"
 #include "rt_core/safety/smoothing_friction.h"
 #include "tests/support/held_handle.h"
 
@@ -171,6 +172,42 @@ TEST(EdgeObserver, SetsAHandleWithLessFrictionGoing) {
   for (const double aside_m : {6e-5, 3e-4, 1.5e-3})
     for (const double edge : {0.0, 0.25, 0.5}) most_N = std::max(most_N, unrest_N(h, asked_N / 1.5, aside_m, edge));
   EXPECT_GT(most_N, 0.25 * 8000 * kStep_m);
+}
+
+// What a coupling's own bound leaves of friction, 0.625 of a step's torque, holds an angle on its track where the
+// object turns with it, and not where that grips the tool firmly; followed by its edges the handle rests on either.
+TEST(EdgeObserver, LeavesAnAngleAtRestThatAnObjectGripsFirmly) {
+  constexpr double kStep_rad = 1e-3, kCoupling_Nm_per_rad = 0.8, kTick_s = 1e-3;
+  const double step_Nm = kCoupling_Nm_per_rad * kStep_rad, friction_Nm = 0.625 * step_Nm;
+  EXPECT_EQ(smoothing_need(kSmoothedAngle, kCoupling_Nm_per_rad, kStep_rad, 1e-4, friction_Nm).law,
+            EncoderLaw::kMotion);
+  const SmoothingNeed firm = smoothing_need(kSmoothedFirmAngle, kCoupling_Nm_per_rad, kStep_rad, 1e-4, friction_Nm);
+  EXPECT_EQ(firm.law, EncoderLaw::kEdges);
+  EXPECT_LE(firm.friction, friction_Nm);
+  for (const double felt : {0.75, 1.0}) {
+    double on_track_Nm = 0, by_edges_Nm = 0;
+    for (const auto& [hand, damping] : {std::pair{0.3, 0.005}, {1.0, 0.02}, {2.0, 0.02}})
+      for (const double aside_rad : {2e-3, 1e-2, 5e-2})
+        for (const double edge : {0.0, 0.25, 0.5}) {
+          const test::HeldHandle h{1e-4,      1e-3, 5e-4, kTick_s, hand, damping, 0, felt * kCoupling_Nm_per_rad,
+                                   kStep_rad, 3};
+          double at = test::told_m(aside_rad, kStep_rad, edge), per_s = 0, apart = 0, told = at;
+          const ObserverGains gains = observer_gains(kObservedAngle, kStep_rad, kTick_s);
+          const auto on_track = [&](double now) { return at += observe(gains, now - at, per_s, apart); };
+          EdgeMemory memory;
+          const auto by_edges = [&](double now) {
+            const double change = now - std::exchange(told, now);
+            return now + between_edges(kStep_rad, kTick_s, {change, 0, 0}, memory).x;
+          };
+          on_track_Nm = std::max(on_track_Nm, test::unrest_N(h, friction_Nm, aside_rad, edge, on_track));
+          by_edges_Nm = std::max(by_edges_Nm, test::unrest_N(h, friction_Nm, aside_rad, edge, by_edges));
+        }
+    EXPECT_LT(by_edges_Nm, 1e-3 * step_Nm) << felt;
+    if (felt < 1)
+      EXPECT_LT(on_track_Nm, 1e-3 * step_Nm);
+    else
+      EXPECT_GT(on_track_Nm, 0.5 * step_Nm);  // 0.63, 2026-11-27
+  }
 }
 
 // Friction decides who follows: the motion where it holds what that is late by, else the edges, which ask for less; of
