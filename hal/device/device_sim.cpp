@@ -70,7 +70,12 @@ PlantOptions checked(PlantOptions o) {
 }  // namespace
 
 DevicePlant::DevicePlant(const PlantOptions& options, HandPath path)
-    : options_(checked(options)), path_(std::move(path)), random_(options.noise_seed) {
+    : options_(checked(options)),
+      path_(std::move(path)),
+      random_(options.noise_seed),
+      handle_({options.encoder_m, options.local_Hz > 0 ? 1 / options.local_Hz : options.period_s, options.mass_kg,
+               options.friction_N},
+              path_.at(0).pose.position_m) {
   pose_ = path_.at(0).pose;
   last_measured_m_ = observed_m_ = last_exact_m_ = pose_.position_m;
 }
@@ -106,8 +111,7 @@ void DevicePlant::evaluate_local(double elapsed_s) noexcept {
   local_due_s_ += period_s;
   const Vec3 before_m = observed_m_, moved_m = pose_.position_m - last_exact_m_;
   last_exact_m_ = pose_.position_m;
-  const Vec3 told_before_m = last_measured_m_, told_m = encoder_m();
-  observed_m_ = told_m + between_edges(options_.encoder_m, period_s, told_m - told_before_m, edges_);
+  observed_m_ = handle_.next(encoder_m(), stiffness_size(due_.local.along_N_per_m, due_.local.across_N_per_m));
   if ((due_.flags & CommandFlag::kEnable) == 0) return;
   const bool stale = age_s_ > due_.local.valid_s;  // or none
   if (!stale) evaluated_m_ = observed_m_;

@@ -8,8 +8,8 @@
 #include "hal/device/device.h"
 #include "hal/device/hand_path.h"
 #include "hal/device/kinematics.h"
+#include "hal/device/local_handle.h"
 #include "hal/loop/clock.h"
-#include "rt_core/safety/edge_observer.h"
 
 namespace palpate {
 
@@ -120,7 +120,7 @@ class DevicePlant {
   DeviceCommand due_;
   double age_s_ = 0, local_due_s_ = 0;
   Vec3 observed_m_, evaluated_m_, last_exact_m_;
-  EdgeMemory edges_;
+  LocalHandle handle_;
   Vec3 unmoved_N_;
 };
 
