@@ -85,17 +85,17 @@ void DevicePlant::drive(const DeviceCommand& command) noexcept {
   const auto delay = static_cast<std::uint64_t>(options_.delay_ticks);
   const DeviceCommand due = ticks_ >= delay ? delay_[(ticks_ - delay) % kDelaySlots] : DeviceCommand{};
   saturated_ = false;
-  if (due.number != due_.number) age_s_ = 0;
+  const bool is_new = due.number != due_.number;
+  if (is_new) age_s_ = 0;
   due_ = due;
   due_.local = is_finite(due.force_N) ? bounded_model(due.local, options_.local_N_per_m) : LocalModel{};
   if (!is_finite(due.force_N)) due_.force_N = {};
   const Vec3 before_N = motor_.force_N;
   motor_ = {};
-  if ((due.flags & CommandFlag::kEnable) == 0) {
-    due_.force_N = {};
-    due_.local = {};
-    return;
-  }
+  const bool enabled = (due.flags & CommandFlag::kEnable) != 0;
+  if (!enabled) due_.force_N = {}, due_.local = {};
+  if (is_new) handle_.obey(due_.force_N, due_.local);
+  if (!enabled) return;
   motor_.force_N = limited(due.force_N, options_.force_max_N, saturated_);
   motor_.torque_Nm = limited(due.torque_Nm, options_.torque_max_Nm, saturated_);
   if (options_.local_Hz > 0) motor_.force_N = before_N;  // evaluated within this period
@@ -111,7 +111,7 @@ void DevicePlant::evaluate_local(double elapsed_s) noexcept {
   local_due_s_ += period_s;
   const Vec3 before_m = observed_m_, moved_m = pose_.position_m - last_exact_m_;
   last_exact_m_ = pose_.position_m;
-  observed_m_ = handle_.next(encoder_m(), stiffness_size(due_.local.along_N_per_m, due_.local.across_N_per_m));
+  observed_m_ = handle_.next(encoder_m());
   if ((due_.flags & CommandFlag::kEnable) == 0) return;
   const bool stale = age_s_ > due_.local.valid_s;  // or none
   if (!stale) evaluated_m_ = observed_m_;

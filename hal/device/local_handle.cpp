@@ -16,16 +16,32 @@ constexpr double kAskedForMore = 1.2;
 // the edges sooner, for an object that stiffens asks for their friction.
 constexpr double kToTrack_s = 50e-3, kToEdges_s = 10e-3;
 
+// What commands added is forgotten by a fiftieth with each: half a tremor's cycle at 1 kHz. Over less than a tenth of
+// an encoder's step of 30 um it tells no slope.
+constexpr double kKept = 0.98, kLeastWay_m = 3e-6;
+
 }  // namespace
 
-bool LocalHandle::rests_on_track(double stiffness_N_per_m) const noexcept {
+void LocalHandle::obey(Vec3 force_N, const LocalModel& model) noexcept {
+  if (model.valid_s > 0 && model_.valid_s > 0) {
+    added_N_ = kKept * added_N_ + norm(force_N - local_force_N(force_N_, model_, model.point_m));
+    way_m_ = kKept * way_m_ + norm(model.point_m - model_.point_m);
+  }
+  force_N_ = force_N;
+  model_ = model;
+}
+
+bool LocalHandle::rests_on_track() const noexcept {
   const Options& o = options_;
+  if (!(model_.valid_s > 0)) return false;
+  const double stiffness_N_per_m =
+      stiffness_size(model_.along_N_per_m, model_.across_N_per_m) + added_N_ / max_of(way_m_, kLeastWay_m);
   return stiffness_N_per_m > 0 &&
          o.friction_N >= kAskedForMore * friction_to_smooth(EncoderLaw::kMotion, kSmoothedPosition, stiffness_N_per_m,
                                                             o.encoder_m, o.mass_kg);
 }
 
-Vec3 LocalHandle::next(Vec3 told_m, double stiffness_N_per_m) noexcept {
+Vec3 LocalHandle::next(Vec3 told_m) noexcept {
   const Options& o = options_;
   const Vec3 change_m = told_m - told_m_;
   told_m_ = told_m;
@@ -35,8 +51,8 @@ Vec3 LocalHandle::next(Vec3 told_m, double stiffness_N_per_m) noexcept {
   if (squared_norm(change_m) > fastest_m * fastest_m) track_m_ += change_m;
   track_m_ += observe(observer_gains(kObservedPosition, o.encoder_m, o.period_s), told_m - track_m_, motion_);
   const Vec3 by_edges_m = told_m + between_edges(o.encoder_m, o.period_s, change_m, edges_);
-  track_share_ = rests_on_track(stiffness_N_per_m) ? min_of(1, track_share_ + o.period_s / kToTrack_s)
-                                                   : max_of(0, track_share_ - o.period_s / kToEdges_s);
+  track_share_ = rests_on_track() ? min_of(1, track_share_ + o.period_s / kToTrack_s)
+                                  : max_of(0, track_share_ - o.period_s / kToEdges_s);
   return by_edges_m + track_share_ * (track_m_ - by_edges_m);
 }
 

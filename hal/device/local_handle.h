@@ -2,8 +2,13 @@
 // second. The same choice as the controller's (rt_core/safety/smoothing_friction.h), by what the device is told now:
 // where its friction holds a handle on its track at that stiffness, on the track, which is quiet; where the object is
 // stiffer, by the encoder's edges, which ask for less friction and leave three times the noise.
+//
+// What commands add to the stiffness counts with it: of an object of nodes they tell only what its normals make, and
+// where friction holds the tool as well a handle on its track went to and fro by 18 um, 66 mN (pinch_block_nodal,
+// 2026-11-27).
 #pragma once
 
+#include "hal/device/local_model.h"
 #include "rt_core/safety/edge_observer.h"
 #include "rt_core/safety/encoder_observer.h"
 
@@ -18,17 +23,22 @@ class LocalHandle {
   };
   LocalHandle(const Options& options, Vec3 at_m) noexcept : options_(options), told_m_(at_m), track_m_(at_m) {}
 
-  // `told_m` by the encoder, a period after the last time, while it evaluates a stiffness of so much; 0: none.
-  Vec3 next(Vec3 told_m, double stiffness_N_per_m) noexcept;
+  // A command begins to act; {}: without a model.
+  void obey(Vec3 force_N, const LocalModel& model) noexcept;
+  // `told_m` by the encoder, a period after the last time.
+  Vec3 next(Vec3 told_m) noexcept;
 
  private:
-  bool rests_on_track(double stiffness_N_per_m) const noexcept;
+  bool rests_on_track() const noexcept;
 
   Options options_;
   EdgeMemory edges_;
   ObservedMotion motion_;
   Vec3 told_m_, track_m_;
-  double track_share_ = 0;  // the handle is taken to be between where the edges and the track have it
+  Vec3 force_N_;                    // of the last command,
+  LocalModel model_;                // and its model
+  double added_N_ = 0, way_m_ = 0;  // by commands beyond the model's own slope, and between their points; lately
+  double track_share_ = 0;          // the handle is taken to be between where the edges and the track have it
 };
 
 }  // namespace palpate
