@@ -16,16 +16,18 @@ constexpr double kAskedForMore = 1.2;
 // the edges sooner, for an object that stiffens asks for their friction.
 constexpr double kToTrack_s = 50e-3, kToEdges_s = 10e-3;
 
-// What commands added is forgotten by a fiftieth with each: half a tremor's cycle at 1 kHz. Over less than a tenth of
-// an encoder's step of 30 um it tells no slope.
-constexpr double kKept = 0.98, kLeastWay_m = 3e-6;
+// What commands add along the way of their points, by least squares: a slip, or a turn of the handle, changes the force
+// as well, but not by the way. Forgotten by a fiftieth with each, half a tremor's cycle at 1 kHz; ways of less than a
+// hundredth of an encoder's step of 30 um tell no slope.
+constexpr double kKept = 0.98, kLeastWay_m = 3e-7;
 
 }  // namespace
 
 void LocalHandle::obey(Vec3 force_N, const LocalModel& model) noexcept {
   if (model.valid_s > 0 && model_.valid_s > 0) {
-    added_N_ = kKept * added_N_ + norm(force_N - local_force_N(force_N_, model_, model.point_m));
-    way_m_ = kKept * way_m_ + norm(model.point_m - model_.point_m);
+    const Vec3 way_m = model.point_m - model_.point_m;
+    added_Nm_ = kKept * added_Nm_ + dot(local_force_N(force_N_, model_, model.point_m) - force_N, way_m);
+    way_m2_ = kKept * way_m2_ + squared_norm(way_m);
   }
   force_N_ = force_N;
   model_ = model;
@@ -34,8 +36,8 @@ void LocalHandle::obey(Vec3 force_N, const LocalModel& model) noexcept {
 bool LocalHandle::rests_on_track() const noexcept {
   const Options& o = options_;
   if (!(model_.valid_s > 0)) return false;
-  const double stiffness_N_per_m =
-      stiffness_size(model_.along_N_per_m, model_.across_N_per_m) + added_N_ / max_of(way_m_, kLeastWay_m);
+  const double stiffness_N_per_m = stiffness_size(model_.along_N_per_m, model_.across_N_per_m) +
+                                   max_of(0, added_Nm_) / max_of(way_m2_, kLeastWay_m * kLeastWay_m);
   return stiffness_N_per_m > 0 &&
          o.friction_N >= kAskedForMore * friction_to_smooth(EncoderLaw::kMotion, kSmoothedPosition, stiffness_N_per_m,
                                                             o.encoder_m, o.mass_kg);

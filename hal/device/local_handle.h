@@ -35,10 +35,10 @@ class LocalHandle {
   EdgeMemory edges_;
   ObservedMotion motion_;
   Vec3 told_m_, track_m_;
-  Vec3 force_N_;                    // of the last command,
-  LocalModel model_;                // and its model
-  double added_N_ = 0, way_m_ = 0;  // by commands beyond the model's own slope, and between their points; lately
-  double track_share_ = 0;          // the handle is taken to be between where the edges and the track have it
+  Vec3 force_N_;                      // of the last command,
+  LocalModel model_;                  // and its model
+  double added_Nm_ = 0, way_m2_ = 0;  // against the way between commands' points beyond the model's slope; lately
+  double track_share_ = 0;            // the handle is taken to be between where the edges and the track have it
 };
 
 }  // namespace palpate
