@@ -9,7 +9,7 @@ namespace {
 
 // Ten thousand times a second without delay the track asks for a fifth more than the controller's: handles of 0.05 to
 // 0.4 kg, damping of 0.05 to 6 N s/m, four hands, 200 to 4000 N/m, kicks as there: all 30,240 come to rest within 6 s;
-// with a tenth more 69 do not within 2 s, some of them never (2026-11-27).
+// with a tenth more 31 do not (2026-11-27).
 constexpr double kAskedForMore = 1.2;
 
 // From one to the other in a time that is not felt: a step's force within 50 ms lies below what a tremor's makes. To
