@@ -31,6 +31,7 @@ void LocalHandle::obey(Vec3 force_N, const LocalModel& model) noexcept {
   }
   force_N_ = force_N;
   model_ = model;
+  to_track_ = rests_on_track();
 }
 
 bool LocalHandle::rests_on_track() const noexcept {
@@ -51,10 +52,10 @@ Vec3 LocalHandle::next(Vec3 told_m) noexcept {
   // What no handle does carries the track along, and is no speed of it (as between_edges()).
   const double fastest_m = o.encoder_m + kLocalFastest_m_per_s * o.period_s;
   if (squared_norm(change_m) > fastest_m * fastest_m) track_m_ += change_m;
-  track_m_ += observe(observer_gains(kObservedPosition, o.encoder_m, o.period_s), told_m - track_m_, motion_);
+  track_m_ += observe(gains_, told_m - track_m_, motion_);
   const Vec3 by_edges_m = told_m + between_edges(o.encoder_m, o.period_s, change_m, edges_);
-  track_share_ = rests_on_track() ? min_of(1, track_share_ + o.period_s / kToTrack_s)
-                                  : max_of(0, track_share_ - o.period_s / kToEdges_s);
+  track_share_ =
+      to_track_ ? min_of(1, track_share_ + o.period_s / kToTrack_s) : max_of(0, track_share_ - o.period_s / kToEdges_s);
   return by_edges_m + track_share_ * (track_m_ - by_edges_m);
 }
 

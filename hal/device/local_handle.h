@@ -21,7 +21,11 @@ class LocalHandle {
     double period_s = 1e-4;
     double mass_kg = 0, friction_N = 0;  // of the handle; what smoothing_friction.h asks for is asked of them
   };
-  LocalHandle(const Options& options, Vec3 at_m) noexcept : options_(options), told_m_(at_m), track_m_(at_m) {}
+  LocalHandle(const Options& options, Vec3 at_m) noexcept
+      : options_(options),
+        gains_(observer_gains(kObservedPosition, options.encoder_m, options.period_s)),
+        told_m_(at_m),
+        track_m_(at_m) {}
 
   // A command begins to act; {}: without a model.
   void obey(Vec3 force_N, const LocalModel& model) noexcept;
@@ -32,12 +36,14 @@ class LocalHandle {
   bool rests_on_track() const noexcept;
 
   Options options_;
+  ObserverGains gains_;
   EdgeMemory edges_;
   ObservedMotion motion_;
   Vec3 told_m_, track_m_;
   Vec3 force_N_;                      // of the last command,
   LocalModel model_;                  // and its model
   double added_Nm_ = 0, way_m2_ = 0;  // against the way between commands' points beyond the model's slope; lately
+  bool to_track_ = false;             // since that command
   double track_share_ = 0;            // the handle is taken to be between where the edges and the track have it
 };
 

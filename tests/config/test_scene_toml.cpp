@@ -256,7 +256,7 @@ TEST(SceneToml, TheEncoderIsSmoothedWhereFrictionHoldsTheHandle) {
   EXPECT_EQ(smooths("local_kHz = 10\n"), "angle by edges ");  // gripped firmly
   EXPECT_EQ(smooths("encoder_step_mm = 0\n"), "angle ");
   EXPECT_EQ(smooths("holds = \"body\"\n"), "");
-  // A device with a loop of its own follows its edges by itself: the controller is told the step alone.
+  // A device with a loop of its own smooths by itself: the controller is told the step alone.
   const auto law = [](const std::string& device) {
     ModelParams p{};
     p.coupling_N_per_m = 2000, p.coupling_Nm_per_rad = 0.8;
