@@ -37,8 +37,8 @@ inline constexpr Real kFineEncoderShare = 0.008;
 // commands and they change together stays below a tenth. Smoothed within half a step of what was told, the handle's
 // place is off by at most a step either way, so by two in a millisecond; 1.23 of them is the most that 180 jumps of the
 // encoder made. With the slope of a fine encoder, ones of 50 to 100 um stepped by 10.1 to 11.2 % (2026-11-26). On its
-// track (hal/device/local_handle.h) it is off by two, but only where a step makes no more than 0.85 of the friction. The
-// share is never less than a half.
+// track (hal/device/local_handle.h) it is off by two, but only where a step makes no more than 0.85 of the friction.
+// The share is never less than a half.
 inline constexpr Real kEncoderSteps_per_ms = 1.3;
 inline Real local_slope_share_per_ms(Real share, Real stiffness_N_per_m, Real encoder_step_m,
                                      Real force_max_N) PALPATE_RT {
