@@ -35,17 +35,15 @@ check_include() { # FILE LINE KIND TARGET
   fi
 }
 
-count=0
-while IFS= read -r file; do
-  count=$((count + 1))
-  while IFS=: read -r line text; do
-    if [[ $text =~ include[[:space:]]*\"([^\"]+)\" ]]; then
-      check_include "$file" "$line" quoted "${BASH_REMATCH[1]}"
-    elif [[ $text =~ include[[:space:]]*\<([^\>]+)\> ]]; then
-      check_include "$file" "$line" angle "${BASH_REMATCH[1]}"
-    fi
-  done < <(grep -nE '^[[:space:]]*#[[:space:]]*include' "$root/$file" || true)
-done < <(list_files "$root" cpp h h.in)
-[ "$count" -gt 0 ] || report "no source files found under $root"
+files=$(list_files "$root" cpp h h.in)
+[ -n "$files" ] || report "no source files found under $root"
+# One grep for as many files as fit a command line: a process for each of 1,300 took 18 to 40 s.
+while IFS=: read -r file line text; do
+  if [[ $text =~ include[[:space:]]*\"([^\"]+)\" ]]; then
+    check_include "$file" "$line" quoted "${BASH_REMATCH[1]}"
+  elif [[ $text =~ include[[:space:]]*\<([^\>]+)\> ]]; then
+    check_include "$file" "$line" angle "${BASH_REMATCH[1]}"
+  fi
+done < <(cd "$root" && tr '\n' '\0' <<<"$files" | xargs -0 grep -HnE '^[[:space:]]*#[[:space:]]*include' || true)
 [ "$problems" -eq 0 ] || { echo "include direction: $problems problems (the picture is in docs/architecture.md)"; exit 1; }
-echo "include direction: $count files, no problem"
+echo "include direction: $(wc -l <<<"$files") files, no problem"
