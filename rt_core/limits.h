@@ -6,8 +6,9 @@
 
 namespace palpate {
 
-// Convex pieces of one tool. A hand has 15 contact parts and a palm. Refused when the scene is baked.
-inline constexpr std::int32_t kMaxPieces = 20;
+// Convex pieces of one tool. A hand has 15 contact parts and a palm, and a box on an elastic body 19 (its edges and
+// faces), of which a gripper has two or three. Refused when the scene is baked.
+inline constexpr std::int32_t kMaxPieces = 64;
 // Triangles of one hull piece: of the 64 corners it may have. Each plane is asked of every four nodes of a body,
 // for 10 instructions. Refused at bake.
 inline constexpr std::int32_t kMaxHullFaces = 124;

@@ -245,14 +245,15 @@ void find_clusters(const Model& model, const Scratch& scratch, Clusters& out) PA
   sort_by_row(scratch, out);
   Run run[kMaxContacts];
   const std::int32_t runs = find_runs(model, scratch, out, run);
-  // Of a solid's edges that meet at a corner each is a region, too, wherever they touch.
-  const double near = model.params.elastic_soft > 0 ? 0.0 : model.params.cluster_distance_m, far = kSplitFactor * near;
+  // Every tip on an elastic body is a region, wherever it touches: so are a solid's edges that meet at a corner.
+  const bool each = model.params.elastic_soft > 0;
+  const double near = model.params.cluster_distance_m, far = kSplitFactor * near;
   std::int32_t set[kMaxContacts];  // lowest run of each run's set
   std::int32_t sets = 0;
   for (std::int32_t r = 0; r < runs; ++r) {  // bound: kMaxContacts
     set[r] = r;
     sets += 1;
-    for (std::int32_t q = run[r].before; q >= 0 && sets > 1; q = run[q].before) {  // bound: kMaxContacts
+    for (std::int32_t q = each ? kNone : run[r].before; q >= 0 && sets > 1; q = run[q].before) {  // bound: kMaxContacts
       out.pairs += 1;
       if (set[q] == set[r] || run[q].group != run[r].group || apart2(run[q], run[r]) > far * far) continue;
       out.pairs += (run[q].end - run[q].begin) * (run[r].end - run[r].begin);

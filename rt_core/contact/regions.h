@@ -59,7 +59,7 @@ struct Clusters {
 
 // Single-linkage clustering. Two contacts are linked when their surface points are nearer than
 // cluster_distance_m, or nearer than kSplitFactor times that and both belonged to one region last tick
-// (Contact::previous). Bound: kMaxContacts^2 / 2 distances.
+// (Contact::previous). On an elastic body every contact is a cluster. Bound: kMaxContacts^2 / 2 distances.
 void find_clusters(const Model& model, const Scratch& scratch, Clusters& out) PALPATE_RT;
 
 // Gives clusters their slots, in three passes that depend on nothing but membership, age and place:

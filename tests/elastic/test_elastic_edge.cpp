@@ -121,7 +121,7 @@ TEST_F(FallenRing, LiesStill) {
     play(model_of(drag), drag, [&](const Bench& bench) {
       const Output& out = bench.output;
       most = std::max(most, norm(out.contact_w.force_N));
-      const bool on_edge = out.regions > 0 && work_of(*bench.scratch).row[0].foot.state != FootState::kFound;
+      const bool on_edge = out.regions > 0 && work_of(*bench.scratch).row_of(0).foot.state != FootState::kFound;
       unflagged += on_edge && (out.status & Status::kDepthBeyondRange) == 0 ? 1 : 0;
       if (++tick > kTicks + 100) {
         unconverged += (out.status & Status::kNotConverged) != 0 ? 1 : 0;

@@ -64,7 +64,7 @@ TEST(PlaceBends, AreTheSameFromBothSidesOfAnEdge) {
   Bench bench(scene.model());
   const Vec3 from{-8e-3, 0.083, -6e-3}, to{8e-3, 0.083, 6e-3};
   move_to(bench, from + Vec3{0, 5e-3, 0}, from);
-  const ElasticRow& row = work_of(*bench.scratch).row[0];
+  const ElasticRow& row = work_of(*bench.scratch).row_of(0);
   const auto bends = [&](int which) {  // of all modes
     double sum = 0;
     for (int a = 0; a < scene.model().params.elastic_soft; ++a) {

@@ -22,7 +22,7 @@ struct Sides {
 
   Sides(double depth_m, double other_m, double before_N, bool apart) {
     load.n = apart ? 3 : 2;
-    load.region = load.tips_of;
+    load.region = load.tip_of;
     load.before_N = before.data();
     load.own_bend_m_per_N = bend.data();
     load.change_N = change.data();
@@ -42,7 +42,7 @@ struct Sides {
       load.tip[r].become(load.law[r].line);
       load.tip[r].depth_m = depth[i];
       load.own[r].far = {kOwn_m_per_N, 0, kHuge};
-      load.tips_of[r] = {&load.tip[r], 1, load.own[r].far};
+      load.tip_of[r] = {&load.tip[r], 1, load.own[r].far};
       before[i] = r < 2 ? before_N : 0.0;
     }
   }

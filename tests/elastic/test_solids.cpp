@@ -280,10 +280,10 @@ std::string refusal(const std::string& text) {
   return "";
 }
 TEST(SolidScenes, SayWhatTheyDoNotTake) {
-  std::string many = "shape = \"hull\"\nvertices_mm = [";  // a prism of nine sides: 27 edges
-  for (int k = 0; k < 18; ++k) {
-    const double angle = 2 * kPi * (k % 9) / 9;
-    many += (k > 0 ? ", [" : "[") + number(8 * std::cos(angle)) + ", " + (k < 9 ? "0" : "6") + ", " +
+  std::string many = "shape = \"hull\"\nvertices_mm = [";  // a prism of 25 sides: 75 edges
+  for (int k = 0; k < 50; ++k) {
+    const double angle = 2 * kPi * (k % 25) / 25;
+    many += (k > 0 ? ", [" : "[") + number(8 * std::cos(angle)) + ", " + (k < 25 ? "0" : "6") + ", " +
             number(8 * std::sin(angle)) + "]";
   }
   many += "]\n";
@@ -291,7 +291,7 @@ TEST(SolidScenes, SayWhatTheyDoNotTake) {
     std::string tool;
     const char* says;
   } cases[] = {
-      {many, "edges and faces, and 19 of the 20 pieces"},
+      {many, "edges and faces, and 63 of the 64 pieces"},
       {"shape = \"hull\"\nvertices_mm = [[0, 0, 0], [9, 0, 0], [0, 0, 9]]\n", "lies in a plane"},
       {"shape = \"box\"\nsize_mm = [9, 9, 9]\npoints = 8\n", "an elastic body is touched by all of a box"},
   };

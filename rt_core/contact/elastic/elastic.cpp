@@ -41,9 +41,9 @@ constexpr std::int32_t kPlaceLaws = 5;
 constexpr std::int32_t kLineLaws = 2;
 
 // Tip laws in one evaluation of all.
-std::int32_t laws_in(const ElasticLoad& load, std::int32_t tips) PALPATE_RT {
-  std::int32_t sum = tips;
-  for (std::int32_t i = 0; i < tips && i < kMaxPieces; ++i) sum += load.law[i].is_line ? kLineLaws - 1 : 0;
+std::int32_t laws_in(const ElasticLoad& load) PALPATE_RT {
+  std::int32_t sum = load.n;
+  for (std::int32_t r = 0; r < load.n; ++r) sum += load.law[r].is_line ? kLineLaws - 1 : 0;  // bound: kMaxRegions
   return sum;
 }
 
@@ -119,14 +119,14 @@ void solve_pressed(const Model& model, State& state, Scratch& scratch, Count sof
   for (std::int32_t r = 0; r < regions; ++r) before_N[r] = state.region[scratch.rows.slot[r]].normal_force_N;
   Real force_N[kMaxRegions];
   body.prepare(before_N);
-  const std::int32_t laws = laws_in(load, scratch.contact_count);
+  const std::int32_t laws = laws_in(load);
   scratch.work.tip_laws += kPlaceLaws * regions;
+  scratch.work.linked += regions * (regions + 1) / 2 * (model.params.elastic_linear + model.params.elastic_soft);
   for (std::int32_t i = 0; i < kSolvesOfFriction; ++i) {  // bound: kSolvesOfFriction
     body.let_give(i == 0 ? before_N : force_N);
     const bool is_last = i + 1 == kSolvesOfFriction;
     RegionSolution result = solve_forces(load, laws, scratch, is_last, force_N);
-    scratch.work.linearised += regions;
-    scratch.work.linked += regions * (regions + 1) / 2 * (model.params.elastic_linear + model.params.elastic_soft);
+    scratch.work.linearised += i == 0 ? regions : (regions + 1) / 2;  // the second has most of what the first found
     const bool goes_on = !is_last && body.slips(force_N);
     if (!goes_on && !is_last) finish_forces(load, scratch, result, force_N);
     judge_solution(load, laws, result, !goes_on, scratch);
@@ -297,7 +297,9 @@ ImageResult check_data(const Model& model) noexcept {
   return check_moduli(model);
 }
 
-std::size_t work_bytes(const Model&) noexcept { return sizeof(ElasticWork); }
+std::size_t work_bytes(const Model& model) noexcept {
+  return sizeof(ElasticWork) + model.tool_point.size() * (sizeof(ElasticRow) + sizeof(PartSeeds));
+}
 
 Real linear_reach_m(const Model& model) noexcept {
   Real most = 0;
@@ -315,6 +317,7 @@ Real linear_reach_m(const Model& model) noexcept {
 // The shapes' reaches and the parts' seeds. Nothing else is read before the tick has written it.
 void create_work(const Model& model, void* block) noexcept {
   ElasticWork& work = *static_cast<ElasticWork*>(block);
+  work.points = static_cast<std::int32_t>(model.tool_point.size());
   const std::int32_t count = terms(model.params.elastic_soft);
   for (std::int32_t t = 0; t < count; ++t) {
     Real most = 0;
@@ -326,8 +329,10 @@ void create_work(const Model& model, void* block) noexcept {
     work.reach_m[t] = square_root(most);
   }
   work.linear_reach_m = linear_reach_m(model);
-  for (std::size_t i = 0; i < model.tool_point.size(); ++i)
-    if (model.tool_point[i].begins_at > 0) work.seeds[i] = spread_over_part(model, model.tool_point[i].begins_at);
+  for (std::int32_t i = 0; i < work.points; ++i) {
+    const std::int32_t begins_at = model.tool_point[static_cast<std::size_t>(i)].begins_at;
+    if (begins_at > 0) work.seeds_of(i) = spread_over_part(model, begins_at);
+  }
 }
 
 // A tip stands on the carried surface after kFootWalk triangles and a turn about a fan (twice at an edge, at half a
@@ -346,8 +351,8 @@ void add_most_work(const Model& model, const SceneSizes& n, Work& work) noexcept
   work.tip_laws += 2 * kLineLaws * kSolvesOfFriction *
                        (kSeriesIterations + 1 + TipLaws::kIterations * (kStepHalvings + 1)) * n.contacts +
                    kPlaceLaws * n.regions;
-  work.linearised += kSolvesOfFriction * n.regions;
-  work.linked += kSolvesOfFriction * n.regions * (n.regions + 1) / 2 * (model.params.elastic_linear + soft);
+  work.linearised += n.regions + (n.regions + 1) / 2;
+  work.linked += n.regions * (n.regions + 1) / 2 * (model.params.elastic_linear + soft);
   work.soft_pairs_again += soft_work(pair) / 2;
 }
 

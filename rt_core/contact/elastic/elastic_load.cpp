@@ -20,9 +20,9 @@ void ElasticLoad::start(Real* shift_m) const PALPATE_RT {
 }
 
 Real ElasticLoad::begins_N(std::int32_t r) const PALPATE_RT {
-  if (!law[at(r, 0)].is_line) return 0;
+  if (!law[r].is_line) return 0;
   const Real left_m = left_of_m(r, max_of(dent_m(r, 0), 0.0), region[r].far.c0_m_per_N);
-  return left_m * placed[at(r, 0)]->told.tangent_N_per_m;
+  return left_m * placed[r]->told.tangent_N_per_m;
 }
 
 Real ElasticLoad::evaluate(const Real* shift_m, RegionSystem& s) const PALPATE_RT {
@@ -104,7 +104,7 @@ bool ElasticLoad::newton_step(RegionSystem& s) const PALPATE_RT {
 Real ElasticLoad::bent_step_m(std::int32_t r, const RegionSystem& s) const PALPATE_RT {
   const Real dent = dent_m(r, s.shift_m[r]), step_m = s.step_m[r], bend = own_bend_m_per_N[r];
   const Real force = s.force_N[r], k = s.root_tangent[r] * s.root_tangent[r], gives = bend * k;
-  if (!(force > 0)) return law[at(r, 0)].is_line && step_m < dent ? dent - left_of_m(r, dent - step_m, bend) : step_m;
+  if (!(force > 0)) return law[r].is_line && step_m < dent ? dent - left_of_m(r, dent - step_m, bend) : step_m;
   if (!(dent > 0 && gives > 0)) return step_m;
   // With p the power and x = -step / dent, (1 + p x)^(1 / p) - 1 is x / (1 + (p - 1) / 2 (sqrt(1 + 2 x) - 1)) to second
   // order, and for p = 1 and 2.

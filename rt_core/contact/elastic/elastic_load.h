@@ -30,10 +30,11 @@ struct ElasticLoad : TipLaws {
   // Of lines' dents: a step after which their tangents tell the forces within a thousandth, and one after which they
   // tell as much as the laws would. What a place adds to a line has a tangent within 1.4 % (pinch_block, 2026-11-26).
   static constexpr Real kForeseen = 0.1, kKnown = LineLaw::kNear, kOffTangents = 0.02, kKnown_m = 1e-10;
-  Tip tip[kMaxPieces];
-  const ElasticRow* placed[kMaxPieces];
-  PlacedLaw law[kMaxPieces];
-  TipRegion tips_of[kMaxRegions];
+  // By region, each of which is one tip (regions.h).
+  Tip tip[kMaxRegions];
+  const ElasticRow* placed[kMaxRegions];
+  PlacedLaw law[kMaxRegions];
+  TipRegion tip_of[kMaxRegions];
   OwnField own[kMaxRegions];     // c and c1 of the region, without the modes
   Vec3 pair_aside[kMaxRegions];  // slope along the surface of what the others' forces move under a region
   const Real* before_N;          // the last tick's forces, of all regions
@@ -43,9 +44,6 @@ struct ElasticLoad : TipLaws {
   bool goes_on = false;          // from the depths found_m in the tips, of every region, that the last solve found
   Real found_m[kMaxRegions];
 
-  std::int32_t at(std::int32_t r, std::int32_t k) const PALPATE_RT {
-    return static_cast<std::int32_t>(region[r].tip - tip) + k;
-  }
   // Normal stiffness under region r as if the soft modes held still; of the laws' tangent there the root.
   Real place_N_per_m(std::int32_t r, Real force_N, Real root_tangent) const PALPATE_RT {
     const Real tangent = root_tangent * root_tangent;
@@ -61,45 +59,44 @@ struct ElasticLoad : TipLaws {
   // A part that is hardly touched is told as stiff as one well in contact: from next to no force Newton's step went
   // 0.16 mm into the seat of a clip, and the next tick said 800 N (2026-11-26).
   Real told_root_tangent(std::int32_t r, Real force_N, Real root_tangent) const PALPATE_RT {
-    const ElasticRow& row = *placed[at(r, 0)];
-    if (!(force_N > 0 && row.tip.is_of_part() && law[at(r, 0)].is_line)) return root_tangent;
+    const ElasticRow& row = *placed[r];
+    if (!(force_N > 0 && row.tip.is_of_part() && law[r].is_line)) return root_tangent;
     return max_of(root_tangent, square_root(row.told.tangent_N_per_m));
   }
   // The force along the surface that the stored energy asks for where c, c1 and the curvature change along it. Of a
   // line none: its numbers are those of the one place where it stands, whose slopes over a millimetre are not those of
   // the mean along it. With them, on tool and modes, jaws that had dragged a block turned to and fro between two
   // triangles in 424 of 5,700 ticks, by 0.38 N; without in 2, by 5 mN (2026-11-26).
-  RowLoad row(std::int32_t r, std::int32_t k, Real shift_m) const PALPATE_RT {
-    const std::int32_t i = at(r, k);
-    const ElasticRow& stands = *placed[i];
-    const Real e = tip[i].depth_m - shift_m;
-    const LawPoint point = tip_at(tip[i], e);
-    const Real energy = tip_energy_J(tip[i], e), f = point.force_N;
+  RowLoad row(std::int32_t r, std::int32_t, Real shift_m) const PALPATE_RT {
+    const ElasticRow& stands = *placed[r];
+    const Real e = tip[r].depth_m - shift_m;
+    const LawPoint point = tip_at(tip[r], e);
+    const Real energy = tip_energy_J(tip[r], e), f = point.force_N;
     Vec3 aside = f * (stands.rise - stands.foot.normal_w + pair_aside[r]);
-    if (!law[i].is_line && !law[i].is_plate) aside += place_force(r, i, e, energy, f).along(stands);
+    if (!law[r].is_line && !law[r].is_plate) aside += place_force(r, e, energy, f).along(stands);
     // Never steeper than 45 degrees: far beyond the range the second power of the force is no physics.
     const Real length = norm(aside), share = length > f ? f / length : 1.0;
     // Where the second order goes on by its tangent, and off the smooth surface, no press of the bake has been.
-    const Real range_m = law[i].is_plate ? stands.tip.depth_max_m : tip[i].local.tip->depth_max_m;
+    const Real range_m = law[r].is_plate ? stands.tip.depth_max_m : tip[r].local.tip->depth_max_m;
     const bool is_beyond = e > range_m || f > own[r].far.force_max_N || stands.foot.state != FootState::kFound;
     RowLoad out{point, energy, stands.tip.centre_w(), share * aside, is_beyond};
-    if (law[i].is_line) lean(i, e, out);
+    if (law[r].is_line) lean(r, e, out);
     return out;
   }
   // The force of a capsule that leans acts beside where the tick had it stand.
-  void lean(std::int32_t i, Real e, RowLoad& out) const PALPATE_RT {
-    const LineLaw::Lean line = law[i].line.lean_near(e);
-    const Vec3 axis = unit_or(placed[i]->tip.half_axis_w, {});
+  void lean(std::int32_t r, Real e, RowLoad& out) const PALPATE_RT {
+    const LineLaw::Lean line = law[r].line.lean_near(e);
+    const Vec3 axis = unit_or(placed[r]->tip.half_axis_w, {});
     out.lever_w += line.to_pressure_m * axis;
     out.lean_Nm_per_rad = line.arm_m * out.at.force_N;
-    out.lean_w = unit_or(cross(axis, placed[i]->foot.normal_w), {});
+    out.lean_w = unit_or(cross(axis, placed[r]->foot.normal_w), {});
   }
   // How the energy of the far field and, the other way, that of the tip's law change with the numbers of a ball's or
   // flat tip's place.
-  PlaceForce place_force(std::int32_t r, std::int32_t i, Real e, Real energy_J, Real force_N) const PALPATE_RT {
-    const ElasticRow& stands = *placed[i];
-    const PlacedLaw& here = law[i];
-    const PlaceEnergies place = place_energies(tip[i].local.tip->depth_max_m, e);
+  PlaceForce place_force(std::int32_t r, Real e, Real energy_J, Real force_N) const PALPATE_RT {
+    const ElasticRow& stands = *placed[r];
+    const PlacedLaw& here = law[r];
+    const PlaceEnergies place = place_energies(tip[r].local.tip->depth_max_m, e);
     const Real alone = (energy_J - place.J(here.terms)) / here.scale;
     const Real by_scale = alone + place.J(here.by_scale);
     PlaceForce out{};
@@ -123,10 +120,9 @@ struct ElasticLoad : TipLaws {
   // next: begun with the first one's force, under which a body that slips gives way by ten dents more, the second of a
   // clip took 24 laws in each of two regions. A touch that begins has the share that the body leaves it (2026-11-26).
   Real keeps_dent(std::int32_t r, Real shift_m) const PALPATE_RT {
-    const std::int32_t i = at(r, 0);
-    if (!law[i].is_line) return shift_m;
-    const ElasticRow& row = *placed[i];
-    const Real touches_m = law[i].line.touches_at_m(), depth_m = tip[i].depth_m;
+    if (!law[r].is_line) return shift_m;
+    const ElasticRow& row = *placed[r];
+    const Real touches_m = law[r].line.touches_at_m(), depth_m = tip[r].depth_m;
     if (row.tip.is_of_part() && row.dent_m > 0) return depth_m - (touches_m + row.dent_m);
     if (goes_on && found_m[r] > touches_m) return depth_m - found_m[r];
     const Real over_m = depth_m - shift_m - touches_m;
@@ -135,13 +131,13 @@ struct ElasticLoad : TipLaws {
   }
   // The dent that a body which gives c leaves of an overlap with a line that is not in touch yet.
   Real left_of_m(std::int32_t r, Real over_m, Real c_m_per_N) const PALPATE_RT {
-    return over_m / (1.0 + max_of(c_m_per_N, 0.0) * placed[at(r, 0)]->told.tangent_N_per_m);
+    return over_m / (1.0 + max_of(c_m_per_N, 0.0) * placed[r]->told.tangent_N_per_m);
   }
   // And its force there.
   Real begins_N(std::int32_t r) const PALPATE_RT;
   // The next solve begins with the dents of this one.
   void go_on_from(const Real* shift_m) PALPATE_RT {
-    for (std::int32_t r = 0; r < n; ++r) found_m[r] = tip[at(r, 0)].depth_m - shift_m[r];  // bound: kMaxRegions
+    for (std::int32_t r = 0; r < n; ++r) found_m[r] = tip[r].depth_m - shift_m[r];  // bound: kMaxRegions
     goes_on = true;
   }
   // What the region solver asks (region_solve.h), all regions at once. The start: what the last forces ask for.
@@ -160,8 +156,7 @@ struct ElasticLoad : TipLaws {
   Real bent_step_m(std::int32_t r, const RegionSystem& s) const PALPATE_RT;
   // How deep region r's tip is beyond where it touches.
   Real dent_m(std::int32_t r, Real shift_m) const PALPATE_RT {
-    const std::int32_t i = at(r, 0);
-    return tip[i].depth_m - shift_m - (law[i].is_line ? law[i].line.touches_at_m() : 0.0);
+    return tip[r].depth_m - shift_m - (law[r].is_line ? law[r].line.touches_at_m() : 0.0);
   }
   // d2W/dF_i dF_j of i != j.
   Real curvature(const Real* force, std::int32_t i, std::int32_t j) const PALPATE_RT {

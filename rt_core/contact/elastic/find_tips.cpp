@@ -87,12 +87,12 @@ class Finder {
     bound_m_[index] = 0;
     stands_[index] = is_of_part(index) ? place_part(index, true) : place_touched(index);
     if (!(stands_[index] && force_N > 0)) return;
-    push_.add(work_.row[index], force_N);
+    push_.add(work_.row_of(index), force_N);
   }
   void settle(std::int32_t index) PALPATE_RT {
     if (!stands_[index]) return;
     if (!is_of_part(index)) return settle_row(index);
-    nearer_m_ = let_go_there_m(work_.row[index].foot.triangle);
+    nearer_m_ = let_go_there_m(work_.row_of(index).foot.triangle);
     settle_part(index);
   }
   // `all_overlap`: nobody has to be looked for, or is held by others alone.
@@ -102,7 +102,7 @@ class Finder {
     *surface_.shown += push_.count() * kPushTerms;
     push_m_ = push_.most_m(model_, work_.linear_reach_m);
   }
-  bool overlaps(std::int32_t index) const PALPATE_RT { return stands_[index] && work_.row[index].travel_m > 0; }
+  bool overlaps(std::int32_t index) const PALPATE_RT { return stands_[index] && work_.row_of(index).travel_m > 0; }
   void visit(std::int32_t index) PALPATE_RT {
     bound_m_[index] = 0;
     if (is_of_part(index)) {
@@ -130,14 +130,14 @@ class Finder {
     tip.come_near(point.closest_w);
     const bool followed = has_stayed(point, tip);
     if (followed) {
-      surface_.place(tip, point.triangle, point.closest_w, nearer_m_, box_, work_.row[index], force_of(index));
-      if (work_.row[index].foot.triangle >= 0) return !stands_by(point, tip, work_.row[index]);
+      surface_.place(tip, point.triangle, point.closest_w, nearer_m_, box_, work_.row_of(index), force_of(index));
+      if (work_.row_of(index).foot.triangle >= 0) return !stands_by(point, tip, work_.row_of(index));
     }
     return look_for(index, tip, followed ? point.triangle : -1);
   }
   bool look_for(std::int32_t index, RoundTip tip, std::int32_t warm) PALPATE_RT {
     PointState& point = state_.point[index];
-    ElasticRow& row = work_.row[index];
+    ElasticRow& row = work_.row_of(index);
     if (!search(tip, point, warm)) return false;
     surface_.place(tip, point.triangle, point.closest_w, nearer_m_ + push_m_, box_, row, force_of(index));
     // Of a solid's part as far as its deepest end is above the tangent of its foot, which only what is hollow rises
@@ -147,7 +147,7 @@ class Finder {
   }
   void settle_row(std::int32_t index) PALPATE_RT {
     // Lifted off where its foot was followed: looked for from the next tick on.
-    const ElasticRow& row = work_.row[index];
+    const ElasticRow& row = work_.row_of(index);
     const Real depth_m = free_depth(index);
     depth_m > 0 ? keep(index, row, depth_m) : let_lift(state_.point[index], row, depth_m, bound_m_[index]);
   }
@@ -162,7 +162,7 @@ class Finder {
       stand_above(point.closest_w, point.normal_w, tip);
     else if (!come_near_part(index, tip, point))
       return false;
-    ElasticRow& row = work_.row[index];
+    ElasticRow& row = work_.row_of(index);
     const Vec3 near = touched ? point.closest_w : tip.centre_w();
     const Real force_N = force_of(index);
     *surface_.shown += kPartVisitTerms;
@@ -186,7 +186,7 @@ class Finder {
   }
   void settle_part(std::int32_t index) PALPATE_RT {
     PointState& point = state_.point[index];
-    const ElasticRow& row = work_.row[index];
+    const ElasticRow& row = work_.row_of(index);
     const Real depth_m = free_depth(index);
     if (depth_m > 0) return keep(index, row, depth_m);
     let_lift(point, row, depth_m, 0);
@@ -243,7 +243,7 @@ class Finder {
     }
     tip.come_near(point.closest_w);
     const Vec3 moved_m = displaced(point.triangle) - foot::RestCorners(model_, point.triangle).v[0];
-    const PartPlace place = come_down(model_, work_.seeds[index], tip.centre_w() - moved_m, point.triangle);
+    const PartPlace place = come_down(model_, work_.seeds_of(index), tip.centre_w() - moved_m, point.triangle);
     point.triangle = place.triangle;
     *surface_.shown += kPartLookTerms * place.looked;
     const foot::RestCorners facet(model_, place.triangle);
@@ -310,7 +310,7 @@ class Finder {
   // the others hold it, too: told by the soft modes' surface alone, a thumb's tip that the squeeze of fingers pressed
   // with 0.4 N touched in every other tick (2026-11-26).
   Real free_depth(std::int32_t index) const PALPATE_RT {
-    ElasticRow& row = work_.row[index];
+    ElasticRow& row = work_.row_of(index);
     const Real depth = row.travel_m + row.leads_m;
     if (!(depth + nearer_m_ + push_m_ > 0)) return depth + nearer_m_ + push_m_;
     const Real alone = depth + max_of(dot(row.pull, let_go_, model_.params.elastic_soft), 0.0);

@@ -125,17 +125,15 @@ Linearised<Count>::Linearised(const Model& model, State& state, Scratch& scratch
   for (std::int32_t r = 0; r < regions(); ++r) {  // bound: kMaxRegions
     const RegionRows rows = rows_of(scratch, r);
     const Region& region = state.region[scratch.rows.slot[r]];
-    work_.rub[r] = begin_rub(region, material_motion(model, state, rows, work_.row[rows[0].point].foot.foot_w));
+    row_[r] = &work_.row_of(rows[0].point);
+    work_.rub[r] = begin_rub(region, material_motion(model, state, rows, row_[r]->foot.foot_w));
   }
 }
 
 template <class Count>
 void Linearised<Count>::prepare(const Real* force_N) PALPATE_RT {
-  for (std::int32_t r = 0; r < regions(); ++r) {  // bound: kMaxContacts rows
-    leading_[r] = &work_.row[deepest_of(rows_of(scratch_, r)).point];
-    let_stick(model_, state_, *leading_[r], work_.rub[r]);
-  }
-  if (regions() > 1) pairs_.link(model_, leading_, regions());
+  for (std::int32_t r = 0; r < regions(); ++r) let_stick(model_, state_, *row_[r], work_.rub[r]);  // bound: kMaxRegions
+  if (regions() > 1) pairs_.link(model_, row_, regions());
   gather();
   add_places(force_N);
   factorise(force_N);
@@ -145,20 +143,19 @@ void Linearised<Count>::prepare(const Real* force_N) PALPATE_RT {
 // Returns it, with what its place asks for, at most as much as the force itself, as along the surface.
 template <class Count>
 Real Linearised<Count>::place_ahead(const Real* force_N, std::int32_t r, PlaceForce& place) const PALPATE_RT {
-  const std::int32_t i = load_.at(r, 0);
-  const ElasticRow& row = *leading_[r];
+  const ElasticRow& row = *row_[r];
   const FarField& own = load_.own[r].far;
   Real e = row.travel_m - far_shift_m(own, force_N[r]);
   for (std::int32_t j = 0; j < regions() && regions() > 1; ++j)  // bound: kMaxRegions
     e -= pairs_.linear_m_per_N[r][j] * force_N[j];
-  const LawPoint point = tip_at(load_.tip[i], e);
+  const LawPoint point = tip_at(load_.tip[r], e);
   const Real give = far_slope_m_per_N(own, force_N[r]);
   const Real change = (point.force_N - force_N[r]) / (1.0 + give * point.tangent_N_per_m);
   // A touch that begins, or a snap: that step does not say where the force goes.
   if (!(abs_of(change) < force_N[r])) return 0;
   const Real force = force_N[r] + change;
   e = max_of(e - give * change, 0.0);
-  place = load_.place_force(r, i, e, tip_energy_J(load_.tip[i], e), force);
+  place = load_.place_force(r, e, tip_energy_J(load_.tip[r], e), force);
   const Real length = norm(place.along(row)), inside = clamp_to(2.0 - force / own.force_max_N, 0.0, 1.0);
   // Gone at twice the force up to which c1 holds.
   place.scale(inside * inside * (3 - 2 * inside) * (length > force ? force / length : 1.0));
@@ -173,8 +170,8 @@ template <class Count>
 void Linearised<Count>::add_places(const Real* force_N) PALPATE_RT {
   for (std::int32_t a = 0; a < n_; ++a) place_rootJ_[a] = 0;
   for (std::int32_t r = 0; r < regions(); ++r) {  // bound: kMaxRegions (pairs + kMaxRegions)
-    ElasticRow& row = *leading_[r];
-    if (!(force_N[r] > 0) || load_.tips_of[r].count != 1 || !row.has_slide) continue;
+    ElasticRow& row = *row_[r];
+    if (!(force_N[r] > 0) || !row.has_slide) continue;
     PlaceForce place;
     const Real force = place_ahead(force_N, r, place);
     if (force > 0) pull_by_place(place, force, n_, row, place_rootJ_);
@@ -188,7 +185,7 @@ bool Linearised<Count>::slips(const Real* force_N) PALPATE_RT {
   for (std::int32_t a = 0; a < n_; ++a) delta[a] *= share;
   bool some = false;
   for (std::int32_t r = 0; r < regions(); ++r) {  // bound: kMaxRegions
-    const bool slips = let_slip(friction_, leading_[r]->foot.normal_w, force_N[r], delta, n_, work_.rub[r]);
+    const bool slips = let_slip(friction_, row_[r]->foot.normal_w, force_N[r], delta, n_, work_.rub[r]);
     some = some || slips;
   }
   slips_ = some;
@@ -199,9 +196,8 @@ bool Linearised<Count>::slips(const Real* force_N) PALPATE_RT {
 // H of the body and of the pulls' turn.
 template <class Count>
 void Linearised<Count>::turned(const Real* force_N, Real* h) const PALPATE_RT {
-  for (std::int32_t i = 0; i < n_ * n_; ++i) h[i] = work_.energy.curvature[i];  // bound: soft^2
-  for (std::int32_t r = 0; r < regions(); ++r)
-    add_turn(force_N[r], leading_[r]->turn, n_, h);  // bound: kMaxRegions pairs
+  for (std::int32_t i = 0; i < n_ * n_; ++i) h[i] = work_.energy.curvature[i];              // bound: soft^2
+  for (std::int32_t r = 0; r < regions(); ++r) add_turn(force_N[r], row_[r]->turn, n_, h);  // bound: kMaxRegions pairs
 }
 
 template <class Count>
@@ -217,7 +213,7 @@ void Linearised<Count>::factorise(const Real* force_N) PALPATE_RT {
   cholesky_solve(factor_, free_step_, n_);
   for (std::int32_t r = 0; r < regions(); ++r) {  // bound: kMaxRegions soft^2
     Real moved[kMaxSoftModes];
-    answer(factor_, leading_[r]->pull, n_, moved);
+    answer(factor_, row_[r]->pull, n_, moved);
     for (std::int32_t a = 0; a < n_; ++a) moved_[a][r] = moved[a];
   }
   for (std::int32_t a = 0; a < n_; ++a) end_lanes(regions(), moved_[a]);
@@ -225,33 +221,26 @@ void Linearised<Count>::factorise(const Real* force_N) PALPATE_RT {
 
 template <class Count>
 void Linearised<Count>::gather() PALPATE_RT {
-  std::int32_t next = 0;
   load_.n = regions();
-  load_.region = load_.tips_of;
+  load_.region = load_.tip_of;
   load_.evaluated = &scratch_.work.tip_laws;
-  for (std::int32_t r = 0; r < load_.n; ++r) {  // bound: kMaxPieces tips
-    const RegionRows rows = rows_of(scratch_, r);
-    load_.own[r] = own_field(*local_law(model_, rows[0].piece).tip, *leading_[r]);
-    load_.tips_of[r] = {&load_.tip[next], 0, load_.own[r].far};
-    for (std::int32_t k = 0; k < rows.count && next < kMaxPieces; ++k) {
-      add_tip(rows[k], next++);
-      load_.tips_of[r].count += 1;
-    }
+  for (std::int32_t r = 0; r < load_.n; ++r) {  // bound: kMaxRegions
+    Contact& contact = rows_of(scratch_, r)[0];
+    load_.own[r] = own_field(*local_law(model_, contact.piece).tip, *row_[r]);
+    load_.tip_of[r] = {&load_.tip[r], 1, load_.own[r].far};
+    add_tip(contact, r);
   }
 }
 
 template <class Count>
 void Linearised<Count>::let_give(const Real* before_N) PALPATE_RT {
   load_.before_N = before_N;
-  for (std::int32_t r = 0; r < load_.n; ++r) {  // bound: kMaxPieces tips, kMaxRegions^2 / 2
-    const RegionRows rows = rows_of(scratch_, r);
+  for (std::int32_t r = 0; r < load_.n; ++r) {  // bound: kMaxRegions soft, kMaxRegions^2 / 2
+    const ElasticRow& row = *row_[r];
     Real soft = 0;
-    for (std::int32_t a = 0; a < n_; ++a) soft += leading_[r]->pull[a] * moved_[a][r];
-    load_.tips_of[r].far.c0_m_per_N = load_.own[r].far.c0_m_per_N + soft;
-    for (std::int32_t k = 0; k < load_.tips_of[r].count; ++k) {
-      const ElasticRow& row = *load_.placed[load_.at(r, k)];
-      load_.tip[load_.at(r, k)].depth_m = rows[k].depth_m = row.travel_m + dot(row.pull, free_step_, n_);
-    }
+    for (std::int32_t a = 0; a < n_; ++a) soft += row.pull[a] * moved_[a][r];
+    load_.tip_of[r].far.c0_m_per_N = load_.own[r].far.c0_m_per_N + soft;
+    load_.tip[r].depth_m = rows_of(scratch_, r)[0].depth_m = row.travel_m + dot(row.pull, free_step_, n_);
   }
   if (load_.n > 1) couple();
 }
@@ -299,7 +288,7 @@ Real Linearised<Count>::left_m(const Real* force_N, Real share, const Real* delt
   energy_J_ = soft_slope(model_, state_.elastic.soft_rootJ.data(), work_.y, left);
   for (std::int32_t a = 0; a < n_; ++a) left[a] += place_rootJ_[a];
   for (std::int32_t r = 0; r < regions(); ++r) {  // bound: kMaxRegions pairs
-    const ElasticRow& row = *leading_[r];
+    const ElasticRow& row = *row_[r];
     std::int32_t pair = 0;
     for (std::int32_t a = 0; a < n_; ++a) {
       left[a] += force_N[r] * row.pull[a];
@@ -351,7 +340,7 @@ template <class Count>
 template <class Size>
 void Linearised<Count>::aim_normal(Size size, std::int32_t r, ToolTangent::Spring& out) const PALPATE_RT {
   const Region& region = state_.region[scratch_.rows.slot[r]];
-  const Real* pull = leading_[r]->pull;
+  const Real* pull = row_[r]->pull;
   aim(
       size, n_, n_ + region.hand * ToolTangent::kTwist, region.normal_w,
       region.centre_w - tool_of(state_, region.hand).position_m, [&](std::int32_t a) PALPATE_RT { return pull[a]; },
@@ -376,7 +365,7 @@ void Linearised<Count>::tell_pairs(Size size, const Real* force_N) const PALPATE
   for (std::int32_t j = 0; j < n; ++j) {  // bound: kMaxRegions^2 soft / 8
     for (std::int32_t b = j / kRegionLanes * kRegionLanes; b < n; b += kRegionLanes) {
       Double4 c = load_.pair.bends(force, j, b);
-      for (std::int32_t a = 0; a < n_; ++a) c -= splat4(leading_[j]->pull[a]) * load4(moved_[a] + b);
+      for (std::int32_t a = 0; a < n_; ++a) c -= splat4(row_[j]->pull[a]) * load4(moved_[a] + b);
       store(system.column[j] + b, splat4(g[j]) * c * load4(g + b));
     }
     system.column[j][j] = 1.0 + g[j] * (far_slope_m_per_N(load_.own[j].far, force[j]) + bend[j]) * g[j];
@@ -411,7 +400,7 @@ Real Linearised<Count>::linear_energy_J(const Real* force_N) const PALPATE_RT {
 
 template <class Count>
 void Linearised<Count>::add_tip(Contact& contact, std::int32_t at) PALPATE_RT {
-  const ElasticRow& row = work_.row[contact.point];
+  const ElasticRow& row = *row_[at];
   Tip& tip = load_.tip[at];
   tip = Tip{};
   tip.local = local_law(model_, contact.piece);
@@ -436,7 +425,7 @@ void Linearised<Count>::couple() PALPATE_RT {
     const Double4 second = splat4(2.0 / 3 * held * own.c1_m_per_N2);
     for (std::int32_t b = 0; b < load_.n; b += kRegionLanes) {
       Double4 c = load4(pairs_.linear_m_per_N[r] + b);
-      for (std::int32_t a = 0; a < n_; ++a) c += splat4(leading_[r]->pull[a]) * load4(moved_[a] + b);
+      for (std::int32_t a = 0; a < n_; ++a) c += splat4(row_[r]->pull[a]) * load4(moved_[a] + b);
       store(pair.c_m_per_N[r] + b, c);
       store(pair.h_m_per_N2[r] + b, second * load4(pairs_.share[r] + b));
     }

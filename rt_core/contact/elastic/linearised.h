@@ -82,7 +82,7 @@ class Linearised {
   ElasticWork& work_;
   const FrictionParameters friction_;
   const Count n_;
-  ElasticRow* leading_[kMaxRegions];  // deepest of each region
+  ElasticRow* row_[kMaxRegions];  // by region, each of which is one tip
   Real factor_[kMaxSoftModes * kMaxSoftModes];
   // Slope of the places' own energies in the amplitudes, less what the rows' pull has of it.
   Real place_rootJ_[kMaxSoftModes];

@@ -52,7 +52,9 @@ Vec3 printed_aside(const Model& model, const Tip& tip, const SurfaceFoot& foot, 
 struct TipLoad : TipLaws {
   static constexpr bool kPullsAside = true;
   static constexpr bool kTellsTangent = false;
-  Tip tip[kMaxPieces];
+  // Each is written as it is found: to clear all of them first took as long as to press a few.
+  alignas(Tip) std::byte room[kMaxPieces * sizeof(Tip)];
+  Tip* const tip = reinterpret_cast<Tip*>(room);
   const SurfaceFoot* foot[kMaxPieces];
   const Model* model;
   const Scratch* scratch;

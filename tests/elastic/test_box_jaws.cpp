@@ -1,0 +1,99 @@
+// A gripper of two box jaws on an elastic body: of every jaw all edges and faces, 38 pieces of one tool.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "config/scene/config_error.h"
+#include "rt_core/state.h"
+#include "rt_core/status.h"
+#include "tests/elastic/elastic_tick_scene.h"
+
+namespace palpate::test {
+namespace {
+
+constexpr double kHeight_m = 0.015;
+
+// A block 30 mm high and 24 deep, whose base is held; `holds` is what else of it is. An adversary who puts a jaw right
+// into half of it finds a tick of 1.5 million instructions, 3.5 with its reserve: hence the period.
+std::string block(double wide_mm, const std::string& holds, const std::string& tool) {
+  return "name = \"box_jaws\"\n[body]\nshape = \"box\"\nsize_mm = [" + number(wide_mm) +
+         ", 30, 24]\n[body.fem]\nedge_mm = 5\n[body.elastic]\nsoft_modes = 3\nlinear_modes = 20\n[body.material]\n"
+         "youngs_modulus_Pa = 2e5\npoisson_ratio = 0.45\ndensity_kg_per_m3 = 1100\n[[body.fixed]]\nbase_height_mm = "
+         "0\n" +
+         holds + "[contact]\nbackend = \"elastic\"\nmax_depth_mm = 4\n[friction]\nlaw = \"none\"\n" + tool +
+         "[device]\nname = \"sim-6dof\"\nperiod_ms = 2\n[path]\npoint = [ { time_s = 0, position_mm = [0, 45, 0] } ]\n";
+}
+// Its inner face is at `face_mm` when closed, and 4 mm further out when open.
+std::string jaw(double face_mm, const std::string& keys = "") {
+  const double side = face_mm < 0 ? -1 : 1;
+  return "[[tool.piece]]\nshape = \"box\"\nsize_mm = [10, 12, 16]\nmargin_mm = 1.5\nposition_mm = [" +
+         number(face_mm + 5 * side) + ", 0, 0]\n" + keys;
+}
+std::string gripper(double face_mm) {
+  return "[gripper]\nclosing_s = 1\nstop_force_N = 1000\n" + jaw(face_mm, "slide_mm = [4, 0, 0]\n") +
+         jaw(-face_mm, "slide_mm = [-4, 0, 0]\npart = 1\n");
+}
+
+// What all jaws on one side push with, outwards.
+double push_N(const State& state, double side) {
+  double sum = 0;
+  for (const Region& region : state.region)
+    if (region.id != 0 && region.lost_ticks == 0 && side * region.centre_w.x > 0)
+      sum += side * region.wrench_w.force_N.x;
+  return sum;
+}
+const Output& close(Bench& bench, double share) {
+  for (int i = 0; i < 1100; ++i) bench.tick_at({{0, kHeight_m, 0}, {}}, closing_all(share));
+  return bench.output;
+}
+
+// Either jaw touches with its face and that face's four edges, each a region of one tip; they push one another away
+// as hard as the other way round (the elements are not mirrored), and give back what closing them took.
+TEST(BoxJaws, PinchABlockFromBothSides) {
+  const BakedScene baked(parse_scene(block(24, "", gripper(10)), "test.toml"));
+  EXPECT_EQ(baked.model().tool_point.size(), 36u);
+  Bench bench(baked.model());
+  close(bench, 1);
+  EXPECT_EQ(bench.output.regions, 10);
+  for (const Region& region : bench.state->region)
+    EXPECT_EQ(region.point_count, region.id != 0 && region.lost_ticks == 0 ? 1 : 0);
+  const double right = push_N(*bench.state, 1), left = push_N(*bench.state, -1);
+  EXPECT_GT(right, 5);
+  EXPECT_NEAR(right / left, 1, 0.01);
+  EXPECT_EQ(bench.output.status & Status::kNotConverged, 0u);
+}
+
+// One jaw on half of the block, which slides along a wall where the other half was: the same press by another bake,
+// with one force instead of two that lean on one another.
+TEST(BoxJaws, PinchAsOneJawOfHalfABlock) {
+  const BakedScene whole(parse_scene(block(24, "", gripper(10)), "test.toml"));
+  const BakedScene half(parse_scene(block(12,
+                                          "[[body.fixed]]\nregion = \"box\"\nfrom_mm = [-6.1, -1, -13]\nto_mm = "
+                                          "[-5.9, 31, 13]\nholds = \"x\"\n",
+                                          jaw(4)),
+                                    "test.toml"));
+  Bench pinch(whole.model()), press(half.model());
+  close(pinch, 1);
+  for (int i = 0; i <= 600; ++i) press.tick_at({{3e-3 - 5e-6 * i, kHeight_m, 0}, {}}, {});
+  for (int i = 0; i < 5; ++i) press.tick_at({{0, kHeight_m, 0}, {}}, {});
+  const double of_two = push_N(*pinch.state, 1), of_one = push_N(*press.state, 1);
+  RecordProperty("share", std::to_string(of_two / of_one));
+  EXPECT_NEAR(of_two / of_one, 1, 0.03);  // 0.988 (2026-11-27)
+}
+
+// Three boxes fit a tool, four do not; what State and Scratch take stays within 256 KiB.
+TEST(BoxJaws, ThreeBoxesFitATool) {
+  const std::string three = jaw(10) + jaw(-10) + jaw(40);
+  const BakedScene baked(parse_scene(block(24, "", three), "test.toml"));
+  EXPECT_LE(state_bytes(baked.model()) + scratch_bytes(baked.model()), 256u * 1024u);
+  try {
+    parse_scene(block(24, "", three + jaw(60)), "test.toml");
+    FAIL() << "was taken";
+  } catch (const ConfigError& error) {
+    EXPECT_NE(std::string(error.what()).find("of the 64 pieces of a tool are left"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace palpate::test
