@@ -40,8 +40,9 @@ namespace palpate {
   X(standing, kSolve, 700, "beams of skeletons that later regions' depths stand on")       \
   X(region_pairs, kSolve, 13, "pairs of regions coupled, per evaluation")                  \
   X(region_cubes, kSolve, 2, "entries eliminated by the regions' Newton steps")            \
-  X(linearised, kSolve, 5800, "regions of an elastic body linearised")                     \
-  X(linked, kSolve, 28, "its modes between rows of regions")                               \
+  X(evaluations, kSolve, 250, "times all coupled regions were evaluated, and their steps") \
+  X(linearised, kSolve, 3900, "regions of an elastic body linearised")                     \
+  X(linked, kSolve, 8, "its modes between rows of regions")                                \
   X(soft_pairs_again, kSolve, 4, "entries of its energy summed up")                        \
   X(gathered, kSolve, 4, "vectors of eight gathered from a body's compliance")             \
   X(vectors, kSolve, 5.6, "vectors of four or eight multiplied and added")                 \
