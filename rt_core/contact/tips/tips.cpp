@@ -1,5 +1,7 @@
 // The method `tips`: one law for each whole tip of the tool, or curves tabulated over the surface, in series with the
 // body's far field (contact/tips/travel.h).
+#include <cstddef>
+
 #include "rt_core/contact/contact.h"
 #include "rt_core/contact/region_load.h"
 #include "rt_core/contact/regions.h"
