@@ -42,7 +42,6 @@ void add_most_regions(const SceneSizes& n, std::int32_t steps, Work& work) noexc
   const std::int32_t evaluations = 1 + steps * (kStepHalvings + 1), square = n.regions * n.regions;
   work.rows += n.contacts;
   work.regions += n.regions;
-  work.evaluations += evaluations + 2 * steps;
   work.region_pairs += (evaluations + 2 * steps) * square;
   work.region_cubes += steps * square * n.regions;
   work.slid += n.contacts;

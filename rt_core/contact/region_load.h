@@ -142,7 +142,6 @@ void press_regions(const Laws& laws, State& state, Scratch& scratch) PALPATE_RT 
 // What a solution took, with so many laws in each evaluation. Returns how many were evaluated.
 inline std::int32_t count_solution(const RegionSolution& result, std::int32_t n, std::int32_t laws,
                                    Work& work) PALPATE_RT {
-  work.evaluations += result.evaluations + 2 * result.steps;
   work.region_pairs += (result.evaluations + 2 * result.steps) * n * n;
   work.region_cubes += result.steps * n * n * n;
   return result.evaluations * laws;

@@ -107,7 +107,7 @@ const Mistake kMistakes[] = {
     {"missing_time", with("[[path.point]]\nposition_mm = [0, 0, 0]\n"), 8, "path.point[0].time_s", "missing"},
     {"missing_radius", "name = \"a\"\n[body]\nshape = \"sphere\"\n[[tool.piece]]\nshape = \"capsule\"\nlength_mm = 5\n",
      0, "tool.piece[0].radius_mm", "missing"},
-    {"no_tool", "name = \"a\"\n[body]\nshape = \"sphere\"\n", 0, "tool.piece", "0 pieces; allowed 1 to 20"},
+    {"no_tool", "name = \"a\"\n[body]\nshape = \"sphere\"\n", 0, "tool.piece", "0 pieces; allowed 1 to 64"},
     {"no_points", with("points = 0\n"), 5, "tool.piece", "0 tool points in all"},
     {"no_effect", with("length_mm = 5\n"), 8, "tool.piece[0].length_mm", "no effect"},
     {"no_effect_body", "name = \"a\"\n[body]\nshape = \"sphere\"\nwidth_mm = 5\n", 4, "body.width_mm", "no effect"},

@@ -152,7 +152,7 @@ TEST(ConvexParts, WhatCannotBeATool) {
               HasSubstr("tool.piece[0].mesh: has no effect for this shape"));
   std::string many = mesh_piece(l.path);
   for (int i = 0; i < kMaxPieces - 1; ++i) many += "[[tool.piece]]\nshape = \"sphere\"\nradius_mm = 8\n";
-  EXPECT_THAT(refusal(scene(many)), HasSubstr("makes 2 convex parts, and 1 of the 20 pieces of a tool are left"));
+  EXPECT_THAT(refusal(scene(many)), HasSubstr("makes 2 convex parts, and 1 of the 64 pieces of a tool are left"));
 }
 
 }  // namespace

@@ -47,6 +47,11 @@ std::int32_t laws_in(const ElasticLoad& load) PALPATE_RT {
   return sum;
 }
 
+void count(const RegionSolution& result, const ElasticLoad& load, std::int32_t laws, Work& work) PALPATE_RT {
+  work.evaluations += result.evaluations + 2 * result.steps;
+  work.tip_laws += count_solution(result, load.n, laws, work);
+}
+
 // Shifts and forces of the regions; of several, where another solve may follow, as exactly as to tell who slips.
 RegionSolution solve_forces(ElasticLoad& load, std::int32_t laws, Scratch& scratch, bool is_last,
                             Real* force_N) PALPATE_RT {
@@ -55,7 +60,7 @@ RegionSolution solve_forces(ElasticLoad& load, std::int32_t laws, Scratch& scrat
     const Real enough_m = is_last ? ElasticLoad::kEnough_m : kEnoughToSlip_m;
     result = solve_regions(load, load.n, scratch.system, enough_m, !is_last);
     if (!(result.residual_m <= kNoAnswer_m)) {
-      scratch.work.tip_laws += count_solution(result, load.n, laws, scratch.work);
+      count(result, load, laws, scratch.work);
       load.pair.drop_second_order(load.n);
       result = solve_regions(load, load.n, scratch.system, enough_m, !is_last);
     }
@@ -87,7 +92,7 @@ void finish_forces(const ElasticLoad& load, Scratch& scratch, RegionSolution& re
 
 void judge_solution(const ElasticLoad& load, std::int32_t laws, const RegionSolution& result, bool is_last,
                     Scratch& scratch) PALPATE_RT {
-  if (load.n > 1) scratch.work.tip_laws += count_solution(result, load.n, laws, scratch.work);
+  if (load.n > 1) count(result, load, laws, scratch.work);
   scratch.residual_m = result.residual_m;
   if (result.singular) scratch.status |= Status::kCouplingSingular;
   if (is_last && !(scratch.residual_m <= kTravelTolerance_m)) scratch.status |= Status::kNotConverged;
@@ -342,7 +347,9 @@ void add_most_work(const Model& model, const SceneSizes& n, Work& work) noexcept
   const std::int32_t place = (3 * (kFootWalk + 2) + 6) * terms(soft) + kMaxTurn + kSlideWork;
   add_most_points(model, n, work);
   work.queries += 2 * n.points;  // a capsule asks three times
-  add_most_regions(n, 2 * kSolvesOfFriction * TipLaws::kIterations, work);
+  const std::int32_t steps = 2 * kSolvesOfFriction * TipLaws::kIterations;
+  add_most_regions(n, steps, work);
+  work.evaluations += 1 + steps * (kStepHalvings + 3);
   const bool in_parts = touches_in_parts(model);
   work.shown += n.points * (2 * place + terms(soft) + 2 * kPushTerms +
                             (in_parts ? kMostPartLooks * kPartLookTerms + kPartVisitTerms : 0));
