@@ -7,12 +7,12 @@
 #include <string>
 
 #include "config/bake/tool_points.h"
-#include "config/scene/config_error.h"
 #include "rt_core/contact/regions.h"
 #include "rt_core/stage_cost.h"
 #include "rt_core/status.h"
 #include "tests/elastic/elastic_tick_scene.h"
 #include "tests/elastic/half_space.h"
+#include "tests/support/refusal.h"
 
 namespace palpate::test {
 namespace {
@@ -271,14 +271,6 @@ TEST_F(Solids, WedgePressesAsItsEdge) {
   }
 }
 
-std::string refusal(const std::string& text) {
-  try {
-    parse_scene(text, "t.toml");
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "";
-}
 TEST(SolidScenes, SayWhatTheyDoNotTake) {
   std::string many = "shape = \"hull\"\nvertices_mm = [";  // a prism of 25 sides: 75 edges
   for (int k = 0; k < 50; ++k) {
@@ -296,7 +288,7 @@ TEST(SolidScenes, SayWhatTheyDoNotTake) {
       {"shape = \"box\"\nsize_mm = [9, 9, 9]\npoints = 8\n", "an elastic body is touched by all of a box"},
   };
   for (const auto& c : cases) {
-    const std::string said = refusal(scene(kBlock, c.tool));
+    const std::string said = refusal_by([&] { parse_scene(scene(kBlock, c.tool), "t.toml"); });
     EXPECT_NE(said.find(c.says), std::string::npos) << said;
     EXPECT_EQ(said.find("t.toml:"), 0u) << said;
   }
