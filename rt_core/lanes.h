@@ -67,6 +67,14 @@ inline void transpose(Double4 (&row)[4]) PALPATE_RT {
   row[2] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
   row[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
 }
+// A vector in the first three lanes. The fourth holds a number of which nobody asks.
+inline Double4 lanes_of(Vec3 v) PALPATE_RT { return Double4{v.x, v.y, v.z, 0}; }
+inline Vec3 vector_of(const Double4& v) PALPATE_RT { return {v[0], v[1], v[2]}; }
+// a x b of vectors in the first three lanes, by the products of vec.h.
+inline Double4 cross(const Double4& a, const Double4& b) PALPATE_RT {
+  return __builtin_shufflevector(a, a, 1, 2, 0, 3) * __builtin_shufflevector(b, b, 2, 0, 1, 3) -
+         __builtin_shufflevector(a, a, 2, 0, 1, 3) * __builtin_shufflevector(b, b, 1, 2, 0, 3);
+}
 // In this order on every machine.
 inline double sum(const Double4& v) PALPATE_RT { return (v[0] + v[1]) + (v[2] + v[3]); }
 
@@ -79,8 +87,6 @@ inline Double4 square_root(const Double4& v) PALPATE_RT {
   return Double4{__builtin_sqrt(v[0]), __builtin_sqrt(v[1]), __builtin_sqrt(v[2]), __builtin_sqrt(v[3])};
 #endif
 }
-inline Double4 abs_of(const Double4& v) PALPATE_RT { return v < 0 ? -v : v; }
-
 // Which of four comparisons hold, as bits.
 using Mask4 [[gnu::vector_size(32)]] = std::int64_t;
 inline std::uint32_t bits_of(const Mask4& mask) PALPATE_RT {
@@ -91,6 +97,11 @@ inline std::uint32_t bits_of(const Mask4& mask) PALPATE_RT {
   for (std::uint32_t k = 0; k < 4; ++k) bits |= mask[k] != 0 ? 1u << k : 0u;  // bound: 4
   return bits;
 #endif
+}
+
+inline Double4 abs_of(const Double4& v) PALPATE_RT {
+  constexpr Mask4 kMagnitude{INT64_MAX, INT64_MAX, INT64_MAX, INT64_MAX};
+  return __builtin_bit_cast(Double4, __builtin_bit_cast(Mask4, v) & kMagnitude);
 }
 
 // Four vectors at a time.
@@ -132,6 +143,17 @@ inline Vec3x4 load4(const Vec3* from) PALPATE_RT {
 }
 // n rounded up to whole lanes.
 constexpr std::int32_t whole_lanes(std::int32_t n, std::int32_t lanes) { return (n + lanes - 1) / lanes * lanes; }
+
+// A RigidFrame, each column in the first three lanes.
+struct RigidLanes {
+  Double4 x, y, z, origin;
+};
+inline RigidLanes lanes_of(const RigidFrame& frame) PALPATE_RT {
+  return {lanes_of(frame.x), lanes_of(frame.y), lanes_of(frame.z), lanes_of(frame.origin)};
+}
+inline Double4 out_of(const RigidLanes& frame, Vec3 point) PALPATE_RT {
+  return frame.origin + (splat4(point.x) * frame.x + splat4(point.y) * frame.y + splat4(point.z) * frame.z);
+}
 
 // Of four points.
 inline Vec3x4 into(const RigidFrame& frame, const Vec3x4& point_w) PALPATE_RT {

@@ -13,13 +13,13 @@ namespace palpate {
   X(joints, kArticulate, 320, "joints of the tool, and links placed")                      \
   X(joint_loads, kArticulate, 75, "loads of pieces taken about a joint")                   \
   X(points, kFindRows, 62, "tool points visited")                                          \
-  X(pieces, kFindRows, 440, "pieces placed")                                               \
+  X(pieces, kFindRows, 300, "pieces placed")                                               \
   X(looks, kFindRows, 200, "boxes and triangles of the surface looked at")                 \
   X(queries, kFindRows, 750, "points measured on it")                                      \
   X(feet, kFindRows, 480, "Newton steps towards a smooth foot")                            \
-  X(found, kFindRows, 250, "contacts found")                                               \
+  X(found, kFindRows, 190, "contacts found")                                               \
   X(pairs, kFindRows, 12, "pairs of contacts compared, and labels changed")                \
-  X(clusters, kFindRows, 240, "clusters given a place")                                    \
+  X(clusters, kFindRows, 150, "clusters given a place")                                    \
   X(recalls, kFindRows, 19, "contacts compared with lost regions")                         \
   X(scans, kFindRows, 26, "tool points looked through for a lost region")                  \
   X(supports, kFindRows, 520, "supports of the overlap test")                              \

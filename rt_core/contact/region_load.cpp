@@ -14,12 +14,13 @@ static_assert(offsetof(Contact, normal_w) == offsetof(Contact, position_w) + 24 
               offsetof(Contact, depth_m) == offsetof(Contact, position_w) + 48 &&
               offsetof(Contact, weight) == offsetof(Contact, position_w) + 56);
 
-// One sum that is NaN or beyond kHuge if any of its terms is.
-bool usable(const Region* region, const Contact& contact) PALPATE_RT {
-  const std::int32_t slot = contact.region;
-  if (slot < 0 || slot >= kMaxRegions || !is_in_contact(region[slot])) return false;
+// In one of the regions `touching`, as bits, and no number of it NaN or beyond kHuge.
+bool usable(std::uint32_t touching, const Contact& contact) PALPATE_RT {
+  const auto slot = static_cast<std::uint32_t>(contact.region);
+  if (slot >= kMaxRegions || (touching >> slot & 1) == 0) return false;
   const double* const number = &contact.position_w.x;
-  return contact.depth_m > 0 && sum(abs_of(load4(number)) + abs_of(load4(number + 4))) <= kHuge;
+  const Double4 most = splat4(kHuge);
+  return contact.depth_m > 0 && bits_of((abs_of(load4(number)) <= most) & (abs_of(load4(number + 4)) <= most)) == 15;
 }
 
 // A region without a usable contact exerts nothing but remembers its stretch until its slot is freed (a bounce keeps
@@ -71,14 +72,15 @@ void sort_rows(State& state, Scratch& scratch) PALPATE_RT {
   std::int32_t region_of[kMaxContacts];
   std::int32_t count_in[kMaxRegions] = {};
   const Contact* const contact = scratch.contact.data();
-  const Region* const region = state.region.data();
-  for (std::int32_t i = 0; i < contacts; ++i) {  // bound: kMaxContacts
-    const bool use = usable(region, contact[i]);
+  std::int32_t order[kMaxRegions];
+  const std::int32_t in_contact = contact_order(state, order);
+  std::uint32_t touching = 0;
+  for (std::int32_t i = 0; i < in_contact; ++i) touching |= 1u << order[i];  // bound: kMaxRegions
+  for (std::int32_t i = 0; i < contacts; ++i) {                              // bound: kMaxContacts
+    const bool use = usable(touching, contact[i]);
     region_of[i] = use ? contact[i].region : -1;
     if (use) count_in[region_of[i]] += 1;
   }
-  std::int32_t order[kMaxRegions];
-  const std::int32_t in_contact = contact_order(state, order);
   std::int32_t next_in[kMaxRegions] = {};
   rows.first[0] = 0;
   for (std::int32_t i = 0; i < in_contact; ++i) {  // bound: kMaxRegions

@@ -7,24 +7,11 @@ namespace palpate {
 
 namespace {
 
-void sort_by_row(const Scratch& scratch, Clusters& out) PALPATE_RT {
-  const Contact* const contact = scratch.contact.data();
-  out.contacts = scratch.contact_count;
-  std::int32_t last = 0;                             // row; most are in their order
-  for (std::int32_t i = 0; i < out.contacts; ++i) {  // insertion sort; bound: kMaxContacts^2 / 2
-    std::int32_t at = i;
-    for (; at > 0 && last > contact[i].row && contact[out.order[at - 1]].row > contact[i].row; --at)
-      out.order[at] = out.order[at - 1];
-    out.order[at] = i;
-    last = at == i ? contact[i].row : last;
-  }
-}
-
 // Contacts that follow one another and are one region however far apart: of an articulated tool those of one part. All
 // others are runs of one contact. Different fingers are different regions, and parts of one finger join as the
 // distances say. Rigid tools go by distance alone, and so do tips on an elastic body, each of which is a region.
 struct Run {
-  Double4 lower, upper;  // corners of their box: x, y, z, 0
+  Double4 lower, upper;  // corners of their box: x, y, z and what comes after them
   std::int32_t begin, end;
   std::int32_t piece, group;
   std::int32_t before;  // the run before it in its chain, or -1
@@ -32,14 +19,16 @@ struct Run {
 // Runs are compared with those of their chain alone. Groups that share a chain are told apart when compared.
 constexpr std::uint32_t kChains = 32;
 
-std::int32_t find_runs(const Model& model, const Scratch& scratch, const Clusters& out, Run* run) PALPATE_RT {
+static_assert(sizeof(Contact::position_w) == 24 && offsetof(Contact, position_w) + 32 <= sizeof(Contact));
+
+std::int32_t find_runs(const Model& model, const Scratch& scratch, Run* run) PALPATE_RT {
   const bool articulated = is_articulated(model), by_piece = articulated && !(model.params.elastic_soft > 0);
   const Contact* const contacts = scratch.contact.data();
   std::int32_t last[kChains], count = 0;
-  for (std::int32_t& of_chain : last) of_chain = -1;  // bound: kChains
-  for (std::int32_t i = 0; i < out.contacts; ++i) {   // bound: kMaxContacts
-    const Contact& contact = contacts[out.order[i]];
-    const Double4 place{contact.position_w.x, contact.position_w.y, contact.position_w.z, 0};
+  for (std::int32_t& of_chain : last) of_chain = -1;          // bound: kChains
+  for (std::int32_t i = 0; i < scratch.contact_count; ++i) {  // bound: kMaxContacts
+    const Contact& contact = contacts[i];
+    const Double4 place = load4(&contact.position_w.x);
     if (by_piece && count > 0 && run[count - 1].piece == contact.piece) {
       Run& of = run[count - 1];
       of.lower = place < of.lower ? place : of.lower;
@@ -58,18 +47,17 @@ std::int32_t find_runs(const Model& model, const Scratch& scratch, const Cluster
 // Squared distance of their boxes, at most that of any two of their contacts, and as rounded: every step is monotonic.
 double apart2(const Run& a, const Run& b) PALPATE_RT {
   const Double4 under = a.lower - b.upper, over = b.lower - a.upper, most = under > over ? under : over;
-  const Double4 gap = most > 0 ? most : Double4{};
-  return sum(gap * gap);
+  const Double4 gap = most > 0 ? most : Double4{}, gap2 = gap * gap;
+  return gap2[0] + gap2[1] + gap2[2];
 }
 
 // Whether some contact of one is linked with one of the other.
-bool are_linked(const Scratch& scratch, const Clusters& out, const Run& a, const Run& b, double near2,
-                double far2) PALPATE_RT {
+bool are_linked(const Scratch& scratch, const Run& a, const Run& b, double near2, double far2) PALPATE_RT {
   const Contact* const contact = scratch.contact.data();
   for (std::int32_t i = a.begin; i < a.end; ++i) {  // bound: kMaxContacts^2
-    const Contact& one = contact[out.order[i]];
+    const Contact& one = contact[i];
     for (std::int32_t j = b.begin; j < b.end; ++j) {
-      const Contact& other = contact[out.order[j]];
+      const Contact& other = contact[j];
       const double distance2 = squared_norm(one.position_w - other.position_w);
       const bool stays = one.previous >= 0 && one.previous == other.previous && distance2 <= far2;
       if (stays || distance2 < near2) return true;
@@ -118,10 +106,11 @@ void count_votes(const Scratch& scratch, const Clusters& clusters, Assignment& w
     for (std::int32_t& vote : work.votes[c]) vote = 0;
   }
   const Contact* const contact = scratch.contact.data();
-  for (std::int32_t i = 0; i < clusters.contacts; ++i) {  // bound: kMaxContacts
-    const std::int32_t slot = contact[clusters.order[i]].previous, c = clusters.of_rank[i];
+  for (std::int32_t i = 0; i < clusters.contacts;) {  // bound: kMaxContacts; those that vote alike follow one another
+    const std::int32_t slot = contact[i].previous, c = clusters.of_contact[i], first = i;
+    for (++i; i < clusters.contacts && contact[i].previous == slot && clusters.of_contact[i] == c;) ++i;
     if (slot < 0 || slot >= kMaxRegions) continue;
-    const std::int32_t votes = work.votes[c][slot] += 1;
+    const std::int32_t votes = work.votes[c][slot] += i - first;
     if (!work.takes_part[c]) continue;
     std::int32_t& heir = work.heir[slot];
     const std::int32_t most = heir == kNone ? 0 : work.votes[heir][slot];
@@ -156,8 +145,8 @@ void inherit(Clusters& clusters, State& state, Assignment& work) PALPATE_RT {
 double distance2_to(const Scratch& scratch, const Clusters& clusters, std::int32_t cluster, Vec3 place) PALPATE_RT {
   double nearest = kHuge;
   for (std::int32_t i = 0; i < clusters.contacts; ++i) {  // bound: kMaxContacts
-    if (clusters.of_rank[i] != cluster) continue;
-    nearest = min_of(nearest, squared_norm(scratch.contact[clusters.order[i]].position_w - place));
+    if (clusters.of_contact[i] != cluster) continue;
+    nearest = min_of(nearest, squared_norm(scratch.contact[i].position_w - place));
   }
   return nearest;
 }
@@ -210,17 +199,14 @@ void give_birth(State& state, std::int32_t slot) PALPATE_RT {
 void label(const Model& model, State& state, Scratch& scratch, const Clusters& clusters) PALPATE_RT {
   Contact* const contacts = scratch.contact.data();
   PointState* const point = state.point.data();
-  for (std::int32_t i = 0; i < clusters.contacts; ++i) {  // bound: kMaxContacts
-    contacts[clusters.order[i]].region = clusters.cluster[clusters.of_rank[i]].slot;
-  }
   const auto points = static_cast<std::int32_t>(model.tool_point.size());
   for (std::int32_t i = 0; i < points; ++i) point[i].region = -1;  // bound: kMaxToolPoints
   std::int32_t kept = 0;
   for (std::int32_t i = 0; i < clusters.contacts; ++i) {  // bound: kMaxContacts
-    const Contact& contact = contacts[i];
-    if (contact.region < 0) continue;
-    point[contact.point].region = contact.region;
-    if (kept != i) contacts[kept] = contact;
+    const std::int32_t slot = clusters.cluster[clusters.of_contact[i]].slot;
+    if (slot < 0) continue;
+    if (kept != i) contacts[kept] = contacts[i];
+    point[contacts[kept].point].region = contacts[kept].region = slot;
     kept += 1;
   }
   scratch.contact_count = kept;
@@ -242,9 +228,9 @@ void lose(const Model& model, State& state, Scratch& scratch, StillTouching stil
 
 void find_clusters(const Model& model, const Scratch& scratch, Clusters& out) PALPATE_RT {
   out.pairs = out.recalls = 0;
-  sort_by_row(scratch, out);
+  out.contacts = scratch.contact_count;
   Run run[kMaxContacts];
-  const std::int32_t runs = find_runs(model, scratch, out, run);
+  const std::int32_t runs = find_runs(model, scratch, run);
   // Every tip on an elastic body is a region, wherever it touches: so are a solid's edges that meet at a corner.
   const bool each = model.params.elastic_soft > 0;
   const double near = model.params.cluster_distance_m, far = kSplitFactor * near;
@@ -257,7 +243,7 @@ void find_clusters(const Model& model, const Scratch& scratch, Clusters& out) PA
       out.pairs += 1;
       if (set[q] == set[r] || run[q].group != run[r].group || apart2(run[q], run[r]) > far * far) continue;
       out.pairs += (run[q].end - run[q].begin) * (run[r].end - run[r].begin);
-      if (!are_linked(scratch, out, run[q], run[r], near * near, far * far)) continue;
+      if (!are_linked(scratch, run[q], run[r], near * near, far * far)) continue;
       out.pairs += r + 1 - (set[r] < set[q] ? set[q] : set[r]);
       unite(set, r + 1, set[r], set[q]);
       sets -= 1;
@@ -268,18 +254,20 @@ void find_clusters(const Model& model, const Scratch& scratch, Clusters& out) PA
   std::int32_t cluster_of[kMaxContacts];     // by run
   for (std::int32_t r = 0; r < runs; ++r) {  // bound: kMaxContacts; the lowest of a set comes before the others
     if (set[r] == r) {
-      out.cluster[out.count] = {scratch.contact[out.order[run[r].begin]].row, 0, 0.0, 0.0, -1};
+      out.cluster[out.count] = {contacts[run[r].begin].row, 0, 0.0, 0.0, -1};
       cluster_of[r] = out.count++;
     }
     cluster_of[r] = cluster_of[set[r]];
     Cluster& cluster = out.cluster[cluster_of[r]];
     cluster.count += run[r].end - run[r].begin;
+    double area_m2 = cluster.area_m2, deepest_m = cluster.depth_max_m;
     for (std::int32_t i = run[r].begin; i < run[r].end; ++i) {
-      const Contact& contact = contacts[out.order[i]];
-      out.of_rank[i] = cluster_of[r];
-      cluster.area_m2 += contact.area_m2;
-      cluster.depth_max_m = max_of(cluster.depth_max_m, contact.depth_m);
+      out.of_contact[i] = cluster_of[r];
+      area_m2 += contacts[i].area_m2;
+      deepest_m = max_of(deepest_m, contacts[i].depth_m);
     }
+    cluster.area_m2 = area_m2;
+    cluster.depth_max_m = deepest_m;
   }
 }
 

@@ -37,8 +37,7 @@ inline std::int32_t contact_order(const State& state, std::int32_t (&order)[kMax
 // below the cluster distance itself. The gap between the two keeps a finger at the limit from flickering.
 inline constexpr double kSplitFactor = 1.5;
 
-// One group of contacts. Members are listed by row, so nothing here depends on the order contacts came in.
-// No default values: only the entries in use are written.
+// One group of contacts, which are listed by row. No default values: only the entries in use are written.
 struct Cluster {
   std::int32_t first_row;  // lowest row among its members: its canonical name
   std::int32_t count;
@@ -48,17 +47,16 @@ struct Cluster {
 };
 
 struct Clusters {
-  std::int32_t order[kMaxContacts];    // contact indices sorted by row
-  std::int32_t of_rank[kMaxContacts];  // cluster of contact order[i]
-  Cluster cluster[kMaxContacts];       // sorted by first_row
+  std::int32_t of_contact[kMaxContacts];
+  Cluster cluster[kMaxContacts];  // sorted by first_row
   std::int32_t contacts;
   std::int32_t count;
   std::int32_t pairs;    // of contacts compared, and labels changed
   std::int32_t recalls;  // contacts compared with lost regions
 };
 
-// Single-linkage clustering. Two contacts are linked when their surface points are nearer than
-// cluster_distance_m, or nearer than kSplitFactor times that and both belonged to one region last tick
+// Single-linkage clustering of contacts in the order of their rows. Two contacts are linked when their surface points
+// are nearer than cluster_distance_m, or nearer than kSplitFactor times that and both belonged to one region last tick
 // (Contact::previous). On an elastic body every contact is a cluster. Bound: kMaxContacts^2 / 2 distances.
 void find_clusters(const Model& model, const Scratch& scratch, Clusters& out) PALPATE_RT;
 
@@ -78,6 +76,14 @@ using StillTouching = bool (*)(const Model& model, State& state, Scratch& scratc
 // tick is held while `still_touching` says so; nullptr: never. Contacts of clusters that got no slot leave the list.
 // Writes state.region (identity part), state.point.region, contact.region. Status: kRegionsDropped.
 void group_points(const Model& model, State& state, Scratch& scratch, StillTouching still_touching) PALPATE_RT;
+
+// A place for a new contact in the list, which is in the order of rows. There is room. Bound: kMaxContacts.
+inline Contact& place_in_order(Scratch& scratch, std::int32_t row) PALPATE_RT {
+  Contact* const contact = scratch.contact.data();
+  std::int32_t at = scratch.contact_count++;
+  for (; at > 0 && contact[at - 1].row > row; --at) contact[at] = contact[at - 1];
+  return contact[at];
+}
 
 // Rows of points and tips: tool points on the rest surface, as a god-object's proxies (touch.cpp).
 

@@ -43,15 +43,16 @@ Real side_checked(Real signed_distance_m, const PointState& last, Real margin_m,
 
 class Collider {
  public:
-  Collider(const Model& model, State& state, Scratch& scratch) PALPATE_RT : model_(model),
-                                                                            state_(state),
-                                                                            scratch_(scratch),
-                                                                            now_(state.tool_w),
-                                                                            before_(state.tool_previous_w),
-                                                                            root_(root_box(model)),
-                                                                            share_(surface_work_share(model.params)),
-                                                                            points_(state.point.data()),
-                                                                            tool_points_(model.tool_point.data()) {
+  Collider(const Model& model, State& state, Scratch& scratch) PALPATE_RT
+      : model_(model),
+        state_(state),
+        scratch_(scratch),
+        now_(lanes_of(RigidFrame(state.tool_w))),
+        before_(lanes_of(RigidFrame(state.tool_previous_w))),
+        root_(root_box(model)),
+        share_(surface_work_share(model.params)),
+        points_(state.point.data()),
+        tool_points_(model.tool_point.data()) {
     smooth_ = !model.corner_normal.empty();
     const ArticulationState& a = state.articulation;
     if (is_articulated(model)) now_of_.place(state.tool_w, a.motion_tool.data(), a.motion_tool.size());
@@ -90,7 +91,8 @@ class Collider {
  private:
   void visit_point(std::int32_t index) PALPATE_RT {
     PointState& point = points_[index];
-    const Vec3 p = out_of(now_, tool_points_[index].position_tool_m);
+    const Double4 at_w = out_of(now_, tool_points_[index].position_tool_m);
+    const Vec3 p = vector_of(at_w);
     // Written so that a NaN in any term measures the point.
     if (point.gap_bound_m > kSearchMargin_m) {
       const Real bound = point.gap_bound_m - moved(index, p);
@@ -100,7 +102,7 @@ class Collider {
     }
     if (!(point.gap_m < 0)) {
       // Far from the body its box says as much as its surface, and costs nothing next to a cold search.
-      const Real gap = distance_to(root_, p) - tool_points_[index].margin_m;
+      const Real gap = distance_to(root_, at_w) - tool_points_[index].margin_m;
       if (gap > kSearchMargin_m + kRefreshMargin_m) return skip(point, gap);
     }
     due_[due_count_] = index;
@@ -152,7 +154,7 @@ class Collider {
 
   Real moved(std::int32_t index, Vec3 p) PALPATE_RT {
     if (!knows_before_) look_back();
-    return norm(p - out_of(before_, tool_points_[index].position_tool_m));
+    return norm(p - vector_of(out_of(before_, tool_points_[index].position_tool_m)));
   }
 
   // Where the piece was: few ticks ask.
@@ -256,10 +258,10 @@ class Collider {
     if (point.gap_m < 0) keep(index, point, tool_point);
   }
 
-  // Adds a contact; when the pool is full the shallowest goes (ties: the higher index). Order stays by index.
+  // Adds a contact; when the pool is full the shallowest goes (ties: the higher index).
   void keep(std::int32_t index, const PointState& point, const ToolPoint& tool_point) PALPATE_RT {
-    Contact* const contact = scratch_.contact.data();
     if (scratch_.contact_count == kMaxContacts) {
+      Contact* const contact = scratch_.contact.data();
       scratch_.status |= Status::kContactsDropped;
       scratch_.work.pairs += kMaxContacts;
       std::int32_t shallowest = 0;
@@ -272,27 +274,23 @@ class Collider {
       }
       scratch_.contact_count -= 1;
     }
-    std::int32_t at = scratch_.contact_count++;
-    for (; at > 0 && contact[at - 1].row > index; --at) {  // bound: kMaxContacts
-      contact[at] = contact[at - 1];
-    }
-    contact[at] = {.row = index,
-                   .point = index,
-                   .piece = tool_point.piece,
-                   .previous = point.region,
-                   .hand = hand_of(model_, tool_point.piece),
-                   .position_w = point.closest_w,
-                   .normal_w = point.normal_w,
-                   .depth_m = -point.gap_m,
-                   .weight = tool_point.weight,
-                   .area_m2 = tool_point.area_m2};
+    place_in_order(scratch_, index) = {.row = index,
+                                       .point = index,
+                                       .piece = tool_point.piece,
+                                       .previous = point.region,
+                                       .hand = hand_of(model_, tool_point.piece),
+                                       .position_w = point.closest_w,
+                                       .normal_w = point.normal_w,
+                                       .depth_m = -point.gap_m,
+                                       .weight = tool_point.weight,
+                                       .area_m2 = tool_point.area_m2};
   }
 
   const Model& model_;
   State& state_;
   Scratch& scratch_;
   std::int32_t piece_ = 0;   // being visited
-  RigidFrame now_, before_;  // of it
+  RigidLanes now_, before_;  // of it
   CarrierFrames now_of_, before_of_;
   bool knows_before_ = true, knows_all_before_ = false;
   FourQueries query_;  // of its points that are due

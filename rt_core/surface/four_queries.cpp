@@ -2,6 +2,8 @@
 
 #include "rt_core/lanes.h"
 #include "rt_core/surface/candidate.h"
+#include "rt_core/surface/plane_proof.h"
+#include "rt_core/surface/ring_proof.h"
 
 namespace palpate {
 
@@ -17,15 +19,13 @@ struct FourTriangles {
   Vec3x4 a, b, c;
 };
 
-FourTriangles four_triangles(const Model& model, const int32_t (&index)[4]) PALPATE_RT {
-  FourTriangles t;
+void find_triangles(const Model& model, const int32_t (&index)[4], FourTriangles& t) PALPATE_RT {
   Vec3x4* const corner[3] = {&t.a, &t.b, &t.c};
   for (int k = 0; k < 4; ++k) t.of[k] = &model.triangle[static_cast<std::size_t>(index[k])];  // bound: 4
   for (int i = 0; i < 3; ++i) {                                                               // bound: 3
     const auto v = [&](int k) PALPATE_RT { return model.vertex_m[static_cast<std::size_t>(t.of[k]->vertex[i])]; };
     *corner[i] = side_by_side(v(0), v(1), v(2), v(3));
   }
-  return t;
 }
 
 // closest_on_triangle() of four, where it is in a face or on an edge.
@@ -36,7 +36,7 @@ struct FourPlaces {
 };
 
 // Which of the features in the order of closest_on_triangle(), and what its point is made of.
-FourPlaces places_on(const FourTriangles& t, const Vec3x4& p) PALPATE_RT {
+void find_places(const FourTriangles& t, const Vec3x4& p, FourPlaces& places) PALPATE_RT {
   const Double4 zero{};
   const Vec3x4 ab = t.b - t.a, ac = t.c - t.a, ap = p - t.a, bp = p - t.b, cp = p - t.c;
   const Double4 d1 = dot(ab, ap), d2 = dot(ac, ap), d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp);
@@ -53,7 +53,6 @@ FourPlaces places_on(const FourTriangles& t, const Vec3x4& p) PALPATE_RT {
   const Double4 under = where(on_ab, d1 - d3, where(on_ac, d2 - d6, where(on_bc, along + back, area)));
   const Double4 share = over / under;  // along the edge; of the face the scale of its weights
   const Vec3x4 base = where(on_bc, t.b, t.a), aim = where(on_ac, ac, where(on_bc, t.c - t.b, ab));
-  FourPlaces places;
   const Vec3x4 first = base + where(in_face, vb * share, share) * aim;
   places.point = where(in_face, first + (vc * share) * ac, first);
   places.inset = where(in_face, share * smaller(smaller(va, vb), vc), smaller(share, splat4(1.0) - share));
@@ -63,11 +62,10 @@ FourPlaces places_on(const FourTriangles& t, const Vec3x4& p) PALPATE_RT {
   places.edge[0] = bits_of(on_ab);
   places.edge[1] = bits_of(on_bc);
   places.edge[2] = bits_of(on_ac);
-  return places;
 }
 
-// Of those kSafeInset within their feature, which are nearest by certificate(): outside a convex part, nothing else
-// near. What an edge's other triangle tells is left.
+// Which are nearest by certificate() if they are within their feature by kSafeInset: outside a convex part, nothing
+// else near. What an edge's other triangle tells is left.
 uint32_t are_certified(const FourTriangles& t, const Vec3x4& p, const FourPlaces& places) PALPATE_RT {
   const auto clear = [&](int k) PALPATE_RT { return static_cast<double>(t.of[k]->clear_radius_m); };
   const auto scale = [&](int k) PALPATE_RT { return static_cast<double>(t.of[k]->clear_scale_per_m); };
@@ -81,8 +79,9 @@ uint32_t are_certified(const FourTriangles& t, const Vec3x4& p, const FourPlaces
   const Mask4 outside = (distance > splat4(kDirectionFloor_m)) & (dot(p - places.point, normal) > Double4{});
   uint32_t convex = 0;
   for (uint32_t k = 0; k < 4; ++k) convex |= t.of[k]->ring_convex >= 1 ? 1u << k : 0u;  // bound: 4
-  return convex & bits_of(near & outside & (places.inset > splat4(kSafeInset)));
+  return convex & bits_of(near & outside);
 }
+uint32_t are_inset(const FourPlaces& places) PALPATE_RT { return bits_of(places.inset > splat4(kSafeInset)); }
 
 // What rounding can do to their squared distances: distance2_rounding().
 Double4 roundings(const FourPlaces& places) PALPATE_RT {
@@ -95,14 +94,23 @@ Mask4 mask_of(uint32_t bits) PALPATE_RT {
   return Mask4{lane(0), lane(1), lane(2), lane(3)};
 }
 
+// Triangles of four queries and where the nearest places are on them.
+struct FourSides {
+  int32_t triangle[4];
+  FourTriangles of;
+  FourPlaces at;
+};
+
+int edge_of(const FourPlaces& places, uint32_t k) PALPATE_RT {
+  return (places.edge[0] >> k & 1) != 0 ? 0 : (places.edge[1] >> k & 1) != 0 ? 1 : 2;
+}
+
 // The triangle across its edge from each of `on_edge`. Returns those that have one.
-uint32_t across_edges(const FourTriangles& t, const FourPlaces& places, uint32_t on_edge,
-                      int32_t (&triangle)[4]) PALPATE_RT {
+uint32_t across_edges(const FourSides& here, uint32_t on_edge, int32_t (&triangle)[4]) PALPATE_RT {
   uint32_t closed = 0;
   for (; on_edge != 0; on_edge &= on_edge - 1) {  // bound: 4
     const auto k = static_cast<uint32_t>(__builtin_ctz(on_edge));
-    const int edge = (places.edge[0] >> k & 1) != 0 ? 0 : (places.edge[1] >> k & 1) != 0 ? 1 : 2;
-    const int32_t across = t.of[k]->adjacent[edge];
+    const int32_t across = here.of.of[k]->adjacent[edge_of(here.at, k)];
     if (across < 0) continue;
     triangle[k] = across;
     closed |= 1u << k;
@@ -110,24 +118,59 @@ uint32_t across_edges(const FourTriangles& t, const FourPlaces& places, uint32_t
   return closed;
 }
 
+bool is_of_fan(const Triangle& t, int edge) PALPATE_RT {
+  return ring_proof::is_by_planes(t) &&
+         (ring_proof::is_flat_about(t, edge) || ring_proof::is_flat_about(t, edge == 2 ? 0 : edge + 1));
+}
+
+// Of `nearer`, over the face of the triangle across their edge and nearer there, those that walk() leaves there:
+// certified, and within rounding of no border, or of none but where they came over, which it then measures `again`. It
+// goes on over the spokes of a fan.
+uint32_t settle_beyond(const Model& model, const Vec3x4& p, uint32_t nearer, const FourSides& here,
+                       const FourSides& beyond, uint32_t& again) PALPATE_RT {
+  nearer &= are_certified(beyond.of, p, beyond.at);
+  const uint32_t inset = are_inset(beyond.at);
+  uint32_t settled = 0;
+  for (; nearer != 0; nearer &= nearer - 1) {  // bound: 4
+    const auto k = static_cast<uint32_t>(__builtin_ctz(nearer));
+    if (is_of_fan(*here.of.of[k], edge_of(here.at, k))) continue;
+    if ((inset >> k & 1) == 0) {
+      const Triangle& t = *beyond.of.of[k];
+      if (!ring_proof::is_by_planes(t)) continue;
+      const Border border = border_in_face({model.triangle.data(), model.vertex_m.data()}, t, beyond.at.point[k]);
+      if (border.edge < 0 || t.adjacent[border.edge] != here.triangle[k]) continue;
+      again |= 1u << k;
+    }
+    settled |= 1u << k;
+  }
+  return settled;
+}
+
 // Of `on_edge`, whose nearest place is on an edge, the nearest of both triangles there, as measure_sharers() and
-// settle_by_planes() choose it. Returns those for which it is the same place but for rounding.
-uint32_t settle_edges(const Model& model, const FourTriangles& t, const Vec3x4& p, uint32_t on_edge,
-                      int32_t (&triangle)[4], FourPlaces& places) PALPATE_RT {
-  int32_t across[4] = {triangle[0], triangle[1], triangle[2], triangle[3]};
-  on_edge &= across_edges(t, places, on_edge, across);
-  const FourPlaces beyond = places_on(four_triangles(model, across), p);
+// settle_by_planes() choose it. Returns those for which it is the same place but for rounding, or over the other's
+// face.
+uint32_t settle_edges(const Model& model, const Vec3x4& p, uint32_t on_edge, FourSides& here,
+                      uint32_t& again) PALPATE_RT {
+  FourSides beyond;
+  for (int k = 0; k < 4; ++k) beyond.triangle[k] = here.triangle[k];  // bound: 4
+  on_edge &= across_edges(here, on_edge, beyond.triangle);
+  find_triangles(model, beyond.triangle, beyond.of);
+  find_places(beyond.of, p, beyond.at);
   uint32_t lower = 0;
-  for (uint32_t k = 0; k < 4; ++k) lower |= across[k] < triangle[k] ? 1u << k : 0u;  // bound: 4
-  const uint32_t known = beyond.face | beyond.edge[0] | beyond.edge[1] | beyond.edge[2];
-  const uint32_t settled = on_edge & known & ~bits_of(beyond.distance2 < places.distance2 - roundings(places));
-  const uint32_t as_near = bits_of(beyond.distance2 == places.distance2);
-  const uint32_t other = settled & (bits_of(beyond.distance2 < places.distance2) | (as_near & lower));
-  for (uint32_t k = 0; k < 4; ++k) triangle[k] = (other >> k & 1) != 0 ? across[k] : triangle[k];  // bound: 4
+  for (uint32_t k = 0; k < 4; ++k) lower |= beyond.triangle[k] < here.triangle[k] ? 1u << k : 0u;  // bound: 4
+  const uint32_t known = beyond.at.face | beyond.at.edge[0] | beyond.at.edge[1] | beyond.at.edge[2];
+  const uint32_t nearer = on_edge & bits_of(beyond.at.distance2 < here.at.distance2 - roundings(here.at));
+  uint32_t settled = on_edge & known & ~nearer;
+  if ((nearer & beyond.at.face) != 0) settled |= settle_beyond(model, p, nearer & beyond.at.face, here, beyond, again);
+  const uint32_t as_near = bits_of(beyond.at.distance2 == here.at.distance2);
+  const uint32_t other = settled & (bits_of(beyond.at.distance2 < here.at.distance2) | (as_near & lower));
+  for (uint32_t k = 0; k < 4; ++k)  // bound: 4
+    here.triangle[k] = (other >> k & 1) != 0 ? beyond.triangle[k] : here.triangle[k];
   const Mask4 mask = mask_of(other);
-  places.point = where(mask, beyond.point, places.point);
-  places.distance2 = where(mask, beyond.distance2, places.distance2);
-  for (int i = 0; i < 3; ++i) places.edge[i] = (places.edge[i] & ~other) | (beyond.edge[i] & other);  // bound: 3
+  here.at.point = where(mask, beyond.at.point, here.at.point);
+  here.at.distance2 = where(mask, beyond.at.distance2, here.at.distance2);
+  for (int i = 0; i < 3; ++i)  // bound: 3
+    here.at.edge[i] = (here.at.edge[i] & ~other) | (beyond.at.edge[i] & other);
   return settled;
 }
 
@@ -136,26 +179,28 @@ uint32_t settle_edges(const Model& model, const FourTriangles& t, const Vec3x4& 
 FourSettled settle_four(const Model& model, const FourQueries& query, int32_t count) PALPATE_RT {
   const auto triangles = static_cast<int32_t>(model.triangle.size());
   FourSettled four;
+  FourSides here;
   four.settled = (1u << count) - 1;
   for (uint32_t k = 0; k < 4; ++k) {  // bound: 4
     const int32_t warm = query.warm_triangle[k];
     const bool usable = warm >= 0 && warm < triangles;
-    four.triangle[k] = usable ? warm : 0;
+    here.triangle[k] = usable ? warm : 0;
     if (!usable) four.settled &= ~(1u << k);
   }
   if (four.settled == 0) return four;
-  const Vec3x4 p = side_by_side(query.p[0], query.p[1], query.p[2], query.p[3]);  // a NaN is over no feature
-  const FourTriangles t = four_triangles(model, four.triangle);
-  FourPlaces places = places_on(t, p);
-  four.on_edge = places.edge[0] | places.edge[1] | places.edge[2];
-  four.settled &= are_certified(t, p, places) & (places.face | four.on_edge);
+  const Vec3x4 p = load4(query.p);  // a NaN is over no feature
+  find_triangles(model, here.triangle, here.of);
+  find_places(here.of, p, here.at);
+  four.on_edge = here.at.edge[0] | here.at.edge[1] | here.at.edge[2];
+  four.settled &= are_certified(here.of, p, here.at) & are_inset(here.at) & (here.at.face | four.on_edge);
   const uint32_t on_edge = four.settled & four.on_edge;
-  if (on_edge != 0) four.settled &= ~on_edge | settle_edges(model, t, p, on_edge, four.triangle, places);
-  for (int i = 0; i < 3; ++i) four.edge[i] = places.edge[i];  // bound: 3
+  if (on_edge != 0) four.settled &= ~on_edge | settle_edges(model, p, on_edge, here, four.again);
+  for (int i = 0; i < 3; ++i) four.edge[i] = here.at.edge[i];       // bound: 3
+  for (int k = 0; k < 4; ++k) four.triangle[k] = here.triangle[k];  // bound: 4
   // Outside the body, as report() tells it.
-  four.distance_m = square_root(places.distance2);
-  four.closest_w = places.point;
-  four.normal_w = (splat4(1.0) / four.distance_m) * (p - places.point);
+  four.distance_m = square_root(here.at.distance2);
+  four.closest_w = here.at.point;
+  four.normal_w = (splat4(1.0) / four.distance_m) * (p - here.at.point);
   return four;
 }
 

@@ -15,10 +15,11 @@ struct FourQueries {
   std::int32_t warm_triangle[4] = {-1, -1, -1, -1};
 };
 
-// What was found of them: outside the body over their triangle or one of its edges, with proof.
+// What was found of them: outside the body over their triangle, one of its edges or the triangle across that, with
+// proof.
 struct FourSettled {
-  std::uint32_t settled = 0;  // which of them, as bits; of the others nothing is told
-  std::uint32_t on_edge = 0;
+  std::uint32_t settled = 0;             // which of them, as bits; of the others nothing is told
+  std::uint32_t on_edge = 0, again = 0;  // measured across an edge, and on this side once more
   std::uint32_t edge[3] = {};
   std::int32_t triangle[4];
   Vec3x4 closest_w, normal_w;
@@ -28,9 +29,9 @@ struct FourSettled {
 // The first `count` of them. On grasp_cylinder_5 a query takes 600 instructions alone, 250 here (2026-11-26).
 FourSettled settle_four(const Model& model, const FourQueries& query, std::int32_t count) PALPATE_RT;
 
-// Triangles looked at for one that is settled.
+// Triangles looked at for one that is settled, as closest_surface_point() counts them.
 inline std::int32_t looked_at(const FourSettled& four, std::uint32_t k) PALPATE_RT {
-  return 1 + static_cast<std::int32_t>(four.on_edge >> k & 1);
+  return 1 + static_cast<std::int32_t>(four.on_edge >> k & 1) + static_cast<std::int32_t>(four.again >> k & 1);
 }
 // closest_surface_point() of it, to the bit.
 inline SurfacePoint settled_point(const FourSettled& four, std::uint32_t k) PALPATE_RT {

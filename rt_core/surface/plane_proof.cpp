@@ -16,28 +16,6 @@ TrianglePoint closest_on(const Surface& surface, Vec3 p, std::int32_t index) PAL
   return closest_on_triangle(p, surface.vertex[t.vertex[0]], surface.vertex[t.vertex[1]], surface.vertex[t.vertex[2]]);
 }
 
-// What rounding may have the closest point on besides its triangle: the neighbour across an edge, or all about a
-// corner.
-struct Border {
-  int edge = -1, corner = -1;
-};
-
-Border border_in_face(const Surface& surface, const Triangle& t, Vec3 c) PALPATE_RT {
-  const Vec3 v[3] = {surface.vertex[t.vertex[0]], surface.vertex[t.vertex[1]], surface.vertex[t.vertex[2]]};
-  const Vec3 n = cross(v[1] - v[0], v[2] - v[0]);
-  const double least = kSafeInset * squared_norm(n);
-  Border border;
-  int near = 0, far_edge = 0;
-  for (int k = 0; k < 3; ++k) {  // bound: 3
-    const bool is_near = dot(cross(v[after(k)] - v[k], c - v[k]), n) <= least;
-    near += is_near ? 1 : 0;
-    border.edge = is_near ? k : border.edge;
-    far_edge = is_near ? far_edge : k;
-  }
-  if (near == 2) border = {-1, before(far_edge)};  // the corner that is not on the edge it is far from
-  return border;
-}
-
 Border border_of(const Surface& surface, const Candidate& best) PALPATE_RT {
   const Triangle& t = surface.triangle[best.triangle];
   const auto code = static_cast<std::int32_t>(best.at.feature);
@@ -124,6 +102,22 @@ Settled settle_at_corner(const Surface& surface, Vec3 p, int corner, Candidate& 
 }
 
 }  // namespace
+
+Border border_in_face(const Surface& surface, const Triangle& t, Vec3 c) PALPATE_RT {
+  const Vec3 v[3] = {surface.vertex[t.vertex[0]], surface.vertex[t.vertex[1]], surface.vertex[t.vertex[2]]};
+  const Vec3 n = cross(v[1] - v[0], v[2] - v[0]);
+  const double least = kSafeInset * squared_norm(n);
+  Border border;
+  int near = 0, far_edge = 0;
+  for (int k = 0; k < 3; ++k) {  // bound: 3
+    const bool is_near = dot(cross(v[after(k)] - v[k], c - v[k]), n) <= least;
+    near += is_near ? 1 : 0;
+    border.edge = is_near ? k : border.edge;
+    far_edge = is_near ? far_edge : k;
+  }
+  if (near == 2) border = {-1, before(far_edge)};  // the corner that is not on the edge it is far from
+  return border;
+}
 
 Turn turn_about(const Surface& surface, Vec3 off, std::int32_t index, std::int32_t middle) PALPATE_RT {
   const Vec3 hub = surface.vertex[middle];

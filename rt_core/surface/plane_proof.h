@@ -14,6 +14,13 @@ inline constexpr std::int32_t kMaxNearCorner = 128;
 // Spokes of a fan passed at most on the way to the triangle a point is over; kSpokesPerLook cost what a triangle does.
 inline constexpr std::int32_t kMaxTurn = 256, kSpokesPerLook = 8;
 
+// What rounding may have a closest point on besides its triangle: the neighbour across an edge, or all about a corner.
+struct Border {
+  int edge = -1, corner = -1;
+};
+// Of the closest point c in the face of t.
+Border border_in_face(const Surface& surface, const Triangle& t, Vec3 c) PALPATE_RT;
+
 enum class Settled : std::int32_t {
   kNone = 0,     // nearer ones may exist
   kMoved = 1,    // best.triangle is another, nearer one

@@ -2,6 +2,7 @@
 
 #include "rt_core/math.h"
 #include "rt_core/tick.h"
+#include "rt_core/tool/pose_lanes.h"
 #include "rt_core/tool/two_tools.h"
 
 namespace palpate {
@@ -109,6 +110,26 @@ void keep_previous(ArticulationState& a) PALPATE_RT {
   for (std::int32_t p = 0; p < a.motion_tool.size(); ++p) a.motion_previous_tool[p] = a.motion_tool[p];
 }
 
+// Force and torque of a piece's contacts, x, y, z and a number of which nobody asks.
+struct PieceLoad {
+  Double4 force_w, torque_w;
+};
+
+// Of the contacts from `i` on that are of one piece. Returns the first that is not.
+static_assert(offsetof(Contact, position_w) + 32 <= sizeof(Contact) &&
+              offsetof(Contact, normal_w) + 32 <= sizeof(Contact));
+std::int32_t add_up(const Contact* contact, std::int32_t i, std::int32_t contacts, const Double4& origin_w,
+                    PieceLoad& load) PALPATE_RT {
+  const std::int32_t piece = contact[i].piece;
+  for (; i < contacts && contact[i].piece == piece; ++i) {  // bound: kMaxContacts
+    if (!(contact[i].force_N > 0)) continue;
+    const Double4 pushes_w = splat4(contact[i].force_N) * load4(&contact[i].normal_w.x);
+    load.force_w += pushes_w;
+    load.torque_w += cross(load4(&contact[i].position_w.x) - origin_w, pushes_w);
+  }
+  return i;
+}
+
 // F_palm = -sum F_i - M g on the body, and its moment about the tool's origin (Cui & Xiao 2008: the palm supports the
 // body without deforming it). The fingers' forces on the body are the opposite of those on the tool.
 void balance_palm(const Model& model, const State& state, Scratch& scratch) PALPATE_RT {
@@ -171,23 +192,27 @@ void articulate(const Model& model, State& state, Scratch& scratch, const Input&
 void load_pieces(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   if (!is_articulated(model) || has_two_tools(model)) return;
   ArticulationState& a = state.articulation;
-  a.piece_force_tool_N.fill({});
-  a.piece_torque_tool_Nm.fill({});
+  for (std::int32_t p = 0; p < a.piece_force_tool_N.size(); ++p)  // bound: kMaxPieces
+    a.piece_force_tool_N[p] = a.piece_torque_tool_Nm[p] = {};
   const std::int32_t contacts = scratch.contact_count < kMaxContacts ? scratch.contact_count : kMaxContacts;
   const Contact* const contact = scratch.contact.data();
-  const Quat to_tool = conjugate(state.tool_w.orientation);
-  const Vec3 origin_w = state.tool_w.position_m;
+  const Double4 origin_w = lanes_of(state.tool_w.position_m);
+  const Quat4 to_tool = conjugate(splat4(state.tool_w).orientation);
   for (std::int32_t i = 0; i < contacts;) {  // bound: kMaxContacts; those of a piece follow one another
-    const std::int32_t piece = contact[i].piece;
-    Vec3 force_w, torque_w;
-    for (; i < contacts && contact[i].piece == piece; ++i) {
-      if (!(contact[i].force_N > 0)) continue;
-      const Vec3 pushes_w = contact[i].force_N * contact[i].normal_w;
-      force_w += pushes_w;
-      torque_w += cross(contact[i].position_w - origin_w, pushes_w);
+    std::int32_t piece[2] = {contact[i].piece, -1};
+    PieceLoad load[2] = {};
+    i = add_up(contact, i, contacts, origin_w, load[0]);
+    if (i < contacts) {
+      piece[1] = contact[i].piece;
+      i = add_up(contact, i, contacts, origin_w, load[1]);
     }
-    a.piece_force_tool_N[piece] += rotate(to_tool, force_w);
-    a.piece_torque_tool_Nm[piece] += rotate(to_tool, torque_w);
+    Double4 of[4] = {load[0].force_w, load[0].torque_w, load[1].force_w, load[1].torque_w};
+    transpose(of);
+    const Vec3x4 at_tool = rotate(to_tool, Vec3x4{of[0], of[1], of[2]});
+    for (std::uint32_t k = 0; k < 2 && piece[k] >= 0; ++k) {  // bound: 2
+      a.piece_force_tool_N[piece[k]] += at_tool[2 * k];
+      a.piece_torque_tool_Nm[piece[k]] += at_tool[2 * k + 1];
+    }
   }
   if (model.params.articulation == Articulation::kHand) balance_palm(model, state, scratch);
 }

@@ -42,11 +42,12 @@ TEST(HandKinematics, FramesByFoursAreTheSameToTheBit) {
     CarrierFrames frames;
     frames.place(tool, motion.data(), n);
     for (int i = 0; i < n; ++i) {
-      const RigidFrame one(tool * motion[static_cast<std::size_t>(i)]), of_four = frames.of(i);
-      EXPECT_EQ(one.x, of_four.x) << n << ' ' << i;
-      EXPECT_EQ(one.y, of_four.y);
-      EXPECT_EQ(one.z, of_four.z);
-      EXPECT_EQ(one.origin, of_four.origin);
+      const RigidFrame one(tool * motion[static_cast<std::size_t>(i)]);
+      const RigidLanes of_four = frames.of(i);
+      EXPECT_EQ(one.x, vector_of(of_four.x)) << n << ' ' << i;
+      EXPECT_EQ(one.y, vector_of(of_four.y));
+      EXPECT_EQ(one.z, vector_of(of_four.z));
+      EXPECT_EQ(one.origin, vector_of(of_four.origin));
     }
   }
 }

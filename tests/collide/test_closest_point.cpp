@@ -7,6 +7,7 @@
 
 #include "rt_core/surface/four_queries.h"
 #include "rt_core/surface/ring_proof.h"
+#include "tests/collide/edge_crossings.h"
 #include "tests/collide/meshes.h"
 
 namespace palpate::test {
@@ -149,6 +150,11 @@ TEST_P(ClosestPoint, FourSettleTheSame) {
   // Of 5,000, half of them outside or more, over the faces and edges of bodies that are convex there.
   EXPECT_GT(settled, 500);
   EXPECT_GT(on_edges, 50);
+}
+
+TEST_P(ClosestPoint, FourSettleWhatCameOverAnEdge) {
+  const EdgeCrossings crossings = cross_edges(body);
+  EXPECT_GT(crossings.settled, 1500);  // of 16,000; 1,961 on the torus, half of whose edges lie in its hollow
 }
 
 TEST_P(ClosestPoint, SignAgreesWithTheWindingNumber) {

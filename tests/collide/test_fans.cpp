@@ -5,6 +5,7 @@
 #include "rt_core/image_check.h"
 #include "rt_core/surface/closest_point.h"
 #include "rt_core/surface/ring_proof.h"
+#include "tests/collide/edge_crossings.h"
 #include "tests/collide/revolved.h"
 
 namespace palpate::test {
@@ -124,6 +125,12 @@ TEST_P(Fans, MatchBruteForceNextToFacesEdgesAndVertices) {
     expect_exact(on + height[i % 6] * normal + aside[i % 7] * random_unit(rng));
   }
   EXPECT_TRUE(by_planes > 50 || !has_planes()) << by_planes;
+}
+
+TEST_P(Fans, FourSettleWhatCameOverAnEdge) {
+  const EdgeCrossings crossings = cross_edges(body);
+  EXPECT_TRUE(crossings.settled > 1500 || GetParam() == "knife") << crossings.settled;  // 1,746 to 9,541 of 16,000
+  EXPECT_TRUE(crossings.again > 500 || !has_planes()) << crossings.again;               // 694 to 4,184
 }
 
 // Where all needles of a fan meet, to the bit and off it.

@@ -36,9 +36,9 @@ struct Rig {
   }
   void step(const std::vector<Touch>& touches) {
     scratch->status = 0;
-    scratch->contact_count = static_cast<int>(touches.size());
+    scratch->contact_count = 0;
     for (std::size_t i = 0; i < touches.size(); ++i) {
-      Contact& c = scratch->contact.data()[i];
+      Contact& c = place_in_order(*scratch, touches[i].point);
       c = Contact{};
       c.row = c.point = touches[i].point;
       c.previous = state->point[touches[i].point].region;
@@ -117,7 +117,8 @@ TEST(Regions, ClusteringMatchesTheNaiveOracle) {
     ASSERT_EQ(rig.live(), static_cast<int>(clusters));
     double area = 0;
     for (std::size_t i = 0; i < touches.size(); ++i) {
-      ASSERT_EQ(rig.scratch->contact.data()[i].region, rig.state->point[touches[i].point].region);
+      const Contact& contact = rig.scratch->contact.data()[i];
+      ASSERT_EQ(contact.region, rig.state->point[contact.point].region);
       ASSERT_GE(rig.region_at(touches[i].point).depth_max_m, touches[i].depth_m);
       for (std::size_t j = 0; j < touches.size(); ++j)
         ASSERT_EQ(rig.id_at(touches[i].point) == rig.id_at(touches[j].point), label[i] == label[j]);

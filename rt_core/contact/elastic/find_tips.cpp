@@ -401,7 +401,7 @@ class Finder {
   void keep(std::int32_t index, const ElasticRow& row, Real depth_m) PALPATE_RT {
     PointState& point = state_.point[index];
     const ToolPoint& tool_point = model_.tool_point[static_cast<std::size_t>(index)];
-    Contact& contact = scratch_.contact[scratch_.contact_count++];
+    Contact& contact = place_in_order(scratch_, index);  // a solid's parts take turns
     contact = Contact{};
     contact.row = contact.point = index;
     contact.piece = tool_point.piece;

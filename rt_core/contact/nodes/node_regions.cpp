@@ -112,10 +112,8 @@ Real far_share(const Model& model, Real local_J, Real energy_J) PALPATE_RT {
 
 void label_nodes(State& state, Scratch& scratch, const Clusters& clusters) PALPATE_RT {
   for (std::int32_t i = 0; i < clusters.contacts; ++i) {  // bound: kMaxContacts
-    scratch.contact[clusters.order[i]].region = clusters.cluster[clusters.of_rank[i]].slot;
-  }
-  for (std::int32_t i = 0; i < scratch.contact_count; ++i) {  // bound: kMaxContacts
-    const Contact& contact = scratch.contact[i];
+    Contact& contact = scratch.contact[i];
+    contact.region = clusters.cluster[clusters.of_contact[i]].slot;
     state.nodal.contact[i].region = contact.region;  // both list the pushing nodes in order
     problem_of(scratch).node[contact.row].region = contact.region;
   }
