@@ -88,9 +88,10 @@ bool ElasticLoad::newton_step(RegionSystem& s) const PALPATE_RT {
     if (!factor(s, order, system)) return false;
   }
   system.solve(n, y);
-  for (std::int32_t b = 0; b < n; b += kRegionLanes) {  // bound: kMaxRegions / 4
-    store(y + b, load4(y + b) * load4(g + b));
-    store(by_force + b, splat4(order) * load4(y + b) * load4(s.force_N + b));
+  for (std::int32_t b = 0, end = whole_lanes(n, kRegionLanes); b != end; b += kRegionLanes) {  // bound: kMaxRegions / 4
+    const Double4 more_N = load4(y + b) * load4(g + b);
+    store(y + b, more_N);
+    store(by_force + b, splat4(order) * more_N * load4(s.force_N + b));
   }
   pair.apply(n, y, by_force, s.step_m, second);
   for (std::int32_t r = 0; r < n; ++r) {  // bound: kMaxRegions
