@@ -1,6 +1,7 @@
 // Steps of the region solver that know how laws bend: two lines in one body against bisection, and how soon they end.
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
 #include <array>
 
 #include "rt_core/contact/elastic/elastic_load.h"
@@ -99,6 +100,68 @@ TEST(RegionSteps, AThirdThatIsApartChangesNothing) {
     for (int r = 0; r < 2; ++r)
       EXPECT_NEAR(two.system.force_N[r], three.system.force_N[r], 1e-9 * two.system.force_N[r]) << depth << " " << r;
   }
+}
+
+// Three in touch of whose pairs the second order asks for more than all of them resist: I + g H g has no factor.
+struct Runaway : Sides {
+  Runaway() : Sides(1e-4, 8e-5, 0, true) {
+    load.tip[2].depth_m = 9e-5;
+    load.evaluate(system.shift_m, system);
+    const double resists_m_per_N = 1 / (system.root_tangent[0] * system.root_tangent[1]) + kOwn_m_per_N;
+    for (const int i : {0, 1}) {
+      load.pair.h_m_per_N2[i][1 - i] = -2 * resists_m_per_N / system.force_N[0];
+      load.pair.h_across_m_per_N2[1 - i][i] = -2 * resists_m_per_N / system.force_N[0];
+    }
+  }
+};
+
+// The step is then Newton's with what the pairs give at first order, and is bent as the laws are.
+TEST(RegionSteps, WithoutAFactorTheStepLeavesOutTheSecondOrder) {
+  Runaway bodies;
+  ElasticLoad& load = bodies.load;
+  RegionSystem& s = bodies.system;
+  load.evaluate(s.shift_m, s);
+  FactorLanes lanes;
+  ASSERT_FALSE(load.factor(s, 1, lanes));
+  ASSERT_TRUE(load.newton_step(s));
+  Eigen::Matrix3d gives = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d root, rest;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) gives(i, j) = load.pair.c_m_per_N[i][j];
+    gives(i, i) = kOwn_m_per_N;
+    root[i] = s.root_tangent[i];
+    rest[i] = s.residual_m[i];
+  }
+  const Eigen::Matrix3d system = Eigen::Matrix3d::Identity() + root.asDiagonal() * gives * root.asDiagonal();
+  const Eigen::Vector3d more_N = root.asDiagonal() * system.ldlt().solve(-root.cwiseProduct(rest));
+  RegionSystem asked = s;
+  for (int r = 0; r < 3; ++r) {
+    EXPECT_NEAR(load.change_N[r], more_N[r], 1e-12 * more_N.norm()) << r;
+    asked.step_m[r] = rest[r] + gives.row(r).dot(more_N);
+    EXPECT_NEAR(s.step_m[r], load.bent_step_m(r, asked), 1e-12 * rest.norm()) << r;
+  }
+}
+
+// Two whose energy has no least: the more they push, the more they give. The second order is dropped, and the forces
+// are those of the pairs' first.
+TEST(RegionSteps, AnEnergyWithoutALeastIsSolvedWithoutItsSecondOrder) {
+  Sides bodies(1e-3, 8e-4, 0, false);
+  const std::array<double, 2> asked = bodies.by_bisection();
+  for (const int i : {0, 1}) {
+    bodies.load.pair.h_m_per_N2[i][1 - i] = -kOwn_m_per_N / asked[0];
+    bodies.load.pair.h_across_m_per_N2[1 - i][i] = -kOwn_m_per_N / asked[0];
+  }
+  RegionSolution given_up;
+  const RegionSolution found = bodies.load.solve(bodies.system, ElasticLoad::kEnough_m, false, given_up);
+  EXPECT_GT(given_up.residual_m, ElasticLoad::kNoAnswer_m);
+  EXPECT_LE(found.residual_m, kTravelTolerance_m);
+  EXPECT_EQ(bodies.load.pair.h_m_per_N2[0][1], 0);
+  for (std::size_t r = 0; r < 2; ++r) EXPECT_NEAR(bodies.system.force_N[r], asked[r], 1e-7 * asked[r]) << r;
+
+  Sides sane(1e-3, 8e-4, 0, false);
+  RegionSolution none;
+  EXPECT_LE(sane.load.solve(sane.system, ElasticLoad::kEnough_m, false, none).residual_m, kTravelTolerance_m);
+  EXPECT_EQ(none.evaluations, 0);
 }
 
 }  // namespace

@@ -31,10 +31,6 @@ constexpr std::int32_t kSolvesOfFriction = 2;
 // Of lines the tangents' forces after a short step do, too: a thousandth of the force.
 constexpr Real kEnoughToSlip_m = 1e-9;
 
-// Of a solve that is so far off the energy of the pairs may have no least: their second order, cubic in the forces, is
-// told up to those of the last tick. Without it there is one.
-constexpr Real kNoAnswer_m = 1e-4;
-
 // What the places ask of the modes, in tip laws evaluated: two of them, and sums over numbers and modes.
 constexpr std::int32_t kPlaceLaws = 5;
 // A line's law, in tip laws.
@@ -57,13 +53,9 @@ RegionSolution solve_forces(ElasticLoad& load, std::int32_t laws, Scratch& scrat
                             Real* force_N) PALPATE_RT {
   RegionSolution result;
   if (load.n > 1) {
-    const Real enough_m = is_last ? ElasticLoad::kEnough_m : kEnoughToSlip_m;
-    result = solve_regions(load, load.n, scratch.system, enough_m, !is_last);
-    if (!(result.residual_m <= kNoAnswer_m)) {
-      count(result, load, laws, scratch.work);
-      load.pair.drop_second_order(load.n);
-      result = solve_regions(load, load.n, scratch.system, enough_m, !is_last);
-    }
+    RegionSolution given_up;
+    result = load.solve(scratch.system, is_last ? ElasticLoad::kEnough_m : kEnoughToSlip_m, !is_last, given_up);
+    if (given_up.evaluations > 0) count(given_up, load, laws, scratch.work);
   } else {
     const TravelResult alone = solve_travel(load.region[0], load.shift_alone_m(0));
     scratch.work.tip_laws += alone.evaluations * laws;

@@ -127,4 +127,13 @@ bool ElasticLoad::foresees(RegionSystem& s, Real most) const PALPATE_RT {
   return true;
 }
 
+RegionSolution ElasticLoad::solve(RegionSystem& system, Real enough_m, bool roughly,
+                                  RegionSolution& given_up) PALPATE_RT {
+  const RegionSolution result = solve_regions(*this, n, system, enough_m, roughly);
+  if (result.residual_m <= kNoAnswer_m) return result;
+  given_up = result;
+  pair.drop_second_order(n);
+  return solve_regions(*this, n, system, enough_m, roughly);
+}
+
 }  // namespace palpate

@@ -5,6 +5,7 @@
 #include "rt_core/contact/elastic/pair_lanes.h"
 #include "rt_core/contact/elastic/placed_law.h"
 #include "rt_core/contact/region_load.h"
+#include "rt_core/contact/region_solve.h"
 #include "rt_core/contact/tips/travel.h"
 
 namespace palpate {
@@ -163,6 +164,11 @@ struct ElasticLoad : TipLaws {
     return pair.c_m_per_N[i][j] + pair.h_m_per_N2[i][j] * force[i] + pair.h_m_per_N2[j][i] * force[j];
   }
   Real coupling_J(std::int32_t r, Real force_N, Real) const PALPATE_RT { return far_energy_J(own[r].far, force_N); }
+  // Forces and shifts of several regions, to `enough_m` (solve_regions()). Of a solve that is farther off than
+  // kNoAnswer_m the energy of the pairs may have no least: their second order, cubic in the forces, is told up to those
+  // of the last tick. Without it there is one: then it is dropped, and `given_up` tells what the first solve took.
+  static constexpr Real kNoAnswer_m = 1e-4;
+  RegionSolution solve(RegionSystem& system, Real enough_m, bool roughly, RegionSolution& given_up) PALPATE_RT;
 };
 
 }  // namespace palpate
