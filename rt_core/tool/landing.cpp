@@ -1,12 +1,10 @@
 #include "rt_core/tool/landing.h"
 
-#include <cstddef>
-#include <type_traits>
-
 #include "rt_core/cholesky.h"
 #include "rt_core/surface/body_box.h"
 #include "rt_core/tool/two_tools.h"
 #include "rt_core/tool/virtual_coupling.h"
+#include "rt_core/unwritten.h"
 
 namespace palpate {
 
@@ -174,11 +172,9 @@ class Landing {
   const State& state_;
   const Twist gone_;
   const ToolPiece* line_of_ = nullptr;
-  Vec3 axis_w_, middle_w_;  // of that piece
-  Box box_{};               // of the body
-  // Each is written as it is found: to clear all of them took 1,300 instructions a tick of snap_in (2026-11-27).
-  alignas(End) std::byte room_[2 * kMaxPieces * sizeof(End)];
-  End* const end_ = reinterpret_cast<End*>(room_);
+  Vec3 axis_w_, middle_w_;              // of that piece
+  Box box_{};                           // of the body
+  Unwritten<End, 2 * kMaxPieces> end_;  // to clear them took 1,300 instructions a tick of snap_in (2026-11-27)
   Held hold_[kLandings];
   std::int32_t ends_ = 0, held_ = 0;
 };

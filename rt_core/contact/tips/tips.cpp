@@ -1,6 +1,5 @@
 // The method `tips`: one law for each whole tip of the tool, or curves tabulated over the surface, in series with the
 // body's far field (contact/tips/travel.h).
-#include <cstddef>
 
 #include "rt_core/contact/contact.h"
 #include "rt_core/contact/region_load.h"
@@ -8,6 +7,7 @@
 #include "rt_core/contact/tips/tip_check.h"
 #include "rt_core/contact/tips/travel.h"
 #include "rt_core/image_check.h"
+#include "rt_core/unwritten.h"
 
 namespace palpate {
 
@@ -54,9 +54,7 @@ Vec3 printed_aside(const Model& model, const Tip& tip, const SurfaceFoot& foot, 
 struct TipLoad : TipLaws {
   static constexpr bool kPullsAside = true;
   static constexpr bool kTellsTangent = false;
-  // Each is written as it is found: to clear all of them first took as long as to press a few.
-  alignas(Tip) std::byte room[kMaxPieces * sizeof(Tip)];
-  Tip* const tip = reinterpret_cast<Tip*>(room);
+  Unwritten<Tip, kMaxPieces> tip;
   const SurfaceFoot* foot[kMaxPieces];
   const Model* model;
   const Scratch* scratch;
@@ -68,7 +66,7 @@ struct TipLoad : TipLaws {
   }
   RowLoad row(std::int32_t r, std::int32_t k, Real shift_m) const PALPATE_RT {
     const Tip& one = region[r].tip[k];
-    const SurfaceFoot& stands = *foot[region[r].tip + k - tip];
+    const SurfaceFoot& stands = *foot[region[r].tip + k - tip.data()];
     const Real e = one.depth_m - shift_m;
     return {tip_at(one, e), tip_energy_J(one, e), stands.centre_w,
             one.kind == TipKind::kTable ? aside(r, k, one, stands, e) : Vec3{}, beyond_range(one, e)};
