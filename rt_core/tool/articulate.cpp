@@ -192,8 +192,8 @@ void articulate(const Model& model, State& state, Scratch& scratch, const Input&
 void load_pieces(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   if (!is_articulated(model) || has_two_tools(model)) return;
   ArticulationState& a = state.articulation;
-  for (std::int32_t p = 0; p < a.piece_force_tool_N.size(); ++p)  // bound: kMaxPieces
-    a.piece_force_tool_N[p] = a.piece_torque_tool_Nm[p] = {};
+  a.piece_force_tool_N.fill({});
+  a.piece_torque_tool_Nm.fill({});
   const std::int32_t contacts = scratch.contact_count < kMaxContacts ? scratch.contact_count : kMaxContacts;
   const Contact* const contact = scratch.contact.data();
   const Double4 origin_w = lanes_of(state.tool_w.position_m);

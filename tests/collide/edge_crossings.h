@@ -21,6 +21,19 @@ inline Vec3 beyond_edge(const Model& model, std::size_t from, int e, double past
   return on + past * ((1.0 / 3) * (a + b + c) - on) + 3e-3 * u(rng) * unit_or(cross(b - a, c - a), {});
 }
 
+// What four together settle is what each has alone, to the bit.
+inline void expect_as_alone(const Body& body, const FourQueries& query, const FourSettled& four, std::uint32_t k) {
+  const SurfacePoint one = closest_surface_point(body.model, query.p[k], kHuge, query.warm_triangle[k]);
+  const SurfacePoint of_four = settled_point(four, k);
+  ASSERT_TRUE(one.found && of_four.found);
+  ASSERT_EQ(one.triangle, of_four.triangle);
+  ASSERT_EQ(one.closest_w, of_four.closest_w);
+  ASSERT_EQ(one.normal_w, of_four.normal_w);
+  ASSERT_EQ(one.signed_distance_m, of_four.signed_distance_m);
+  ASSERT_EQ(one.lower_bound_m, of_four.lower_bound_m);
+  ASSERT_EQ(one.looked, of_four.looked);
+}
+
 // Points settled over the face across the edge, and those of them so near it that both sides were measured again.
 struct EdgeCrossings {
   int settled = 0, again = 0;
@@ -43,13 +56,9 @@ inline EdgeCrossings cross_edges(const Body& body) {
     const FourSettled four = settle_four(body.model, query, 4);
     for (std::uint32_t k = 0; k < 4; ++k) {
       if ((four.settled >> k & 1) == 0) continue;
-      const SurfacePoint one = closest_surface_point(body.model, query.p[k], kHuge, query.warm_triangle[k]);
+      SCOPED_TRACE(kPast[i % 5]);
+      expect_as_alone(body, query, four, k);
       const SurfacePoint of_four = settled_point(four, k);
-      EXPECT_EQ(one.triangle, of_four.triangle);
-      EXPECT_EQ(one.closest_w, of_four.closest_w);
-      EXPECT_EQ(one.normal_w, of_four.normal_w);
-      EXPECT_EQ(one.signed_distance_m, of_four.signed_distance_m);
-      EXPECT_EQ(one.looked, of_four.looked) << "past by " << kPast[i % 5];
       crossings.settled += of_four.triangle != query.warm_triangle[k] && of_four.feature == Feature::kFace ? 1 : 0;
       crossings.again += (four.again >> k & 1) != 0 ? 1 : 0;
     }

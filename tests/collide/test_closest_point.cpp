@@ -134,17 +134,9 @@ TEST_P(ClosestPoint, FourSettleTheSame) {
     ASSERT_LT(four.settled, 1u << count);
     for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(count); ++k) {
       if ((four.settled >> k & 1) == 0) continue;
-      const SurfacePoint one = closest_surface_point(body.model, query.p[k], kHuge, query.warm_triangle[k]);
-      const SurfacePoint of_four = settled_point(four, k);
-      ASSERT_TRUE(one.found && of_four.found);
-      ASSERT_EQ(one.triangle, of_four.triangle);
-      ASSERT_EQ(one.closest_w, of_four.closest_w);
-      ASSERT_EQ(one.normal_w, of_four.normal_w);
-      ASSERT_EQ(one.signed_distance_m, of_four.signed_distance_m);
-      ASSERT_EQ(one.lower_bound_m, of_four.lower_bound_m);
-      ASSERT_EQ(one.looked, of_four.looked);
+      ASSERT_NO_FATAL_FAILURE(expect_as_alone(body, query, four, k));
       settled += 1;
-      on_edges += of_four.feature == Feature::kFace ? 0 : 1;
+      on_edges += settled_point(four, k).feature == Feature::kFace ? 0 : 1;
     }
   }
   // Of 5,000, half of them outside or more, over the faces and edges of bodies that are convex there.

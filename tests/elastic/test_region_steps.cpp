@@ -47,6 +47,10 @@ struct Sides {
       before[i] = r < 2 ? before_N : 0.0;
     }
   }
+  // Second order of what the first two give to each other.
+  void couple(double h_m_per_N2) {
+    for (const int i : {0, 1}) load.pair.h_m_per_N2[i][1 - i] = load.pair.h_across_m_per_N2[1 - i][i] = h_m_per_N2;
+  }
   RegionSolution solve() { return solve_regions(load, load.n, system); }
   double law_N(std::int32_t r, double e_m) const { return load.law[r].line.at(e_m).force_N; }
 
@@ -108,10 +112,7 @@ struct Runaway : Sides {
     load.tip[2].depth_m = 9e-5;
     load.evaluate(system.shift_m, system);
     const double resists_m_per_N = 1 / (system.root_tangent[0] * system.root_tangent[1]) + kOwn_m_per_N;
-    for (const int i : {0, 1}) {
-      load.pair.h_m_per_N2[i][1 - i] = -2 * resists_m_per_N / system.force_N[0];
-      load.pair.h_across_m_per_N2[1 - i][i] = -2 * resists_m_per_N / system.force_N[0];
-    }
+    couple(-2 * resists_m_per_N / system.force_N[0]);
   }
 };
 
@@ -147,10 +148,7 @@ TEST(RegionSteps, WithoutAFactorTheStepLeavesOutTheSecondOrder) {
 TEST(RegionSteps, AnEnergyWithoutALeastIsSolvedWithoutItsSecondOrder) {
   Sides bodies(1e-3, 8e-4, 0, false);
   const std::array<double, 2> asked = bodies.by_bisection();
-  for (const int i : {0, 1}) {
-    bodies.load.pair.h_m_per_N2[i][1 - i] = -kOwn_m_per_N / asked[0];
-    bodies.load.pair.h_across_m_per_N2[1 - i][i] = -kOwn_m_per_N / asked[0];
-  }
+  bodies.couple(-kOwn_m_per_N / asked[0]);
   RegionSolution given_up;
   const RegionSolution found = bodies.load.solve(bodies.system, ElasticLoad::kEnough_m, false, given_up);
   EXPECT_GT(given_up.residual_m, ElasticLoad::kNoAnswer_m);
