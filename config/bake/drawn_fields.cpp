@@ -192,7 +192,7 @@ Eigen::MatrixXf DrawnFields::fields(const elastic::ElasticBody<3>& body) const {
   return all;
 }
 
-std::vector<float> DrawnFields::floats_of(const elastic::ElasticBody<3>& body, double spacing_m) const {
+void DrawnFields::append(const elastic::ElasticBody<3>& body, double spacing_m, std::vector<float>& floats) const {
   const Eigen::MatrixXf all = fields(body);
   const auto vertices = vertex_m_.size();
   const auto linear = static_cast<std::int32_t>(body.modes.lambda_Npm3.size()) - body.soft;
@@ -213,8 +213,6 @@ std::vector<float> DrawnFields::floats_of(const elastic::ElasticBody<3>& body, d
     nodes.push_back(place_[p].node);
   }
   const SampleField anywhere(rest_.surface(), nodes, value, spacing_m);
-  std::vector<float> floats;
-  floats.reserve(1 + vertices * static_cast<std::size_t>(elastic_layout::kDrawnFloats * count));
   floats.push_back(static_cast<float>(count));
   for (std::size_t v = 0; v < vertices; ++v) {
     const Eigen::RowVectorXd own = anywhere.show(vertex_m_[v], vertex_normal_[v]);
@@ -224,13 +222,6 @@ std::vector<float> DrawnFields::floats_of(const elastic::ElasticBody<3>& body, d
       floats.push_back(static_cast<float>(own[count + k]));
     }
   }
-  return floats;
-}
-
-void DrawnFields::append(const elastic::ElasticBody<3>& body, double spacing_m, std::vector<float>& floats) const {
-  auto made = made_.find(body.soft);
-  if (made == made_.end()) made = made_.emplace(body.soft, floats_of(body, spacing_m)).first;
-  floats.insert(floats.end(), made->second.begin(), made->second.end());
 }
 
 }  // namespace palpate

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <map>
 #include <span>
 #include <vector>
 
@@ -31,14 +30,12 @@ class DrawnFields {
   Eigen::VectorXd less_half_space(const elastic::PressedPlace& place, int patch) const;
   void smooth_core(const elastic::PressedPlace& place, Eigen::VectorXd& field) const;
   Eigen::MatrixXf fields(const elastic::ElasticBody<3>& body) const;
-  std::vector<float> floats_of(const elastic::ElasticBody<3>& body, double spacing_m) const;
 
   const elastic::RestBody<3>& rest_;
   const std::vector<FacetFoot>& feet_;
   std::vector<Vec3> vertex_m_, vertex_normal_;
   double depth_m_, reach_m_;
   std::vector<Place> place_;
-  mutable std::map<int, std::vector<float>> made_;  // by soft modes: trials of other numbers ask again
 };
 
 }  // namespace palpate

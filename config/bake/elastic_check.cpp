@@ -24,6 +24,8 @@ namespace {
 constexpr std::array<double, 5> kDepths = {0.125, 0.25, 0.5, 0.75, 1};  // of the deepest
 // Of what the device renders: a press ends there. Deeper, nobody feels it.
 constexpr double kForces = 3;
+// Of what lies between a place and its support: deeper no law of a layer is made for (config/elastic/width_law.h).
+constexpr double kDeepest = 0.45;
 constexpr double kReachShare = 1.2;  // how far the fine elements reach, of the contact's radius at the deepest
 // A check in per cent: penetration left, of a facet, residual, and steps of several facets. A tube's forces change by
 // 0.6 % at most from elements of 0.3 radii, 1e-3, 1e-6 and steps of one facet, in a twentieth of the time (2026-11-22).
@@ -108,6 +110,7 @@ std::vector<CheckPress> check_places(const SceneDesc& scene, const ImageContents
     for (const Vec3 q : taken) least = std::min(least, norm(p - q));
     return least;
   };
+  std::vector<Vec3> held;
   std::vector<std::size_t> open;
   const auto look_beside = [&](const Supports& supports) {
     taken = sharp_corners(scene, image);
@@ -119,6 +122,8 @@ std::vector<CheckPress> check_places(const SceneDesc& scene, const ImageContents
         open.push_back(v);
   };
   const Supports supports = supports_of(scene, mesh);
+  for (std::size_t n = 0; n < mesh.node_m.size(); ++n)
+    if (supports[n] != 0) held.push_back(mesh.node_m[n]);
   look_beside(supports_and_beds(supports, beds_of(scene, mesh)));
   if (open.empty()) look_beside(supports);  // a bed all around is no reason not to press
   std::vector<CheckPress> presses;
@@ -129,7 +134,9 @@ std::vector<CheckPress> check_places(const SceneDesc& scene, const ImageContents
     if (presses.empty()) taken.clear();
     taken.push_back(image.vertex_m[v]);
     presses.push_back({image.vertex_m[v], image.vertex_normal[v], radius, {}, false, {}});
-    for (const double share : kDepths) presses.back().depth_m.push_back(depth * share);
+    double thick = kHuge;
+    for (const Vec3 q : held) thick = std::min(thick, norm(image.vertex_m[v] - q));
+    for (const double share : kDepths) presses.back().depth_m.push_back(std::min(depth, kDeepest * thick) * share);
   }
   return presses;
 }

@@ -62,8 +62,8 @@ class Chooser {
     const Trial third = pressed(soft, plain.wanted_c_mpN * clamp_to(-plain.bias / slope, 0.0, 3.0));
     return third.worst_error < plain.worst_error ? third : plain;
   }
-  ElasticReport write(const Trial& trial) const {
-    return bake_.write(trial.soft, scene_.elastic.linear, trial.add_c_mpN, image_);
+  ElasticReport write(const Trial& trial, ElasticBake::Drawn drawn) const {
+    return bake_.write(trial.soft, scene_.elastic.linear, trial.add_c_mpN, image_, drawn);
   }
 
  private:
@@ -71,7 +71,7 @@ class Chooser {
     Trial trial;
     trial.add_c_mpN = add_c_mpN;
     trial.soft = soft;
-    trial.soft = write(trial).soft;
+    trial.soft = write(trial, ElasticBake::Drawn::kLeftOut).soft;
     const ImageContents ball = with_ball(scene_, image_, presses_[0].radius_m);
     double count = 0;
     for (const CheckPress& press : presses_) {
@@ -132,18 +132,18 @@ ElasticReport bake_elastic_body(const SceneDesc& scene, ImageContents& image, st
   touch_by_parts(scene, image);
   const ElasticBake bake(scene, image, modes_of(scene.elastic), warnings);
   const std::int32_t linear = scene.elastic.linear;
-  const auto unchecked = [&] {
-    return bake.write(scene.elastic.soft > 0 ? scene.elastic.soft : kSoftUnlessStated, linear, 0, image);
+  const auto unchecked = [&](ElasticBake::Drawn drawn) {
+    return bake.write(scene.elastic.soft > 0 ? scene.elastic.soft : kSoftUnlessStated, linear, 0, image, drawn);
   };
-  const ElasticReport plain = unchecked();
-  if (check_presses_of(scene.elastic) == 0) return plain;
+  if (check_presses_of(scene.elastic) == 0) return unchecked(ElasticBake::Drawn::kWritten);
+  unchecked(ElasticBake::Drawn::kLeftOut);  // tells how fine the presses' elements are to be
   std::vector<CheckPress> presses = solved_presses(scene, image, bake.mesh(), run);
   const std::string where = scene.source.where("body.elastic.check_presses") + ": ";
   if (std::ranges::all_of(presses, [](const CheckPress& press) { return press.depth_m.empty(); })) {
     warnings.push_back(where +
                        "no place was found where a ball can press without the body going out from under it; nothing "
                        "is checked: hold more of the body, or use a smaller tool or contact.max_depth_mm");
-    return plain;
+    return unchecked(ElasticBake::Drawn::kWritten);
   }
   const Chooser chooser(scene, bake, presses, image);
   Trial best;
@@ -153,7 +153,7 @@ ElasticReport bake_elastic_body(const SceneDesc& scene, ImageContents& image, st
     if (best.soft == 0 || trial.worst_error < best.worst_error) best = std::move(trial);
     if (best.worst_error <= scene.elastic.check_error) break;
   }
-  ElasticReport report = chooser.write(best);
+  ElasticReport report = chooser.write(best, ElasticBake::Drawn::kWritten);
   report.add_c_mpN = best.add_c_mpN;
   report.radius_rootJ = image.params.elastic_radius_rootJ =
       std::min(image.params.elastic_radius_rootJ, kBeyond * best.reach_rootJ);

@@ -104,7 +104,7 @@ SampleField self_field(const elastic::Surface<3>& surface, const elastic::SelfTe
     const std::size_t node = at(terms.nodes[static_cast<std::size_t>(i)]);
     value.row(i) << terms.self_mpN[node], terms.second_mpN2[node], beta[static_cast<std::size_t>(i)];
   }
-  return {surface, terms.nodes, value, spacing_m};
+  return tame_field(surface, terms.nodes, value, spacing_m);
 }
 
 // Mean curvature at the vertices, convex positive: how fast normals turn along the edges of a face.
@@ -404,7 +404,7 @@ ElasticBake::~ElasticBake() = default;
 
 const TetMesh& ElasticBake::mesh() const { return parts_->mesh; }
 
-ElasticReport ElasticBake::write(int soft, int linear, double add_c_mpN, ImageContents& image) const {
+ElasticReport ElasticBake::write(int soft, int linear, double add_c_mpN, ImageContents& image, Drawn drawn) const {
   const Parts& parts = *parts_;
   elastic::ElasticBody<3> body = elastic::make_elastic_body(parts.stock, options_of(soft, linear));
   for (const int node : body.self.nodes) body.self.self_mpN[at(node)] += add_c_mpN;
@@ -416,7 +416,10 @@ ElasticReport ElasticBake::write(int soft, int linear, double add_c_mpN, ImageCo
     PartNumbers(body, image).hold();
   else
     add_own_slopes(body, parts.normals, image);
-  parts.drawn.append(body, parts.spacing_m, image.elastic_vertex);
+  if (drawn == Drawn::kWritten)
+    parts.drawn.append(body, parts.spacing_m, image.elastic_vertex);
+  else
+    image.elastic_vertex.push_back(0);  // of no shapes
   add_moduli(parts.rest, parts.feet, image);
   ModelParams& p = image.params;
   p.elastic_soft = body.soft;

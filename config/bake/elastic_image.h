@@ -1,6 +1,7 @@
 // An elastic body for the image: modes, soft energy and self terms (config/elastic), shown at the surface's vertices.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 
 #include "config/bake/compile.h"
@@ -15,8 +16,11 @@ class ElasticBake {
   ElasticBake(const SceneDesc& scene, const ImageContents& image, int modes, std::vector<std::string>& warnings);
   ~ElasticBake();
   const TetMesh& mesh() const;
+  // What the body looks like when pressed: for images that are kept. No tick reads it, and of a trial it would be most
+  // of the time.
+  enum class Drawn : std::uint8_t { kLeftOut, kWritten };
   // Fills the elastic arrays and parameters. `add_c_mpN` goes to every self term.
-  ElasticReport write(int soft, int linear, double add_c_mpN, ImageContents& image) const;
+  ElasticReport write(int soft, int linear, double add_c_mpN, ImageContents& image, Drawn drawn) const;
 
  private:
   struct Parts;

@@ -9,6 +9,7 @@
 #include "config/bake/element_materials.h"
 #include "config/bake/fem_body.h"
 #include "config/bake/image_rules.h"
+#include "config/bake/support_walls.h"
 #include "config/body/body.h"
 #include "config/body/body_card.h"
 #include "config/body/edge_cut.h"
@@ -190,7 +191,8 @@ TetMesh refine_elastic_mesh(const SceneDesc& scene, const ImageContents& image, 
     return least;
   };
   split_edges(skin, wanted, [&](Vec3 p) { return smooth.nearest(p); });
-  TetMesh mesh = tetrahedralise(skin, longest, label);
+  const auto spacing = [&](Vec3 p) { return std::min(wanted(p), longest); };
+  TetMesh mesh = tetrahedralise(skin, longest, label, support_walls(scene, model_of(image), spacing));
   bend_to(smooth, mesh, label);
   take_groups(base, mesh);
   return mesh;
@@ -206,7 +208,7 @@ TetMesh make_elastic_mesh(const SceneDesc& scene, const ImageContents& image, st
   const SmoothSurface smooth(scene, image);
   SurfaceMesh skin = coarse_surface(scene, image, edge, warnings);
   lay_support_rims(scene, skin);
-  TetMesh mesh = tetrahedralise(skin, edge, label);
+  TetMesh mesh = tetrahedralise(skin, edge, label, support_walls(scene, model_of(image), [&](Vec3) { return edge; }));
   bend_to(smooth, mesh, label);
   return mesh;
 }

@@ -1,6 +1,7 @@
 #include "config/bake/sample_field.h"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 
 #include "config/elastic/self_terms.h"
@@ -11,6 +12,18 @@ namespace {
 
 // In spacings: how far a sample is heard, and how far away the opposite outlook counts as.
 constexpr double kLengths = 4, kTurn = 1, kNugget = 1e-6;
+// Of the middle one of the samples' sizes.
+constexpr double kOutlying = 10;
+
+Eigen::MatrixXd without_outliers(Eigen::MatrixXd value) {
+  for (Eigen::Index k = 0; k < value.cols(); ++k) {
+    Eigen::VectorXd size = value.col(k).cwiseAbs();
+    std::nth_element(size.begin(), size.begin() + size.size() / 2, size.end());
+    const double most = kOutlying * size[size.size() / 2];
+    if (most > 0) value.col(k) = value.col(k).cwiseMax(-most).cwiseMin(most);
+  }
+  return value;
+}
 
 }  // namespace
 
@@ -40,6 +53,11 @@ double SampleField::likeness(const Sample& a, const Sample& b) const {
   const double d = norm(a.position - b.position) / length_, turn = kTurn * norm(a.normal - b.normal);
   const double r = std::sqrt(3.0 * (d * d + turn * turn));
   return (1 + r) * std::exp(-r);
+}
+
+SampleField tame_field(const elastic::Surface<3>& surface, const std::vector<int>& nodes, const Eigen::MatrixXd& value,
+                       double spacing_m) {
+  return {surface, nodes, without_outliers(value), spacing_m};
 }
 
 }  // namespace palpate

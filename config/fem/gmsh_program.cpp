@@ -30,21 +30,28 @@ void write_surface(const SurfaceMesh& surface, const std::string& path) {
 }
 
 // Algorithm3D 1 is Delaunay: the only one of gmsh 4.8 that is robust for any surface and deterministic on one thread.
-void write_script(double edge_m, const std::string& path) {
-  char sizes[96];
-  std::snprintf(sizes, sizeof sizes, "Mesh.MeshSizeMin = 0;\nMesh.MeshSizeMax = %.17g;\n", edge_m);
-  std::ofstream(path) << "General.NumThreads = 1;\nMesh.RandomSeed = 1;\nMesh.Algorithm3D = 1;\nMesh.Optimize = 1;\n"
-                      << sizes << "Merge \"surface.msh\";\nSurface Loop(1) = {1};\nVolume(1) = {1};\n";
+void write_script(double edge_m, std::span<const Vec3> inner_m, const std::string& path) {
+  char text[160];
+  std::snprintf(text, sizeof text, "Mesh.MeshSizeMin = 0;\nMesh.MeshSizeMax = %.17g;\n", edge_m);
+  std::ofstream out(path);
+  out << "General.NumThreads = 1;\nMesh.RandomSeed = 1;\nMesh.Algorithm3D = 1;\nMesh.Optimize = 1;\n"
+      << text << "Merge \"surface.msh\";\nSurface Loop(1) = {1};\nVolume(1) = {1};\n";
+  for (std::size_t i = 0; i < inner_m.size(); ++i) {
+    const Vec3 p = inner_m[i];
+    std::snprintf(text, sizeof text, "Point(%zu) = {%.17g, %.17g, %.17g, %.17g};\n", i + 1, p.x, p.y, p.z, edge_m);
+    out << text << "Point{" << i + 1 << "} In Volume{1};\n";
+  }
 }
 
 }  // namespace
 
-TetMesh tetrahedralise(const SurfaceMesh& surface, double edge_m, const std::string& label) {
+TetMesh tetrahedralise(const SurfaceMesh& surface, double edge_m, const std::string& label,
+                       std::span<const Vec3> inner_m) {
   check_mesh(surface, label);
   if (!(edge_m > 0)) throw ConfigError(label + ": the length of the tetrahedra's edges must be positive");
   const TemporaryFolder folder("palpate-gmsh");
   write_surface(surface, folder.file("surface.msh"));
-  write_script(edge_m, folder.file("body.geo"));
+  write_script(edge_m, inner_m, folder.file("body.geo"));
   const std::string log = folder.file("gmsh.log");
   const int status = run_program(
       {"gmsh", folder.file("body.geo"), "-3", "-nt", "1", "-v", "2", "-format", "msh22", "-o", folder.file("body.msh")},

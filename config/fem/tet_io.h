@@ -2,6 +2,7 @@
 // surfaces with the program gmsh.
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "config/fem/tet_mesh.h"
@@ -23,8 +24,10 @@ TetFile read_msh(const std::string& path, double scale);
 TetFile read_vtu(const std::string& path, double scale);
 
 // Fills a closed surface with linear tetrahedra of about `edge_m` by running gmsh (package gmsh; Delaunay, one thread,
-// fixed seed: the same mesh every time). The surface's own triangles and vertices stay. Throws ConfigError naming
-// `label` when the program is missing or cannot mesh the surface, with what it said.
-TetMesh tetrahedralise(const SurfaceMesh& surface, double edge_m, const std::string& label);
+// fixed seed: the same mesh every time). The surface's own triangles and vertices stay, and there is a node at each
+// of the places `inner_m`, which must lie inside. Throws ConfigError naming `label` when the program is missing or
+// cannot mesh the surface, with what it said.
+TetMesh tetrahedralise(const SurfaceMesh& surface, double edge_m, const std::string& label,
+                       std::span<const Vec3> inner_m = {});
 
 }  // namespace palpate
