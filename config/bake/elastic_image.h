@@ -16,8 +16,7 @@ class ElasticBake {
   ElasticBake(const SceneDesc& scene, const ImageContents& image, int modes, std::vector<std::string>& warnings);
   ~ElasticBake();
   const TetMesh& mesh() const;
-  // What the body looks like when pressed: for images that are kept. No tick reads it, and of a trial it would be most
-  // of the time.
+  // What the body looks like when pressed: for images that are kept. No tick of a trial reads it.
   enum class Drawn : std::uint8_t { kLeftOut, kWritten };
   // Fills the elastic arrays and parameters. `add_c_mpN` goes to every self term.
   ElasticReport write(int soft, int linear, double add_c_mpN, ImageContents& image, Drawn drawn) const;

@@ -136,6 +136,15 @@ class SmoothSurface {
   std::vector<CornerNormals> normal_;
 };
 
+// Lowest node that bend_to() leaves on the skin.
+double lowest_m(const SurfaceMesh& skin, const SmoothSurface& smooth) {
+  double lowest = kHuge;
+  for (const Vec3 p : skin.vertex_m) lowest = std::min(lowest, p.y);
+  for (const auto& [edge, triangles] : triangles_at_edges(skin))
+    lowest = std::min(lowest, smooth.nearest(0.5 * (skin.vertex_m[at(edge.first)] + skin.vertex_m[at(edge.second)])).y);
+  return lowest;
+}
+
 // Splits edges, the longest first, until none is longer than `wanted_m` at its middle; new corners go where `place`
 // says.
 template <class Wanted, class Place>
@@ -192,7 +201,8 @@ TetMesh refine_elastic_mesh(const SceneDesc& scene, const ImageContents& image, 
   };
   split_edges(skin, wanted, [&](Vec3 p) { return smooth.nearest(p); });
   const auto spacing = [&](Vec3 p) { return std::min(wanted(p), longest); };
-  TetMesh mesh = tetrahedralise(skin, longest, label, support_walls(scene, model_of(image), spacing));
+  TetMesh mesh =
+      tetrahedralise(skin, longest, label, support_walls(scene, model_of(image), lowest_m(skin, smooth), spacing));
   bend_to(smooth, mesh, label);
   take_groups(base, mesh);
   return mesh;
@@ -208,7 +218,8 @@ TetMesh make_elastic_mesh(const SceneDesc& scene, const ImageContents& image, st
   const SmoothSurface smooth(scene, image);
   SurfaceMesh skin = coarse_surface(scene, image, edge, warnings);
   lay_support_rims(scene, skin);
-  TetMesh mesh = tetrahedralise(skin, edge, label, support_walls(scene, model_of(image), [&](Vec3) { return edge; }));
+  TetMesh mesh = tetrahedralise(
+      skin, edge, label, support_walls(scene, model_of(image), lowest_m(skin, smooth), [&](Vec3) { return edge; }));
   bend_to(smooth, mesh, label);
   return mesh;
 }

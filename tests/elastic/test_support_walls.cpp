@@ -31,7 +31,7 @@ void expect_walls(const std::string& fixed, const Border& border, const std::vec
   const BakedScene scene(parse_scene(
       elastic_scene("shape = \"box\"\nsize_mm = [60, 40, 60]\ntriangles = 1200\n", 0, 8, 8, 2), "test.toml"));
   const SceneDesc held = parse_scene(held_block(fixed), "test.toml");
-  const std::vector<Vec3> places = support_walls(held, scene.model(), [](Vec3) { return kApart; });
+  const std::vector<Vec3> places = support_walls(held, scene.model(), 0, [](Vec3) { return kApart; });
   ASSERT_GT(places.size(), 10U);
   for (std::size_t i = 0; i < places.size(); ++i) {
     EXPECT_NEAR(border(places[i]), 0, 1e-9) << fixed;
