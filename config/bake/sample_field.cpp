@@ -13,7 +13,7 @@ namespace {
 // In spacings: how far a sample is heard, and how far away the opposite outlook counts as.
 constexpr double kLengths = 4, kTurn = 1, kNugget = 1e-6;
 // Of the middle one of the samples' sizes.
-constexpr double kOutlying = 10;
+constexpr double kOutlying = 20;
 
 Eigen::MatrixXd without_outliers(Eigen::MatrixXd value) {
   for (Eigen::Index k = 0; k < value.cols(); ++k) {

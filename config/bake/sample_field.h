@@ -32,7 +32,7 @@ class SampleField {
 // The same of numbers of which a few may be many times the rest, as what a place gives is towards the rim of what is
 // held. A smooth field through such samples swings far around them: on an organ that lies on a ball, 12 mm from where
 // beta is -487 it was 81 between samples of 2 and 5, and the force half as large again as it should be (elements of
-// 3.5 mm, 2026-11-27). Samples of a number end at ten times the middle one's size.
+// 3.5 mm, 2026-11-27). Samples of a number end at twenty times the middle one's size.
 SampleField tame_field(const elastic::Surface<3>& surface, const std::vector<int>& nodes, const Eigen::MatrixXd& value,
                        double spacing_m);
 

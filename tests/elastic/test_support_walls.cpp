@@ -70,8 +70,8 @@ TEST(SupportWalls, ACylinderHeldHighIsALayer) {
 }
 
 // A number that grows as 1 / r^3 towards a corner of a block's top, known every 6 mm. From where it is as large as the
-// largest that is kept, ten times the middle one, a field through all of its samples is up to 26 % off, without
-// the outliers 10 (2026-11-27); other numbers are as they were.
+// largest that is kept, twenty times the middle one, a field through all of its samples is up to 26 % off, without
+// the outliers 13 (2026-11-27); other numbers are as they were.
 TEST(TameField, DoesNotSwingAroundOutliers) {
   const TetMesh mesh = [] {
     const BakedScene scene(parse_scene(held_block("[body.fixed]\nbase_height_mm = 0"), "test.toml"));
@@ -107,7 +107,7 @@ TEST(TameField, DoesNotSwingAroundOutliers) {
       off_plain = std::max(off_plain, std::abs(plain.show(p, {0, 1, 0})[0] / wanted - 1));
       EXPECT_EQ(tame.show(p, {0, 1, 0})[1], plain.show(p, {0, 1, 0})[1]);
     }
-  EXPECT_LT(off, 0.12);
+  EXPECT_LT(off, 0.16);
   EXPECT_GT(off_plain, 0.2);
 }
 

@@ -366,7 +366,7 @@ void CarriedSurface::place(const RoundTip& tip, std::int32_t triangle, Vec3 near
     else
       turn_with_foot(n, row, corner);
   });
-  *shown += (found ? 8 : 6) * terms(model.params.elastic_soft) + (tip.is_ball() ? 0 : kSlideWork);
+  *shown += (found ? 8 : 6) * priced_terms(model.params.elastic_soft) + (tip.is_ball() ? 0 : kSlideWork);
 }
 
 bool CarriedSurface::place_on_facet(Vec3 centre_w, std::int32_t triangle, ElasticRow& row) const PALPATE_RT {

@@ -336,14 +336,14 @@ void create_work(const Model& model, void* block) noexcept {
 // term a spoke) at worst, or on its facet; found twice in a tick that loses it.
 void add_most_work(const Model& model, const SceneSizes& n, Work& work) noexcept {
   const std::int32_t soft = model.params.elastic_soft, pair = pairs(soft);
-  const std::int32_t place = (3 * (kFootWalk + 2) + 6) * terms(soft) + kMaxTurn + kSlideWork;
+  const std::int32_t place = (3 * (kFootWalk + 2) + 6) * priced_terms(soft) + kMaxTurn + kSlideWork;
   add_most_points(model, n, work);
   work.queries += 2 * n.points;  // a capsule asks three times
   const std::int32_t steps = 2 * kSolvesOfFriction * TipLaws::kIterations;
   add_most_regions(n, steps, work);
   work.evaluations += 1 + steps * (kStepHalvings + 3);
   const bool in_parts = touches_in_parts(model);
-  work.shown += n.points * (2 * place + terms(soft) + 2 * kPushTerms +
+  work.shown += n.points * (2 * place + priced_terms(soft) + 2 * kPushTerms +
                             (in_parts ? kMostPartLooks * kPartLookTerms + kPartVisitTerms : 0));
   work.rubbed += in_parts ? 2 * kLandings : 0;
   work.soft_pairs += soft_work(pair);
