@@ -209,8 +209,8 @@ TEST(ElasticTeleports, OnAnArchStayFinite) {
 }
 
 // By symmetry a press on the crest goes straight down: nothing between the vertices may throw the tip aside. With self
-// terms straight between the vertices it was 0.25 N of 8.7 N here, to either side (2026-11-22). The nodes in its foot are
-// not symmetric: 0.018 N of 9.0 (2026-11-27).
+// terms straight between the vertices it was 0.25 N of 8.7 N here, to either side (2026-11-22). The nodes in its foot
+// are not symmetric: 0.018 N of 9.0 (2026-11-27).
 TEST(SlowElasticTick, PressOnTheCrestOfARingIsNotThrownAside) {
   const BakedScene scene(
       parse_scene(elastic_scene("shape = \"ring\"\nradius_mm = 50\nwall_mm = 20\naxis = \"z\"\ntriangles = 2304\n", 11,
