@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 #include "config/bake/elastic_mesh.h"
 #include "config/bake/element_materials.h"
@@ -24,7 +25,7 @@ namespace {
 constexpr std::array<double, 5> kDepths = {0.125, 0.25, 0.5, 0.75, 1};  // of the deepest
 // Of what the device renders: a press ends there. Deeper, nobody feels it.
 constexpr double kForces = 3;
-// Of what lies between a place and its support: deeper no law of a layer is made for (config/elastic/width_law.h).
+// Of the way from a place to the nearest held node: deeper no law of a layer is made for (config/elastic/width_law.h).
 constexpr double kDeepest = 0.45;
 constexpr double kReachShare = 1.2;  // how far the fine elements reach, of the contact's radius at the deepest
 // A check in per cent: penetration left, of a facet, residual, and steps of several facets. A tube's forces change by
@@ -94,6 +95,18 @@ std::vector<Vec3> sharp_corners(const SceneDesc& scene, const ImageContents& ima
   return corners;
 }
 
+double nearest_m(const std::vector<Vec3>& places, Vec3 p) {
+  double least = kHuge;
+  for (const Vec3 q : places) least = std::min(least, norm(p - q));
+  return least;
+}
+std::vector<Vec3> held_nodes(const TetMesh& mesh, const Supports& supports) {
+  std::vector<Vec3> held;
+  for (std::size_t n = 0; n < mesh.node_m.size(); ++n)
+    if (supports[n] != 0) held.push_back(mesh.node_m[n]);
+  return held;
+}
+
 }  // namespace
 
 std::vector<CheckPress> check_places(const SceneDesc& scene, const ImageContents& image, const TetMesh& mesh,
@@ -105,25 +118,18 @@ std::vector<CheckPress> check_places(const SceneDesc& scene, const ImageContents
   radius = std::max(radius, depth);
   std::vector<Vec3> taken;
   const double apart = 1.2 * contact_radius_m(radius, depth);
-  const auto nearest = [&](Vec3 p) {
-    double least = kHuge;
-    for (const Vec3 q : taken) least = std::min(least, norm(p - q));
-    return least;
-  };
-  std::vector<Vec3> held;
+  const auto nearest = [&](Vec3 p) { return nearest_m(taken, p); };
   std::vector<std::size_t> open;
   const auto look_beside = [&](const Supports& supports) {
-    taken = sharp_corners(scene, image);
-    for (std::size_t n = 0; n < mesh.node_m.size(); ++n)
-      if (supports[n] != 0) taken.push_back(mesh.node_m[n]);
+    taken = held_nodes(mesh, supports);
+    std::ranges::copy(sharp_corners(scene, image), std::back_inserter(taken));
     for (std::size_t v = 0; v < image.vertex_m.size(); ++v)
       if (nearest(image.vertex_m[v]) > apart &&
           is_reachable(surface, image.vertex_m[v], image.vertex_normal[v], radius, surface.params.surface_size_m))
         open.push_back(v);
   };
   const Supports supports = supports_of(scene, mesh);
-  for (std::size_t n = 0; n < mesh.node_m.size(); ++n)
-    if (supports[n] != 0) held.push_back(mesh.node_m[n]);
+  const std::vector<Vec3> held = held_nodes(mesh, supports);
   look_beside(supports_and_beds(supports, beds_of(scene, mesh)));
   if (open.empty()) look_beside(supports);  // a bed all around is no reason not to press
   std::vector<CheckPress> presses;
@@ -134,9 +140,8 @@ std::vector<CheckPress> check_places(const SceneDesc& scene, const ImageContents
     if (presses.empty()) taken.clear();
     taken.push_back(image.vertex_m[v]);
     presses.push_back({image.vertex_m[v], image.vertex_normal[v], radius, {}, false, {}});
-    double thick = kHuge;
-    for (const Vec3 q : held) thick = std::min(thick, norm(image.vertex_m[v] - q));
-    for (const double share : kDepths) presses.back().depth_m.push_back(std::min(depth, kDeepest * thick) * share);
+    const double deepest = std::min(depth, kDeepest * nearest_m(held, image.vertex_m[v]));
+    for (const double share : kDepths) presses.back().depth_m.push_back(deepest * share);
   }
   return presses;
 }

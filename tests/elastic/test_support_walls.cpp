@@ -2,10 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "config/bake/sample_field.h"
 #include "config/bake/support_walls.h"
+#include "config/body/procedural.h"
 #include "config/elastic/solid_mesh.h"
 #include "config/elastic/surface.h"
 #include "config/fem/tet_io.h"
@@ -27,15 +27,14 @@ std::string held_block(const std::string& fixed) {
 // Every place on the border, in the region, in the body, apart from the others and from the surface; and nowhere on
 // the border is it far to one.
 template <class Border>
-void expect_walls(const std::string& fixed, const Border& border, const std::vector<Vec3>& looked_at) {
-  const BakedScene scene(parse_scene(
-      elastic_scene("shape = \"box\"\nsize_mm = [60, 40, 60]\ntriangles = 1200\n", 0, 8, 8, 2), "test.toml"));
+void expect_walls(const Model& block, const std::string& fixed, const Border& border,
+                  const std::vector<Vec3>& looked_at) {
   const SceneDesc held = parse_scene(held_block(fixed), "test.toml");
-  const std::vector<Vec3> places = support_walls(held, scene.model(), 0, [](Vec3) { return kApart; });
+  const std::vector<Vec3> places = support_walls(held, block, 0, [](Vec3) { return kApart; });
   ASSERT_GT(places.size(), 10U);
   for (std::size_t i = 0; i < places.size(); ++i) {
     EXPECT_NEAR(border(places[i]), 0, 1e-9) << fixed;
-    EXPECT_LT(closest_surface_point(scene.model(), places[i], kHuge, -1).signed_distance_m, -0.499 * kApart);
+    EXPECT_LT(closest_surface_point(block, places[i], kHuge, -1).signed_distance_m, -0.499 * kApart);
     for (std::size_t k = 0; k < i; ++k) EXPECT_GT(norm(places[i] - places[k]), 0.8 * kApart);
   }
   for (const Vec3 p : looked_at) {
@@ -46,11 +45,13 @@ void expect_walls(const std::string& fixed, const Border& border, const std::vec
 }
 
 TEST(SupportWalls, StandWhereTheRegionsEnd) {
-  expect_walls("[body.fixed]\nbase_height_mm = 20", [](Vec3 p) { return p.y - 0.02; },
+  const BakedScene scene(parse_scene(held_block("[body.fixed]\nbase_height_mm = 0"), "test.toml"));
+  const Model block = scene.model();
+  expect_walls(block, "[body.fixed]\nbase_height_mm = 20", [](Vec3 p) { return p.y - 0.02; },
                {{0, 0.02, 0}, {0.021, 0.02, -0.013}, {-0.024, 0.02, 0.024}});
-  expect_walls("[[body.fixed]]\nregion = \"ball\"\ncentre_mm = [0, 0, 0]\nradius_mm = 15",
+  expect_walls(block, "[[body.fixed]]\nregion = \"ball\"\ncentre_mm = [0, 0, 0]\nradius_mm = 15",
                [](Vec3 p) { return norm(p) - 0.015; }, {{0, 0.015, 0}, {0.012, 0.009, 0}, {-0.0075, 0.0106, 0.0075}});
-  expect_walls("[[body.fixed]]\nregion = \"box\"\nfrom_mm = [-50, -1, -50]\nto_mm = [5, 50, 50]",
+  expect_walls(block, "[[body.fixed]]\nregion = \"box\"\nfrom_mm = [-50, -1, -50]\nto_mm = [5, 50, 50]",
                [](Vec3 p) { return p.x - 0.005; }, {{0.005, 0.02, 0}, {0.005, 0.011, -0.017}});
 }
 
@@ -73,15 +74,8 @@ TEST(SupportWalls, ACylinderHeldHighIsALayer) {
 // largest that is kept, twenty times the middle one, a field through all of its samples is up to 26 % off, without
 // the outliers 13 (2026-11-27); other numbers are as they were.
 TEST(TameField, DoesNotSwingAroundOutliers) {
-  const TetMesh mesh = [] {
-    const BakedScene scene(parse_scene(held_block("[body.fixed]\nbase_height_mm = 0"), "test.toml"));
-    SurfaceMesh surface{{scene.model().vertex_m.begin(), scene.model().vertex_m.end()}, {}};
-    for (const Triangle& t : scene.model().triangle)
-      surface.triangle.push_back({t.vertex[0], t.vertex[1], t.vertex[2]});
-    TetMesh out = tetrahedralise(surface, 6e-3, "block");
-    add_middle_nodes(out);
-    return out;
-  }();
+  TetMesh mesh = tetrahedralise(make_box({0.06, 0.04, 0.06}, 1200), 6e-3, "block");
+  add_middle_nodes(mesh);
   const elastic::Surface<3> surface(elastic::solid_mesh(mesh, "block"), 1);
   const auto number_at = [](Vec3 p) { return 1e-6 / std::pow(norm(p - Vec3{-0.031, 0.04, -0.031}), 3); };
   std::vector<int> nodes;
