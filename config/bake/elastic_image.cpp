@@ -17,6 +17,7 @@
 #include "config/elastic/elastic_body.h"
 #include "config/elastic/solid_mesh.h"
 #include "config/fem/large_strain_elements.h"
+#include "config/index.h"
 #include "config/response/corner_normals.h"
 #include "config/scene/config_error.h"
 #include "config/scene/schema.h"
@@ -40,7 +41,6 @@ constexpr double kSampleSpacing = 0.055;
 constexpr elastic::PatchOptions kPatch{0.75, 0.0063};
 constexpr double kFacing = 0.5;  // samples on another face say nothing about this one
 
-std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 Vector<3> eigen(Vec3 v) { return {v.x, v.y, v.z}; }
 
 // du_i/dX_j of a field at every surface node, [node * 9 + 3 i + j]: the mean of the elements' own there.

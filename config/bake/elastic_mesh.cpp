@@ -20,6 +20,7 @@
 #include "config/elastic/surface.h"
 #include "config/fem/large_strain_elements.h"
 #include "config/fem/tet_io.h"
+#include "config/index.h"
 #include "config/response/corner_normals.h"
 #include "rt_core/surface/closest_point.h"
 
@@ -37,7 +38,6 @@ constexpr double kFinest = 1.0 / 30, kCoarsest = 1.0 / 8;
 // 0.0 %, 3: -0.5 and -0.8 %, 5: -2.9 and -1.8 %, all of it: -5.3 and -2.7 %; at nu 0.49 5 gives -1.6 and -1.5 %.
 constexpr double kPointBulk = 2.5;
 
-std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 Eigen::Vector3d eigen(Vec3 v) { return {v.x, v.y, v.z}; }
 
 SurfaceMesh surface_of(const ImageContents& image) {

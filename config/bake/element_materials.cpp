@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "config/index.h"
 #include "config/scene/config_error.h"
 #include "config/scene/schema.h"
 
@@ -13,8 +14,6 @@ namespace {
 
 // Places in an element: lattice points of this many steps, moved inwards so that each stands for the same volume.
 constexpr int kSteps = 4;
-
-std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
 std::array<Vec3, 4> corners_of(const TetMesh& mesh, const Tet& tet) {
   std::array<Vec3, 4> corner;

@@ -4,6 +4,7 @@
 
 #include "config/body/body_card.h"
 #include "config/body/body_pose.h"
+#include "config/index.h"
 #include "config/scene/config_error.h"
 #include "rt_core/surface/foot_search.h"
 
@@ -14,8 +15,6 @@ namespace {
 // A smooth surface goes on where corners have the same normal: those of each part are longer by so much, so that it
 // ends between two of them, too. Far above rounding, far below what any force tells.
 constexpr double kSeam = 1e-12;
-
-std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
 Vec3 middle_of(const std::vector<Vec3>& vertex_m, const Triangle& t) {
   return (1.0 / 3) * (vertex_m[at(t.vertex[0])] + vertex_m[at(t.vertex[1])] + vertex_m[at(t.vertex[2])]);

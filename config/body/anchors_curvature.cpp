@@ -6,12 +6,11 @@
 #include <span>
 
 #include "config/body/anchors.h"
+#include "config/index.h"
 
 namespace palpate {
 
 namespace {
-
-std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
 constexpr double kJetRadius = 0.3;         // of the smallest half extent
 constexpr std::int32_t kJetVertices = 96;  // visited per fit, spread evenly: bounds the cost on fine meshes

@@ -3,12 +3,11 @@
 #include <cmath>
 
 #include "config/body/anchors.h"
+#include "config/index.h"
 
 namespace palpate {
 
 namespace {
-
-std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
 using Neighbours = std::vector<std::vector<std::int32_t>>;  // along feature edges, per vertex
 

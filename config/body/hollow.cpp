@@ -3,12 +3,11 @@
 #include <cmath>
 
 #include "config/body/procedural.h"
+#include "config/index.h"
 
 namespace palpate {
 
 namespace {
-
-std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
 // Cells around the axis and rows along the profile, 2 x around x rows triangles: as many as asked for, nearly square,
 // and such that mirror images fit.

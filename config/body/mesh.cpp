@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "config/index.h"
+
 namespace palpate {
 
 namespace {
-
-std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
 // One side of a triangle: the edge's end vertices in increasing order, and where it comes from.
 struct Side {

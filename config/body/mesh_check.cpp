@@ -3,14 +3,13 @@
 #include <cstdio>
 
 #include "config/body/mesh.h"
+#include "config/index.h"
 #include "config/scene/config_error.h"
 #include "rt_core/surface/closest_point.h"
 
 namespace palpate {
 
 namespace {
-
-std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
 std::string text_of(Vec3 p) {
   char text[96];

@@ -7,13 +7,12 @@
 #include <filesystem>
 #include <unordered_map>
 
+#include "config/index.h"
 #include "config/scene/config_error.h"
 
 namespace palpate {
 
 namespace {
-
-std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
 std::string lower_extension(const std::string& path) {
   std::string text = std::filesystem::path(path).extension().string();

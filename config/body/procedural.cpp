@@ -4,13 +4,12 @@
 #include <cmath>
 #include <map>
 
+#include "config/index.h"
 #include "rt_core/math.h"
 
 namespace palpate {
 
 namespace {
-
-std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
 // Points of the f-fold subdivision of the icosahedron's faces, shared along edges, on the unit sphere.
 class GeodesicSphere {

@@ -4,11 +4,11 @@
 #include <numeric>
 #include <vector>
 
+#include "config/index.h"
+
 namespace palpate {
 
 namespace {
-
-std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
 struct Box {
   Vec3 lower{kHuge, kHuge, kHuge}, upper{-kHuge, -kHuge, -kHuge};

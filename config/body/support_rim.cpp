@@ -8,6 +8,7 @@
 #include "config/body/body_card.h"
 #include "config/body/edge_cut.h"
 #include "config/body/supports.h"
+#include "config/index.h"
 
 namespace palpate {
 
@@ -19,8 +20,6 @@ constexpr double kAtCorner = 0.02, kMoves = 0.35;
 constexpr double kLeastArea = 0.2;  // of a facet, after one of its corners was moved
 constexpr int kBisections = 40;     // 1e-12 of an edge
 constexpr double kSmoothCos = 0.8;  // between neighbouring facets: corners of sharper edges stay where they are
-
-std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
 // The rim of regions that hold the same components.
 class Rim {

@@ -8,6 +8,7 @@
 #include <iterator>
 
 #include "config/body/body.h"
+#include "config/index.h"
 #include "config/scene/config_error.h"
 #include "rt_core/surface/triangle.h"
 
@@ -17,8 +18,6 @@ namespace {
 
 // Of the body's size: how much nearer another triangle may be to a node on the border between the two.
 constexpr double kSameDistance = 1e-7;
-
-std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
 double distance_to(const SurfaceMesh& surface, const std::vector<std::size_t>& triangles, Vec3 p) {
   double least = kHuge;

@@ -5,6 +5,7 @@
 #include "config/body/body_card.h"
 #include "config/body/body_pose.h"
 #include "config/body/support_surface.h"
+#include "config/index.h"
 #include "config/scene/config_error.h"
 #include "config/scene/schema.h"
 
@@ -14,8 +15,6 @@ namespace {
 
 // Nodes of a flat base are as flat as rounding leaves them.
 constexpr double kFlat_m = 1e-9;
-
-std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
 // In the order of HeldComponents.
 constexpr std::uint8_t kHeld[] = {kHoldAll, 1, 2, 4, 1 | 2, 1 | 4, 2 | 4, kHoldAll};

@@ -7,6 +7,7 @@
 #include "config/fem/fill_order.h"
 #include "config/fem/sparse_factor.h"
 #include "config/fem/tet_element.h"
+#include "config/index.h"
 #include "config/scene/config_error.h"
 
 namespace palpate {
@@ -15,8 +16,6 @@ namespace {
 
 using Matrix = Eigen::SparseMatrix<double>;
 using Triplet = Eigen::Triplet<double>;
-
-std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
 void check_order(const TetMesh& mesh, const FemMaterial& material, const std::string& label) {
   if (material.poisson <= kMeanDilatationAbove) return;

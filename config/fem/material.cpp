@@ -5,13 +5,12 @@
 #include <cstdio>
 #include <numeric>
 
+#include "config/index.h"
 #include "config/scene/config_error.h"
 
 namespace palpate {
 
 namespace {
-
-std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
 using Motion = Eigen::Matrix<double, 6, 1>;  // rotation about the centre x, y, z (times the size), translation x, y, z
 using Motions = Eigen::Matrix<double, Eigen::Dynamic, 6>;

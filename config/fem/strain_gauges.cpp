@@ -6,12 +6,11 @@
 #include <utility>
 
 #include "config/fem/tet_element.h"
+#include "config/index.h"
 
 namespace palpate {
 
 namespace {
-
-std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
 // Components xx yy zz xy yz zx as pairs of axes.
 constexpr std::size_t kPair[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {2, 0}};

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "config/index.h"
+
 namespace palpate {
 
 namespace {
 
-std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 Eigen::Index row(std::size_t i) { return static_cast<Eigen::Index>(i); }
 
 // The four points with one coordinate b and three equal ones a; the six with two a and two b.

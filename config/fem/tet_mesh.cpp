@@ -4,11 +4,11 @@
 #include <map>
 #include <utility>
 
+#include "config/index.h"
+
 namespace palpate {
 
 namespace {
-
-std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
 using EdgeKey = std::pair<std::int32_t, std::int32_t>;
 EdgeKey key_of(std::int32_t a, std::int32_t b) { return {std::min(a, b), std::max(a, b)}; }

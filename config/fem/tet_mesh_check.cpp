@@ -6,6 +6,7 @@
 
 #include "config/fem/tet_element.h"
 #include "config/fem/tet_mesh.h"
+#include "config/index.h"
 #include "config/scene/config_error.h"
 
 namespace palpate {
@@ -17,8 +18,6 @@ namespace {
 constexpr double kFlatTet = 1e-9;
 // A curved element whose Jacobian falls below this share of the straight one's is about to fold.
 constexpr double kLeastJacobian = 0.02;
-
-std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
 std::string text_of(Vec3 p) {
   char text[96];

@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "config/index.h"
 #include "config/scene/config_error.h"
 
 namespace palpate {
 
 namespace {
-
-std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
 void add_quad(PlaneMesh& plane, std::array<std::int32_t, 4> q, bool rising) {
   if (rising) {

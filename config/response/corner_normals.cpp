@@ -5,14 +5,13 @@
 
 #include "config/body/body_card.h"
 #include "config/body/body_pose.h"
+#include "config/index.h"
 #include "rt_core/math.h"
 #include "rt_core/surface/ring.h"
 
 namespace palpate {
 
 namespace {
-
-std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
 Vec3 face_normal(const std::vector<Vec3>& vertex, const Triangle& t) {
   const Vec3 a = vertex[at(t.vertex[0])];

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "config/index.h"
 #include "sim_host/view/mesh_raster.h"
 #include "sim_host/view/png_file.h"
 #include "sim_host/view/raster.h"
@@ -15,8 +16,6 @@ constexpr int kPanel = 900, kHead = 60;
 constexpr Colour kPaper = colour(0xfbfaf7), kInk = colour(0x23282d), kSkin = colour(0xd9c9a5),
                  kInside = colour(0xc98f8f), kEdge = colour(0x4b4f55), kOpen = colour(0xc22727);
 constexpr double kDepthSlack = 2e-3;  // of the extent: an edge lies on its own facets
-
-std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
 // Every facet with corners of its own: flat, as the mesh is.
 RenderMesh facets(const SurfaceMesh& mesh) {
@@ -57,7 +56,7 @@ class Panel {
         layer_(kPanel, kPanel) {}
 
   void draw() {
-    layer_.draw(facets(mesh_), projection_, 0);
+    layer_.draw({facets(mesh_), projection_, 0});
     for (int y = 0; y < kPanel; ++y)
       for (int x = 0; x < kPanel; ++x)
         if (const Surfel& s = layer_.at(x, y); s.material == 0) canvas_.set_pixel(left_ + x, kHead + y, shade(s, x, y));

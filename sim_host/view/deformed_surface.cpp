@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "config/index.h"
 #include "rt_core/contact/contact.h"
 #include "sim_host/view/elastic_surface.h"
 #include "sim_host/view/imprint.h"
@@ -17,8 +18,6 @@ namespace {
 using Corners = std::array<std::int32_t, 3>;
 using TriangleNormals = std::array<Vec3, 3>;
 using Ends = std::pair<std::int32_t, std::int32_t>;
-
-std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
 
 DeformedSurface rest_surface(const Model& model) {
   DeformedSurface surface;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "config/index.h"
 #include "rt_core/contact/contact.h"
 #include "rt_core/contact/elastic/drawn_shapes.h"
 #include "sim_host/viewer/surface_shaders.h"
@@ -26,7 +27,6 @@ struct CornerAttributes {
   std::array<std::int32_t, 3> of;
 };
 
-std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
 Float3 floats(Vec3 v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
 Texel texel(Vec3 v, double w) { return {floats(v)[0], floats(v)[1], floats(v)[2], static_cast<float>(w)}; }
 

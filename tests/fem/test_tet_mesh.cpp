@@ -8,12 +8,11 @@
 #include "config/fem/linear_body.h"
 #include "config/fem/tet_element.h"
 #include "config/fem/tet_procedural.h"
+#include "config/index.h"
 #include "tests/fem/expect_error.h"
 
 namespace palpate {
 namespace {
-
-std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
 std::string check_error(const TetMesh& mesh) {
   return test::refusal_by([&] { check_tet_mesh(mesh, "block"); });
