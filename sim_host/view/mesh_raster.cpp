@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace palpate {
 
@@ -26,29 +27,41 @@ Vec3 Projection::ray(double x, double y) const {
   return forward_ + ((x - centre_x_) / scale_) * right_ - ((y - centre_y_) / scale_) * up_;
 }
 
-Layer::Layer(int width, int height)
-    : width_(width), height_(height), surfels_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {}
+PlacedMesh::PlacedMesh(RenderMesh drawn, const Projection& projection, std::int32_t of_material)
+    : mesh(std::move(drawn)), material(of_material) {
+  for (const Vec3 p : mesh.position_m) screen.push_back(projection(p));
+}
 
-void Layer::draw(const RenderMesh& mesh, const Projection& projection, std::int32_t material) {
-  std::vector<Vec3> screen(mesh.position_m.size());
-  for (std::size_t i = 0; i < screen.size(); ++i) screen[i] = projection(mesh.position_m[i]);
-  for (const auto& corner : mesh.triangle) draw_triangle(mesh, screen, corner, material);
+Layer::Layer(int width, int height, int rows)
+    : width_(width),
+      height_(height),
+      rows_(rows),
+      surfels_(static_cast<std::size_t>(width) * static_cast<std::size_t>(rows)) {}
+
+void Layer::begin(int first) {
+  first_ = first;
+  std::ranges::fill(surfels_, Surfel{});
+}
+
+void Layer::draw(const PlacedMesh& placed) {
+  for (const auto& corner : placed.mesh.triangle) draw_triangle(placed, corner);
 }
 
 // Edge functions at pixel centres; attributes are interpolated linearly in 1/z, as perspective demands.
-void Layer::draw_triangle(const RenderMesh& mesh, std::span<const Vec3> screen,
-                          const std::array<std::int32_t, 3>& corner, std::int32_t material) {
+void Layer::draw_triangle(const PlacedMesh& placed, const std::array<std::int32_t, 3>& corner) {
+  const RenderMesh& mesh = placed.mesh;
   Vec3 p[3];
-  for (std::size_t k = 0; k < 3; ++k) p[k] = screen[static_cast<std::size_t>(corner[k])];
+  for (std::size_t k = 0; k < 3; ++k) p[k] = placed.screen[static_cast<std::size_t>(corner[k])];
   if (p[0].z <= 0 || p[1].z <= 0 || p[2].z <= 0) return;
-  const double area = (p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[1].y - p[0].y) * (p[2].x - p[0].x);
-  if (!(std::abs(area) > 1e-12)) return;
   const auto low = [](double a, double b, double c) { return std::floor(std::min({a, b, c}) - 0.5); };
   const auto high = [](double a, double b, double c) { return std::ceil(std::max({a, b, c}) + 0.5); };
+  const int y0 = static_cast<int>(std::max<double>(first_, low(p[0].y, p[1].y, p[2].y)));
+  const int y1 = static_cast<int>(std::min<double>(std::min(first_ + rows_, height_), high(p[0].y, p[1].y, p[2].y)));
+  if (y0 >= y1) return;
+  const double area = (p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[1].y - p[0].y) * (p[2].x - p[0].x);
+  if (!(std::abs(area) > 1e-12)) return;
   const int x0 = static_cast<int>(std::max(0.0, low(p[0].x, p[1].x, p[2].x)));
   const int x1 = static_cast<int>(std::min<double>(width_, high(p[0].x, p[1].x, p[2].x)));
-  const int y0 = static_cast<int>(std::max(0.0, low(p[0].y, p[1].y, p[2].y)));
-  const int y1 = static_cast<int>(std::min<double>(height_, high(p[0].y, p[1].y, p[2].y)));
   for (int y = y0; y < y1; ++y) {
     for (int x = x0; x < x1; ++x) {
       double w[3];
@@ -58,8 +71,8 @@ void Layer::draw_triangle(const RenderMesh& mesh, std::span<const Vec3> screen,
       }
       if (w[0] < 0 || w[1] < 0 || w[2] < 0) continue;
       const double inverse = w[0] / p[0].z + w[1] / p[1].z + w[2] / p[2].z;
-      Surfel& surfel =
-          surfels_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
+      Surfel& surfel = surfels_[static_cast<std::size_t>(y - first_) * static_cast<std::size_t>(width_) +
+                                static_cast<std::size_t>(x)];
       const auto depth = static_cast<float>(1.0 / inverse);
       if (!(depth < surfel.depth_m)) continue;
       Vec3 normal;
@@ -73,7 +86,7 @@ void Layer::draw_triangle(const RenderMesh& mesh, std::span<const Vec3> screen,
       surfel = {depth,
                 static_cast<float>(value),
                 {static_cast<float>(normal.x), static_cast<float>(normal.y), static_cast<float>(normal.z)},
-                material};
+                placed.material};
     }
   }
 }

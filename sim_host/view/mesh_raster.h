@@ -51,21 +51,34 @@ struct Surfel {
   std::int32_t material = -1;  // -1: nothing here
 };
 
+// A mesh where a projection shows it.
+struct PlacedMesh {
+  PlacedMesh(RenderMesh drawn, const Projection& projection, std::int32_t of_material);
+  RenderMesh mesh;
+  std::vector<Vec3> screen;  // of its vertices
+  std::int32_t material;
+};
+
+// What is seen through each pixel, for so many rows of a picture at a time.
 class Layer {
  public:
-  Layer(int width, int height);
+  Layer(int width, int height, int rows);
+  Layer(int width, int height) : Layer(width, height, height) {}
   int width() const { return width_; }
   int height() const { return height_; }
+  // Empties it, for the rows from `first` on.
+  void begin(int first);
   // Draws where nearer than what is there. Vertices behind the eye drop their triangle.
-  void draw(const RenderMesh& mesh, const Projection& projection, std::int32_t material);
+  void draw(const PlacedMesh& placed);
+  // Of the rows that are there.
   const Surfel& at(int x, int y) const {
-    return surfels_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
+    return surfels_[static_cast<std::size_t>(y - first_) * static_cast<std::size_t>(width_) +
+                    static_cast<std::size_t>(x)];
   }
 
  private:
-  void draw_triangle(const RenderMesh& mesh, std::span<const Vec3> screen, const std::array<std::int32_t, 3>& corner,
-                     std::int32_t material);
-  int width_, height_;
+  void draw_triangle(const PlacedMesh& placed, const std::array<std::int32_t, 3>& corner);
+  int width_, height_, rows_, first_ = 0;
   std::vector<Surfel> surfels_;
 };
 

@@ -35,6 +35,17 @@ Camera camera_of(const Model& model, const State& state, const std::vector<Vec3>
   return default_camera(model, state, tips, double(options.width) / options.height, options.view);
 }
 
+// What is drawn together, a band of rows at a time: all of a picture would take 400 MB, which the kernel clears for
+// longer than it is drawn.
+struct Sheet {
+  Layer layer;
+  std::vector<PlacedMesh> mesh;
+  void begin(int row) {
+    layer.begin(row);
+    for (const PlacedMesh& placed : mesh) layer.draw(placed);
+  }
+};
+
 class Renderer {
  public:
   Renderer(const Model& model, const State& state, const DeformedSurface& surface, const PictureOptions& options)
@@ -50,7 +61,7 @@ class Renderer {
                                  model.params.surface_size_m)),
         camera_(camera_of(model, state, tips_of(forces_, force_scale_), options)),
         projection_(camera_, options.width * samples_, options.height * samples_),
-        solid_(options.width * samples_, options.height * samples_),
+        solid_{{options.width * samples_, options.height * samples_, (kBand + 1) * samples_}, {}},
         rest_(solid_),
         tool_(solid_),
         arrows_(solid_) {}
@@ -61,9 +72,9 @@ class Renderer {
     draw_anchors();
     for (std::size_t i = 0; i < model_.piece.size(); ++i) {
       const Pose carrier = carrier_w(model_, state_, static_cast<std::int32_t>(i));
-      tool_.draw(is_hand_ ? hand_render_mesh(model_.piece[i], carrier, is_left_hand(model_))
-                          : piece_mesh(model_, model_.piece[i], carrier),
-                 projection_, kTool);
+      tool_.mesh.emplace_back(is_hand_ ? hand_render_mesh(model_.piece[i], carrier, is_left_hand(model_))
+                                       : piece_mesh(model_, model_.piece[i], carrier),
+                              projection_, kTool);
     }
     draw_arrows();
     if (!options_.bare) make_shadow();
@@ -83,9 +94,12 @@ class Renderer {
   void draw_anchors();
   void draw_arrows();
   void make_shadow();
-  Canvas resolve() const;
+  Canvas resolve();
   Colour sample(int x, int y) const;
   Colour background(int x, int y) const;
+  Vec3 light_from(double right, double up, double back) const {
+    return unit_or(right * projection_.right() + up * projection_.up() - back * projection_.forward(), {0, 0, 1});
+  }
   Colour shade(Colour base, const Surfel& surfel, int x, int y, float gloss) const;
   Colour solid_colour(int x, int y) const;
   float outline(int x, int y) const;
@@ -104,7 +118,10 @@ class Renderer {
   ForceScale force_scale_;
   Camera camera_;
   Projection projection_;
-  Layer solid_, rest_, tool_, arrows_;
+  Vec3 key_ = light_from(-0.55, 0.75, 0.55), fill_ = light_from(0.8, 0.1, 0.5);
+  // Of pixels. What is around a sample decides its colour, up to a pixel below it.
+  static constexpr int kBand = 32;
+  Sheet solid_, rest_, tool_, arrows_;
   ColourScale colours_;
   bool on_surface_ = true;  // the surface has the values
   // Soft shadow on the ground: a blurred view of body and tool from above.
@@ -135,9 +152,9 @@ void Renderer::draw_body() {
     const auto first = static_cast<std::int32_t>(3 * t);
     mesh.triangle.push_back({first, first + 1, first + 2});
   }
-  solid_.draw(mesh, projection_, kBody);
+  solid_.mesh.emplace_back(mesh, projection_, kBody);
   mesh.position_m = std::move(rest_m);
-  rest_.draw(mesh, projection_, kBody);
+  rest_.mesh.emplace_back(std::move(mesh), projection_, kBody);
 }
 
 void Renderer::draw_anchors() {
@@ -148,15 +165,19 @@ void Renderer::draw_anchors() {
     const Vec3 at = anchor.position_m + (anchor.fixed != 0 ? Vec3{} : load.displacement_w);
     RenderMesh ball = sphere_mesh({at, {}}, (stress ? 0.020 : 0.014) * model_.params.surface_size_m);
     ball.value.assign(ball.position_m.size(), load.stress_Pa);
-    solid_.draw(ball, projection_, stress ? kAnchorStress : anchor.fixed != 0 ? kAnchorFixed : kAnchorFree);
+    solid_.mesh.emplace_back(std::move(ball), projection_,
+                             stress              ? kAnchorStress
+                             : anchor.fixed != 0 ? kAnchorFixed
+                                                 : kAnchorFree);
   }
 }
 
 void Renderer::draw_arrows() {
   const double size = model_.params.surface_size_m;
   for (const DrawnForce& force : forces_)
-    arrows_.draw(arrow_mesh(force.tail_w, force.tail_w + force_scale_.m_per_N * force.force_N, 0.010 * size),
-                 projection_, kArrow);
+    arrows_.mesh.emplace_back(
+        arrow_mesh(force.tail_w, force.tail_w + force_scale_.m_per_N * force.force_N, 0.010 * size), projection_,
+        kArrow);
 }
 
 void Renderer::make_shadow() {
@@ -177,7 +198,7 @@ void Renderer::make_shadow() {
   body.position_m = surface_.position_m;
   body.normal = surface_.normal;
   body.triangle = surface_.triangle;
-  layer.draw(body, Projection(above, kShadow, kShadow), kBody);
+  layer.draw({std::move(body), Projection(above, kShadow, kShadow), kBody});
   shadow_.assign(kShadow * kShadow, 0.0f);
   for (int y = 0; y < kShadow; ++y) {
     for (int x = 0; x < kShadow; ++x) shadow_[static_cast<std::size_t>(y * kShadow + x)] = layer.at(x, y).material >= 0;
@@ -203,7 +224,7 @@ void Renderer::make_shadow() {
 
 Colour Renderer::background(int x, int y) const {
   if (options_.bare) return colour(0xffffff);
-  const float down = static_cast<float>(y) / static_cast<float>(solid_.height());
+  const float down = static_cast<float>(y) / static_cast<float>(solid_.layer.height());
   Colour c = mix(colour(0xfdfdfe), colour(0xe3e8ee), down * down);
   const Vec3 ray = projection_.ray(x + 0.5, y + 0.5);
   if (!(ray.y < -1e-6)) return c;
@@ -219,18 +240,16 @@ Colour Renderer::shade(Colour base, const Surfel& surfel, int x, int y, float gl
   const Vec3 view = unit_or(-projection_.ray(x + 0.5, y + 0.5), {0, 0, 1});
   Vec3 n = unit_or({double(surfel.normal[0]), double(surfel.normal[1]), double(surfel.normal[2])}, view);
   if (dot(n, view) < 0) n = -n;
-  const Vec3 back = -projection_.forward();
-  const Vec3 key = unit_or(-0.55 * projection_.right() + 0.75 * projection_.up() + 0.55 * back, view);
-  const Vec3 fill = unit_or(0.8 * projection_.right() + 0.1 * projection_.up() + 0.5 * back, view);
   const double light =
-      0.44 + 0.50 * std::max(0.0, dot(n, key)) + 0.14 * std::max(0.0, dot(n, fill)) + 0.10 * dot(n, kWorldUp);
-  const double highlight = std::pow(std::max(0.0, dot(n, unit_or(key + view, view))), 48.0);
+      0.44 + 0.50 * std::max(0.0, dot(n, key_)) + 0.14 * std::max(0.0, dot(n, fill_)) + 0.10 * dot(n, kWorldUp);
+  const double facing = dot(n, unit_or(key_ + view, view));
+  const double highlight = facing > 0.5 ? std::pow(facing, 48.0) : 0;  // 4e-15 there
   const auto lit = static_cast<float>(light), shine = gloss * static_cast<float>(highlight);
   return {base.r * lit + shine, base.g * lit + shine, base.b * lit + shine};
 }
 
 Colour Renderer::solid_colour(int x, int y) const {
-  const Surfel& surfel = solid_.at(x, y);
+  const Surfel& surfel = solid_.layer.at(x, y);
   if (surfel.material == kAnchorFree) return shade(colour(0x2f6f8f), surfel, x, y, 0.35f);
   if (surfel.material == kAnchorFixed) return shade(colour(0x3c434b), surfel, x, y, 0.35f);
   const Colour of_value = map_colour(static_cast<double>(surfel.value) / colours_.top);
@@ -243,12 +262,12 @@ Colour Renderer::solid_colour(int x, int y) const {
            colours_.tick.begin();
   };
   for (const int step : {1, 2}) {
-    if (x + step < solid_.width() && solid_.at(x + step, y).material == kBody &&
-        band(solid_.at(x + step, y)) != band(surfel)) {
+    if (x + step < solid_.layer.width() && solid_.layer.at(x + step, y).material == kBody &&
+        band(solid_.layer.at(x + step, y)) != band(surfel)) {
       return mix(c, kInk, 0.35f);
     }
-    if (y + step < solid_.height() && solid_.at(x, y + step).material == kBody &&
-        band(solid_.at(x, y + step)) != band(surfel)) {
+    if (y + step < solid_.layer.height() && solid_.layer.at(x, y + step).material == kBody &&
+        band(solid_.layer.at(x, y + step)) != band(surfel)) {
       return mix(c, kInk, 0.35f);
     }
     if (step >= samples_) break;
@@ -259,20 +278,20 @@ Colour Renderer::solid_colour(int x, int y) const {
 // Opacity of the rest shape's dashed silhouette at a sample.
 float Renderer::outline(int x, int y) const {
   if ((x + y) / (7 * samples_) % 2 != 0) return 0;
-  const bool here = rest_.at(x, y).material >= 0;
+  const bool here = rest_.layer.at(x, y).material >= 0;
   for (int k = 1; k <= samples_; ++k) {
-    if (x + k < rest_.width() && (rest_.at(x + k, y).material >= 0) != here) return 0.7f;
-    if (y + k < rest_.height() && (rest_.at(x, y + k).material >= 0) != here) return 0.7f;
+    if (x + k < rest_.layer.width() && (rest_.layer.at(x + k, y).material >= 0) != here) return 0.7f;
+    if (y + k < rest_.layer.height() && (rest_.layer.at(x, y + k).material >= 0) != here) return 0.7f;
   }
   return 0;
 }
 
 Colour Renderer::sample(int x, int y) const {
-  const Surfel& solid = solid_.at(x, y);
+  const Surfel& solid = solid_.layer.at(x, y);
   Colour c = solid.material >= 0 ? solid_colour(x, y) : background(x, y);
   c = mix(c, kGrey, outline(x, y));
-  const Surfel& tool = tool_.at(x, y);
-  const Surfel& arrow = arrows_.at(x, y);
+  const Surfel& tool = tool_.layer.at(x, y);
+  const Surfel& arrow = arrows_.layer.at(x, y);
   const auto over_arrow = [&] {
     if (arrow.material < 0) return;
     c = mix(c, shade(kArrowColour, arrow, x, y, 0.3f), arrow.depth_m < solid.depth_m ? 1.0f : 0.45f);
@@ -299,10 +318,12 @@ Colour Renderer::sample(int x, int y) const {
   return c;
 }
 
-Canvas Renderer::resolve() const {
+Canvas Renderer::resolve() {
   Canvas canvas(options_.width, options_.height, colour(0xffffff));
   const float share = 1.0f / static_cast<float>(samples_ * samples_);
   for (int y = 0; y < options_.height; ++y) {
+    if (y % kBand == 0)
+      for (Sheet* sheet : {&solid_, &rest_, &tool_, &arrows_}) sheet->begin(y * samples_);
     for (int x = 0; x < options_.width; ++x) {
       Colour sum{};
       for (int k = 0; k < samples_ * samples_; ++k) {

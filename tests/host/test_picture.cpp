@@ -39,7 +39,7 @@ TEST(MeshRaster, ASphereCoversItsSilhouette) {
   const Projection projection(front_camera(), 400, 400);
   Layer layer(400, 400);
   const double r = 0.1;
-  layer.draw(sphere_mesh({}, r), projection, 3);
+  layer.draw({sphere_mesh({}, r), projection, 3});
   // The silhouette of a sphere at distance 1 is a circle of tan(asin r) metres at that distance; 800 pixels per metre.
   const double radius = 800 * std::tan(std::asin(r));
   EXPECT_NEAR(covered(layer, 3), kPi * radius * radius, 0.01 * kPi * radius * radius);  // 64 sectors lose 0.2 %
@@ -53,15 +53,34 @@ TEST(MeshRaster, TheNearerSurfaceWinsInAnyOrder) {
   const Projection projection(front_camera(), 200, 200);
   const RenderMesh nearer = sphere_mesh({{0, 0, 0.2}, {}}, 0.05), farther = sphere_mesh({{0, 0, -0.2}, {}}, 0.1);
   Layer a(200, 200), b(200, 200);
-  a.draw(nearer, projection, 1);
-  a.draw(farther, projection, 2);
-  b.draw(farther, projection, 2);
-  b.draw(nearer, projection, 1);
+  a.draw({nearer, projection, 1});
+  a.draw({farther, projection, 2});
+  b.draw({farther, projection, 2});
+  b.draw({nearer, projection, 1});
   EXPECT_EQ(a.at(100, 100).material, 1);
   for (int y = 0; y < 200; ++y) {
     for (int x = 0; x < 200; ++x) ASSERT_EQ(a.at(x, y).material, b.at(x, y).material);
   }
   EXPECT_GT(covered(a, 2), 0);  // the larger one shows around it
+}
+
+// A picture is drawn a band of rows at a time; what is above and below a band falls away.
+TEST(MeshRaster, BandsShowWhatTheWholeShows) {
+  const Projection projection(front_camera(), 200, 200);
+  const PlacedMesh sphere(sphere_mesh({{0.01, 0.02, 0}, {}}, 0.09), projection, 1);
+  Layer whole(200, 200), band(200, 200, 33);
+  whole.draw(sphere);
+  for (int y = 0; y < 200; ++y) {
+    if (y % 32 == 0) {
+      band.begin(y);
+      band.draw(sphere);
+    }
+    for (int x = 0; x < 200; ++x) {
+      ASSERT_EQ(band.at(x, y).material, whole.at(x, y).material);
+      ASSERT_EQ(band.at(x, y).depth_m, whole.at(x, y).depth_m);
+    }
+  }
+  EXPECT_GT(covered(whole, 1), 4000);  // 36 pixels in radius
 }
 
 TEST(MeshRaster, ValuesAreInterpolatedInPerspective) {
@@ -74,7 +93,7 @@ TEST(MeshRaster, ValuesAreInterpolatedInPerspective) {
   strip.triangle = {{0, 1, 2}, {0, 2, 3}};
   const Projection projection(front_camera(), 400, 400);
   Layer layer(400, 400);
-  layer.draw(strip, projection, 0);
+  layer.draw({strip, projection, 0});
   int seen = 0;
   for (int y = 0; y < 400; ++y) {
     const Surfel& s = layer.at(200, y);
@@ -88,8 +107,8 @@ TEST(MeshRaster, ValuesAreInterpolatedInPerspective) {
 TEST(MeshRaster, NothingBehindTheEyeIsDrawn) {
   const Projection projection(front_camera(), 100, 100);
   Layer layer(100, 100);
-  layer.draw(sphere_mesh({{0, 0, 2}, {}}, 0.3), projection, 1);
-  layer.draw(RenderMesh{}, projection, 1);
+  layer.draw({sphere_mesh({{0, 0, 2}, {}}, 0.3), projection, 1});
+  layer.draw({RenderMesh{}, projection, 1});
   EXPECT_EQ(covered(layer, 1), 0);
 }
 
