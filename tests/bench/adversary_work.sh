@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # Gate on what a tick counts of itself: the adversary's dearest ticks in every scene, counted by callgrind, take no more
 # than the work they counted costs by the prices of rt_core/work.h, in any stage; and the prices are not far too high.
-# Given PALPATE and SCENES also in the ring with one and two soft modes, as the baker chooses where it is left to it: the
-# shipped elastic bodies under balls have three and more.
-# Usage: adversary_work.sh PROGRAM IMAGE_DIR [TICKS COUNTED SEED [PALPATE SCENES]]
+# The ring with one and two soft modes is looked at as well, which a baker may choose: the shipped elastic bodies under
+# balls have three and more.
+# Usage: adversary_work.sh PROGRAM IMAGE_DIR PALPATE SCENES [TICKS COUNTED SEED]
 set -euo pipefail
-usage="usage: adversary_work.sh PROGRAM IMAGE_DIR [TICKS COUNTED SEED [PALPATE SCENES]]"
-program=${1:?$usage} images=${2:?$usage} ticks=${3:-1500} counted=${4:-60} seed=${5:-7} palpate=${6:-} scenes_dir=${7:-}
+usage="usage: adversary_work.sh PROGRAM IMAGE_DIR PALPATE SCENES [TICKS COUNTED SEED]"
+program=${1:?$usage} images=${2:?$usage} palpate=${3:?$usage} toml=${4:?$usage} ticks=${5:-1500} counted=${6:-60} seed=${7:-7}
 here=$(cd "$(dirname "$0")" && pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -15,14 +15,13 @@ command -v valgrind >/dev/null || { echo "valgrind is missing: apt-get install v
 most_percent=175
 
 mkdir "$work/few"
-for modes in ${palpate:+1 2}; do
-  "$palpate" bake "${scenes_dir:?$usage}/ring.toml" --set "body.elastic.soft_modes=$modes" -o "$work/few/ring_of_${modes}_modes.pal" >"$work/log" 2>&1 ||
+for modes in 1 2; do
+  "$palpate" bake "$toml/ring.toml" --set "body.elastic.soft_modes=$modes" -o "$work/few/ring_of_${modes}_modes.pal" >"$work/log" 2>&1 ||
     { cat "$work/log"; exit 1; }
 done
 
 status=0 scenes=0
 for image in "$images"/*.pal "$work"/few/*.pal; do
-  [ -e "$image" ] || continue
   scenes=$((scenes + 1))
   valgrind --tool=callgrind --quiet --instr-atstart=no --collect-atstart=no --combine-dumps=yes --compress-strings=no --compress-pos=no \
     --callgrind-out-file="$work/counts" "$program" "$image" "$ticks" "$counted" "$seed" >"$work/log" 2>&1 ||
