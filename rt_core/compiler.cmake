@@ -122,14 +122,15 @@ function(palpate_compile_quickly target)
   endforeach()
 endfunction()
 
-# Release builds compile sources together, some four in one, for most of what a small one takes is the headers it includes:
-# four of tests/hal 16.2 s of processor time one by one and 8.8 as one, of config 20.4 and 15.6 (gcc 12, 2026-11-27). By
-# their names' hash, so that one more source moves no other. Those with Eigen take long by themselves; of APART, each a
+# Sources are compiled together, some four in one, for most of what a small one takes is the headers it includes: four of
+# tests/hal 16.2 s of processor time one by one and 8.8 as one, of config 20.4 and 15.6 (gcc 12, 2026-11-27); all of the
+# address sanitizer's build 1,230 and 940 (clang 22, 2026-11-28). By their names' hash, so that one more source moves no
+# other. Those with Eigen take long by themselves; of APART, each a
 # regular expression, names are those of others (cards have functions of one name each). Debug builds (cmake --preset dev,
 # which ./run test --long makes) compile each source by itself, so what forgets an include does not compile there.
 function(palpate_compile_together target)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "APART")
-  if(CMAKE_BUILD_TYPE STREQUAL "Debug" OR PALPATE_SANITIZE)
+  if(CMAKE_BUILD_TYPE STREQUAL "Debug")
     return()
   endif()
   palpate_sources_by_eigen(${target})
@@ -151,6 +152,9 @@ function(palpate_compile_together target)
     set_property(SOURCE ${source} PROPERTY UNITY_GROUP ${group})
   endforeach()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+    target_compile_options(${target} PRIVATE -Wno-shadow) # of another source's names, by a header that comes after it
+  endif()
 endfunction()
 
 # Headers that nearly every source of a target includes, read once for all of them: for sanitizers, which are clang's.

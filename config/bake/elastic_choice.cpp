@@ -6,8 +6,8 @@
 
 #include "config/bake/elastic_check.h"
 #include "config/bake/elastic_image.h"
-#include "config/bake/parallel.h"
 #include "config/bake/surface_parts.h"
+#include "config/parallel.h"
 #include "config/scene/schema.h"
 
 namespace palpate {
@@ -130,7 +130,7 @@ ElasticReport::Check check_of(const CheckPress& press, const CheckedPress& check
 ElasticReport bake_elastic_body(const SceneDesc& scene, ImageContents& image, std::vector<std::string>& warnings,
                                 const BakeRun& run) {
   touch_by_parts(scene, image);
-  const ElasticBake bake(scene, image, modes_of(scene.elastic), warnings);
+  const ElasticBake bake(scene, image, modes_of(scene.elastic), warnings, run.jobs);
   const std::int32_t linear = scene.elastic.linear;
   const auto unchecked = [&](ElasticBake::Drawn drawn) {
     return bake.write(scene.elastic.soft > 0 ? scene.elastic.soft : kSoftUnlessStated, linear, 0, image, drawn);

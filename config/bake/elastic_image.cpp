@@ -248,12 +248,13 @@ void add_moduli(const elastic::RestBody<3>& rest, const std::vector<FacetFoot>& 
   }
 }
 
-elastic::ElasticOptions options_of(int soft, int linear) {
+elastic::ElasticOptions options_of(int soft, int linear, unsigned jobs) {
   elastic::ElasticOptions options;
   options.soft = soft;
   options.linear = linear;
   options.second_order = true;
   options.patch = kPatch;
+  options.jobs = jobs;
   return options;
 }
 
@@ -365,6 +366,7 @@ class PartNumbers {
 }  // namespace
 
 struct ElasticBake::Parts {
+  unsigned jobs;
   TetMesh mesh;
   std::vector<bool> fixed;
   elastic::RestBody<3> rest;
@@ -374,9 +376,13 @@ struct ElasticBake::Parts {
   elastic::ElasticStock<3> stock;
   NodalGradient gradient;
   std::vector<CornerNormals> normals;
+  elastic::ElasticBody<3> last;  // a number of modes is written with several self compliances in turn
+  int last_soft = 0, last_linear = -1;
 
-  Parts(const SceneDesc& scene, const ImageContents& image, int modes, TetMesh body, std::vector<bool> held)
-      : mesh(std::move(body)),
+  Parts(const SceneDesc& scene, const ImageContents& image, int modes, TetMesh body, std::vector<bool> held,
+        unsigned threads)
+      : jobs(threads),
+        mesh(std::move(body)),
         fixed(std::move(held)),
         rest(elastic::solid_mesh(mesh, scene.source.where("body.shape")), elastic_material(scene, image.params, mesh),
              fixed),
@@ -384,32 +390,43 @@ struct ElasticBake::Parts {
         feet(facet_feet(rest.surface(), image.vertex_m)),
         drawn(rest, feet, image.vertex_m, image.vertex_normal, image.params.max_depth_m),
         stock(elastic::make_elastic_stock(rest, sample_nodes(rest.surface(), fixed, spacing_m), modes,
-                                          options_of(modes, 0),
+                                          options_of(modes, 0, jobs),
                                           [this](const elastic::PressedPlace& place) { drawn.add(place); })),
         gradient(mesh, rest.surface()),
         normals(corner_normals(scene.body, image.vertex_m, image.triangle)) {}
+
+  const elastic::ElasticBody<3>& body(int soft, int linear) {
+    if (soft != last_soft || linear != last_linear) {
+      last = {};  // of 100,000 nodes it has 100 MB: not two at once
+      last = elastic::make_elastic_body(stock, options_of(soft, linear, jobs));
+      last_soft = soft;
+      last_linear = linear;
+    }
+    return last;
+  }
 };
 
 ElasticBake::ElasticBake(const SceneDesc& scene, const ImageContents& image, int modes,
-                         std::vector<std::string>& warnings) {
+                         std::vector<std::string>& warnings, unsigned jobs) {
   TetMesh mesh = make_elastic_mesh(scene, image, warnings);
   const Supports supports = supports_of(scene, mesh);
   const std::vector<ElasticBed> beds = beds_of(scene, mesh);
   // What a bed along the surface's normal leaves free depends on the surface: the stiffness's factor says so.
   if (std::ranges::none_of(beds, &ElasticBed::normal))
     check_supports(mesh, supports_and_beds(supports, beds), scene.source.where("body.shape"));
-  parts_ = std::make_unique<Parts>(scene, image, modes, std::move(mesh), elastic::fixed_components(supports));
+  parts_ = std::make_unique<Parts>(scene, image, modes, std::move(mesh), elastic::fixed_components(supports), jobs);
 }
 ElasticBake::~ElasticBake() = default;
 
 const TetMesh& ElasticBake::mesh() const { return parts_->mesh; }
 
 ElasticReport ElasticBake::write(int soft, int linear, double add_c_mpN, ImageContents& image, Drawn drawn) const {
-  const Parts& parts = *parts_;
-  elastic::ElasticBody<3> body = elastic::make_elastic_body(parts.stock, options_of(soft, linear));
-  for (const int node : body.self.nodes) body.self.self_mpN[at(node)] += add_c_mpN;
-  const std::vector<double> beta = fit_places(body.self, parts.rest, image, parts.normals);
-  const SampleField self = self_field(parts.rest.surface(), body.self, beta, parts.spacing_m);
+  Parts& parts = *parts_;
+  const elastic::ElasticBody<3>& body = parts.body(soft, linear);
+  elastic::SelfTerms terms = body.self;
+  for (const int node : terms.nodes) terms.self_mpN[at(node)] += add_c_mpN;
+  const std::vector<double> beta = fit_places(terms, parts.rest, image, parts.normals);
+  const SampleField self = self_field(parts.rest.surface(), terms, beta, parts.spacing_m);
   add_energy(body.maps.potential, image);
   add_vertices(body, term_shapes(body, parts.gradient), self, parts.feet, image, parts.normals);
   if (touches_in_parts(model_of(image)))

@@ -12,8 +12,10 @@ namespace palpate {
 // What all choices of modes share, made once: elements, factor, a pool of modes, samples.
 class ElasticBake {
  public:
-  // The surface in `image` is complete. Up to `modes` modes can be written. Throws ConfigError.
-  ElasticBake(const SceneDesc& scene, const ImageContents& image, int modes, std::vector<std::string>& warnings);
+  // The surface in `image` is complete. Up to `modes` modes can be written. `jobs`: threads (config/parallel.h). Throws
+  // ConfigError.
+  ElasticBake(const SceneDesc& scene, const ImageContents& image, int modes, std::vector<std::string>& warnings,
+              unsigned jobs);
   ~ElasticBake();
   const TetMesh& mesh() const;
   // What the body looks like when pressed: for images that are kept. No tick of a trial reads it.

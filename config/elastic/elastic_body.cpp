@@ -19,7 +19,8 @@ template <int kDim>
 ElasticStock<kDim> make_elastic_stock(const RestBody<kDim>& rest, const std::vector<int>& contact_nodes, int modes,
                                       const ElasticOptions& options, const PlaceListener& listen) {
   const double probe_m = options.probe_share * rest.surface().extent_m();
-  return {&rest, surface_modes(rest, modes), self_samples(rest, contact_nodes, probe_m, options.patch, listen)};
+  return {&rest, surface_modes(rest, modes),
+          self_samples(rest, contact_nodes, probe_m, options.patch, listen, options.jobs)};
 }
 
 template <int kDim>
@@ -30,7 +31,7 @@ ElasticBody<kDim> make_elastic_body(const ElasticStock<kDim>& stock, const Elast
   const Eigen::Index count = std::min<Eigen::Index>(options.soft + options.linear, stock.modes.lambda_Npm3.size());
   body.modes = {stock.modes.lambda_Npm3.head(count), stock.modes.phi_1pm.leftCols(count)};
   body.soft = whole_families(body.modes, options.soft);
-  body.maps = soft_maps(rest, body.modes, body.soft, options.probe_share * rest.surface().extent_m());
+  body.maps = soft_maps(rest, body.modes, body.soft, options.probe_share * rest.surface().extent_m(), options.jobs);
   const double largest = body.modes.phi_1pm.col(0).cwiseAbs().maxCoeff();
   const double reach_m2 = kReachShare * rest.surface().extent_m() / largest;
   body.maps.potential.radius_rootJ =

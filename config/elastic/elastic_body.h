@@ -14,6 +14,7 @@ struct ElasticOptions {
   double probe_share = 2e-3;
   PatchOptions patch = {};
   bool second_order = false;  // c1; see docs/models_elastic.md for when it helps
+  unsigned jobs = 1;          // threads (config/parallel.h); changes no bit
 };
 
 template <int kDim>

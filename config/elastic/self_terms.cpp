@@ -8,6 +8,7 @@
 #include <string>
 
 #include "config/elastic/local_law.h"
+#include "config/parallel.h"
 #include "config/scene/config_error.h"
 
 namespace palpate::elastic {
@@ -193,50 +194,70 @@ std::vector<Met> meet(const RestBody<kDim>& body, std::span<const int> nodes, co
   return met;
 }
 
+// Samples of some nodes, and where someone listens what they met.
+template <int kDim>
+struct Sampled {
+  std::vector<SelfSample> samples;
+  std::vector<Met> met;
+};
+template <int kDim>
+Sampled<kDim> sample_some(const RestBody<kDim>& body, std::span<const int> some, double probe_m,
+                          const PatchOptions& patch, bool heard) {
+  const Surface<kDim>& surface = body.surface();
+  Sampled<kDim> out{{}, meet(body, some, patch, heard)};
+  Eigen::MatrixXd second(body.size(), static_cast<Eigen::Index>(heard ? some.size() : 0));
+  for (std::size_t i = 0; i < some.size(); ++i) {
+    const Met& met = out.met[i];
+    const PressedPlace& place = met.place;
+    const Eigen::VectorXd& u = place.u_mpN[0];
+    SelfSample sample;
+    sample.node = some[i];
+    sample.width = WidthLaw(met.give_mpN, place.sigma_m, body.contact_modulus(some[i]), body.material().poisson_ratio);
+    sample.curvature_1pm = node_curvature(surface, some[i]);
+    const double scale = probe_m / u.cwiseAbs().maxCoeff();
+    const Eigen::VectorXd bent = body.internal_force(scale * u) + body.internal_force(-scale * u);
+    sample.third_mpN2 = bent.dot(u) / (scale * scale);
+    if (heard)
+      second.col(static_cast<Eigen::Index>(i)) =
+          bent * (-0.5 / (scale * scale)) +
+          turned_patch<kDim>(body, surface.rest(some[i]), node_normal(surface, some[i]), place.sigma_m[0], u);
+    // A wall's second order is of the third power in how far it gives: on a dome the patches of 4.4 and 3.3 mm stand
+    // as 1 to 1.07 in R and 1 to 1.23 in this (2026-11-23). Along the patches' parabola: a plate's own growth, more,
+    // leaves half shells and tubes 0.6 to 1 % softer at 5 mm (2026-11-25).
+    if (met.give_mpN[0] > 0) {
+      const double fall = met.give_mpN[0] - met.give_mpN[1];
+      const double grows = std::clamp(1 + fall / (kWider * kWider - 1) / met.give_mpN[0], 1.0, kMostGrowth);
+      sample.third_mpN2 *= grows * grows * grows;
+    }
+    out.samples.push_back(sample);
+  }
+  if (!heard) return out;
+  second = body.solve_all(second);
+  for (std::size_t i = 0; i < some.size(); ++i) out.met[i].place.second_mpN2 = second.col(static_cast<Eigen::Index>(i));
+  return out;
+}
+
 }  // namespace
 
 template <int kDim>
 std::vector<SelfSample> self_samples(const RestBody<kDim>& body, const std::vector<int>& nodes, double probe_m,
-                                     const PatchOptions& patch, const PlaceListener& listen) {
-  const Surface<kDim>& surface = body.surface();
+                                     const PatchOptions& patch, const PlaceListener& listen, unsigned jobs) {
   for (const int node : nodes)
-    if (surface.facets_at(node).empty())
+    if (body.surface().facets_at(node).empty())
       throw ConfigError("elastic body: contact node " + std::to_string(node) + " lies inside the body");
   std::vector<SelfSample> samples;
-  for (std::size_t first = 0; first < nodes.size(); first += kTogether) {
-    const auto some = std::span(nodes).subspan(first, std::min(kTogether, nodes.size() - first));
-    std::vector<Met> met = meet(body, some, patch, static_cast<bool>(listen));
-    Eigen::MatrixXd second(body.size(), static_cast<Eigen::Index>(listen ? some.size() : 0));
-    for (std::size_t i = 0; i < some.size(); ++i) {
-      const PressedPlace& place = met[i].place;
-      const Eigen::VectorXd& u = place.u_mpN[0];
-      SelfSample sample;
-      sample.node = some[i];
-      sample.width =
-          WidthLaw(met[i].give_mpN, place.sigma_m, body.contact_modulus(some[i]), body.material().poisson_ratio);
-      sample.curvature_1pm = node_curvature(surface, some[i]);
-      const double scale = probe_m / u.cwiseAbs().maxCoeff();
-      const Eigen::VectorXd bent = body.internal_force(scale * u) + body.internal_force(-scale * u);
-      sample.third_mpN2 = bent.dot(u) / (scale * scale);
-      if (listen)
-        second.col(static_cast<Eigen::Index>(i)) =
-            bent * (-0.5 / (scale * scale)) +
-            turned_patch<kDim>(body, surface.rest(some[i]), node_normal(surface, some[i]), place.sigma_m[0], u);
-      // A wall's second order is of the third power in how far it gives: on a dome the patches of 4.4 and 3.3 mm stand
-      // as 1 to 1.07 in R and 1 to 1.23 in this (2026-11-23). Along the patches' parabola: a plate's own growth, more,
-      // leaves half shells and tubes 0.6 to 1 % softer at 5 mm (2026-11-25).
-      if (met[i].give_mpN[0] > 0) {
-        const double fall = met[i].give_mpN[0] - met[i].give_mpN[1];
-        const double grows = std::clamp(1 + fall / (kWider * kWider - 1) / met[i].give_mpN[0], 1.0, kMostGrowth);
-        sample.third_mpN2 *= grows * grows * grows;
-      }
-      samples.push_back(sample);
-    }
-    if (!listen) continue;
-    second = body.solve_all(second);
-    for (std::size_t i = 0; i < some.size(); ++i) {
-      met[i].place.second_mpN2 = second.col(static_cast<Eigen::Index>(i));
-      listen(met[i].place);
+  const std::size_t at_once = kTogether * pieces_at_once(jobs);
+  for (std::size_t first = 0; first < nodes.size(); first += at_once) {
+    const auto some = std::span(nodes).subspan(first, std::min(at_once, nodes.size() - first));
+    std::vector<Sampled<kDim>> sampled((some.size() + kTogether - 1) / kTogether);
+    for_each_piece(sampled.size(), jobs, [&](std::size_t i) {
+      const auto piece = some.subspan(kTogether * i, std::min(kTogether, some.size() - kTogether * i));
+      sampled[i] = sample_some(body, piece, probe_m, patch, static_cast<bool>(listen));
+    });
+    for (const Sampled<kDim>& piece : sampled) {
+      samples.insert(samples.end(), piece.samples.begin(), piece.samples.end());
+      if (!listen) continue;
+      for (const Met& met : piece.met) listen(met.place);
     }
   }
   return samples;
@@ -270,7 +291,7 @@ SelfTerms self_terms(const RestBody<kDim>& body, const SurfaceModes& modes, cons
   template Eigen::VectorXd gaussian_patch<kDim>(const RestBody<kDim>&, const Vector<kDim>&, const Vector<kDim>&, \
                                                 double);                                                         \
   template std::vector<SelfSample> self_samples<kDim>(const RestBody<kDim>&, const std::vector<int>&, double,    \
-                                                      const PatchOptions&, const PlaceListener&);                \
+                                                      const PatchOptions&, const PlaceListener&, unsigned);      \
   template SelfTerms self_terms<kDim>(const RestBody<kDim>&, const SurfaceModes&, const SoftMaps&,               \
                                       const std::vector<SelfSample>&);
 PALPATE_ELASTIC_SELF(2)

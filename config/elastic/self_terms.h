@@ -69,10 +69,10 @@ struct PressedPlace {
 using PlaceListener = std::function<void(const PressedPlace&)>;
 
 // At the given surface nodes. `probe_m`: largest displacement of the second order's difference. With `listen` each
-// place costs two more solves.
+// place costs two more solves; it hears of one after another, on this thread. On `jobs` threads, to the same bits.
 template <int kDim>
 std::vector<SelfSample> self_samples(const RestBody<kDim>& body, const std::vector<int>& nodes, double probe_m,
-                                     const PatchOptions& patch, const PlaceListener& listen = {});
+                                     const PatchOptions& patch, const PlaceListener& listen = {}, unsigned jobs = 1);
 template <int kDim>
 SelfTerms self_terms(const RestBody<kDim>& body, const SurfaceModes& modes, const SoftMaps& maps,
                      const std::vector<SelfSample>& samples);

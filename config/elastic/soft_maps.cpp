@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "config/elastic/fixed_random.h"
+#include "config/parallel.h"
 
 namespace palpate::elastic {
 
@@ -15,20 +16,20 @@ constexpr int kDirectionsPerUnknown = 3;
 template <int kDim>
 class Prober {
  public:
-  Prober(const RestBody<kDim>& body, const SurfaceModes& modes, int soft, double probe_m)
-      : body_(body), phi_(modes.phi_1pm.leftCols(soft)), lambda_(modes.lambda_Npm3.head(soft)), amplitude_(soft) {
+  Prober(const RestBody<kDim>& body, const SurfaceModes& modes, int soft, double probe_m, unsigned jobs)
+      : body_(body),
+        phi_(modes.phi_1pm.leftCols(soft)),
+        lambda_(modes.lambda_Npm3.head(soft)),
+        amplitude_(soft),
+        jobs_(jobs) {
     for (int a = 0; a < soft; ++a)
       amplitude_[a] = probe_m * std::sqrt(lambda_[0] / lambda_[a]) / phi_.col(0).cwiseAbs().maxCoeff();
   }
 
   // K2(v, v), to the fourth order in v.
-  Eigen::VectorXd even(const Eigen::VectorXd& v) {
-    residuals_ += 2;
-    return body_.internal_force(v) + body_.internal_force(-v);
-  }
+  Eigen::VectorXd even(const Eigen::VectorXd& v) const { return body_.internal_force(v) + body_.internal_force(-v); }
   // phi' K3(v, v, v) / 6, to the seventh order.
-  Eigen::VectorXd projected_cubic(const Eigen::VectorXd& v) {
-    residuals_ += 4;
+  Eigen::VectorXd projected_cubic(const Eigen::VectorXd& v) const {
     const auto odd = [&](const Eigen::VectorXd& u) -> Eigen::VectorXd {
       return 0.5 * (body_.internal_force(u) - body_.internal_force(-u));
     };
@@ -39,20 +40,28 @@ class Prober {
   std::vector<Eigen::VectorXd> pairs() {
     const int s = static_cast<int>(amplitude_.size());
     std::vector<Eigen::VectorXd> k2(static_cast<std::size_t>(s * (s + 1) / 2));
-    for (int a = 0; a < s; ++a) k2[pair_place(a, a, s)] = even(amplitude_[a] * phi_.col(a));
+    for_each_pair([&](int a, int b) {
+      Eigen::VectorXd v = amplitude_[a] * phi_.col(a);
+      if (b != a) v += amplitude_[b] * phi_.col(b);
+      k2[pair_place(a, b, s)] = even(v);
+    });
+    residuals_ += 2 * static_cast<int>(k2.size());
     for (int a = 0; a < s; ++a)
       for (int b = a + 1; b < s; ++b)
-        k2[pair_place(a, b, s)] = 0.5 * (even(amplitude_[a] * phi_.col(a) + amplitude_[b] * phi_.col(b)) -
-                                         k2[pair_place(a, a, s)] - k2[pair_place(b, b, s)]);
+        k2[pair_place(a, b, s)] = 0.5 * (k2[pair_place(a, b, s)] - k2[pair_place(a, a, s)] - k2[pair_place(b, b, s)]);
     for (int a = 0; a < s; ++a)
       for (int b = a; b < s; ++b) k2[pair_place(a, b, s)] /= amplitude_[a] * amplitude_[b];
     return k2;
   }
 
-  Eigen::VectorXd follow(const Eigen::VectorXd& k2) const {
-    Eigen::VectorXd u = -body_.solve(k2);
-    for (Eigen::Index c = 0; c < phi_.cols(); ++c) u += phi_.col(c) * (phi_.col(c).dot(k2) / lambda_[c]);
-    return u;
+  std::vector<Eigen::VectorXd> follow(const std::vector<Eigen::VectorXd>& k2) const {
+    std::vector<Eigen::VectorXd> theta(k2.size());
+    for_each_piece(k2.size(), jobs_, [&](std::size_t i) {
+      Eigen::VectorXd u = -body_.solve(k2[i]);
+      for (Eigen::Index c = 0; c < phi_.cols(); ++c) u += phi_.col(c) * (phi_.col(c).dot(k2[i]) / lambda_[c]);
+      theta[i] = std::move(u);
+    });
+    return theta;
   }
 
   // The quartic of K3 by least squares over random directions, in units of the amplitudes.
@@ -62,13 +71,18 @@ class Prober {
     Eigen::MatrixXd rows(directions * s, unknowns);
     Eigen::VectorXd right(directions * s);
     FixedRandom random(2);
-    for (Eigen::Index d = 0; d < directions; ++d) {
-      Eigen::VectorXd y(s);
+    std::vector<Eigen::VectorXd> direction(static_cast<std::size_t>(directions), Eigen::VectorXd(s));
+    for (Eigen::VectorXd& y : direction) {
       for (double& x : y) x = random.symmetric();
       y.normalize();
+    }
+    for_each_piece(direction.size(), jobs_, [&](std::size_t i) {
+      const Eigen::VectorXd& y = direction[i];
+      const auto d = static_cast<Eigen::Index>(i);
       right.segment(d * s, s) = projected_cubic(phi_ * amplitude_.cwiseProduct(y)).cwiseProduct(amplitude_);
       for (int k = 0; k < s; ++k) rows.row(d * s + k) = shape.quartic_slopes(y, k).transpose();
-    }
+    });
+    residuals_ += 4 * static_cast<int>(directions);
     Eigen::VectorXd fitted = rows.colPivHouseholderQr().solve(right);
     residual = (rows * fitted - right).norm() / right.norm();
     for (std::size_t m = 0; m < shape.quartic_index().size(); ++m)
@@ -78,9 +92,18 @@ class Prober {
   int residuals() const { return residuals_; }
 
  private:
+  template <class Work>
+  void for_each_pair(const Work& work) const {
+    std::vector<std::pair<int, int>> pair;
+    for (int a = 0; a < static_cast<int>(amplitude_.size()); ++a)
+      for (int b = a; b < static_cast<int>(amplitude_.size()); ++b) pair.emplace_back(a, b);
+    for_each_piece(pair.size(), jobs_, [&](std::size_t i) { work(pair[i].first, pair[i].second); });
+  }
+
   const RestBody<kDim>& body_;
   Eigen::MatrixXd phi_;
   Eigen::VectorXd lambda_, amplitude_;
+  unsigned jobs_;
   int residuals_ = 0;
 };
 
@@ -95,12 +118,12 @@ Eigen::VectorXd soft_displacement(const SurfaceModes& modes, const SoftMaps& map
 }
 
 template <int kDim>
-SoftMaps soft_maps(const RestBody<kDim>& body, const SurfaceModes& modes, int soft, double probe_m) {
+SoftMaps soft_maps(const RestBody<kDim>& body, const SurfaceModes& modes, int soft, double probe_m, unsigned jobs) {
   SoftMaps maps;
   maps.potential = SoftPotential(modes.lambda_Npm3.head(soft));
-  Prober<kDim> prober(body, modes, soft, probe_m);
+  Prober<kDim> prober(body, modes, soft, probe_m, jobs);
   const std::vector<Eigen::VectorXd> k2 = prober.pairs();
-  for (const Eigen::VectorXd& k : k2) maps.theta_1pm3.push_back(prober.follow(k));
+  maps.theta_1pm3 = prober.follow(k2);
   SoftPotential& v = maps.potential;
   v.quartic = prober.fit_quartic(v, maps.quartic_residual);
   for (int a = 0; a < soft; ++a)
@@ -116,7 +139,7 @@ SoftMaps soft_maps(const RestBody<kDim>& body, const SurfaceModes& modes, int so
   maps.residuals = prober.residuals();
   return maps;
 }
-template SoftMaps soft_maps<2>(const RestBody<2>&, const SurfaceModes&, int, double);
-template SoftMaps soft_maps<3>(const RestBody<3>&, const SurfaceModes&, int, double);
+template SoftMaps soft_maps<2>(const RestBody<2>&, const SurfaceModes&, int, double, unsigned);
+template SoftMaps soft_maps<3>(const RestBody<3>&, const SurfaceModes&, int, double, unsigned);
 
 }  // namespace palpate::elastic

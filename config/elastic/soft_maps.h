@@ -32,8 +32,9 @@ inline std::size_t pair_place(int a, int b, int count) {
 Eigen::VectorXd soft_displacement(const SurfaceModes& modes, const SoftMaps& maps, const Eigen::VectorXd& q);
 
 // Of the lowest `soft` modes. Probing displacements are `probe_m` in the softest mode; the others get what holds equal
-// energy, or fifth-order terms of stiff modes would swamp the quartic of soft ones.
+// energy, or fifth-order terms of stiff modes would swamp the quartic of soft ones. On `jobs` threads
+// (config/parallel.h), to the same bits.
 template <int kDim>
-SoftMaps soft_maps(const RestBody<kDim>& body, const SurfaceModes& modes, int soft, double probe_m);
+SoftMaps soft_maps(const RestBody<kDim>& body, const SurfaceModes& modes, int soft, double probe_m, unsigned jobs = 1);
 
 }  // namespace palpate::elastic

@@ -135,6 +135,9 @@ class TipReader {
     if (tip.indenter.profile == TipProfile::kFlat) tip.indenter.radius_m = auto_or(stated_radius_m(), piece_.radius_m);
     if (tip.indenter.profile == TipProfile::kCone && !is_auto(angle))
       tip.indenter.tan_half_angle = math::sin(angle) / math::cos(angle);
+    // A sphere's law ends at its radius: a depth that nobody stated does, too.
+    if (tip.indenter.profile == TipProfile::kSphere && !scene_.source.has("contact.max_depth_mm"))
+      tip.depth_max_m = std::min(tip.depth_max_m, tip.indenter.radius_m);
     if (tip.indenter.profile == TipProfile::kSphere && !(tip.depth_max_m <= tip.indenter.radius_m))
       fail("contact.max_depth_mm", number_text(std::round(1e6 * tip.depth_max_m) / 1e3) +
                                        " mm is more than the sphere's radius of " +

@@ -61,8 +61,11 @@ const KeySpec kContact[] = {
     number_or_auto<&ContactDesc::reference_area_m2>(
         "reference_area_mm2", 1e-3, 1e8, kMilliSquared,
         "winkler: contact area over which the law holds as stated; auto: mean area of a tool point"),
-    number<&ContactDesc::max_depth_m>("max_depth_mm", 0.001, 1000, kMilli,
-                                      "deepest penetration of the law; beyond it the law continues by its tangent"),
+    number<&ContactDesc::max_depth_m>(
+        "max_depth_mm", 0.001, 1000, kMilli,
+        "deepest penetration of the law; beyond it the law continues by its tangent. Whole tips: of "
+        "the dent under a tip alone, and left out at most a sphere's radius, where its "
+        "law ends"),
     number_or_auto<&ContactDesc::cluster_distance_m>(
         "cluster_distance_mm", 0.001, 1000, kMilli,
         "contact points nearer than this are one region; auto: twice the "

@@ -9,7 +9,7 @@
 #include <mutex>
 #include <stdexcept>
 
-#include "config/bake/parallel.h"
+#include "config/parallel.h"
 #include "sim_host/bake/default_path.h"
 #include "sim_host/bake/scene_model.h"
 #include "sim_host/cli.h"

@@ -6,7 +6,7 @@
 #include "config/bake/elastic_check.h"
 #include "config/bake/elastic_mesh.h"
 #include "config/bake/image_rules.h"
-#include "config/bake/parallel.h"
+#include "config/parallel.h"
 #include "config/scene/config_error.h"
 #include "rt_core/status.h"
 #include "tests/elastic/elastic_tick_scene.h"

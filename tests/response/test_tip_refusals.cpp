@@ -6,6 +6,7 @@
 
 #include "config/bake/compile.h"
 #include "config/scene/config_error.h"
+#include "tests/support/baked_scene.h"
 #include "tests/support/refusal.h"
 
 namespace palpate {
@@ -74,6 +75,18 @@ TEST(TipRefusals, NameKeyReasonAndRemedy) {
 }
 
 // Presses measured at places: too near to one another, too far from the body, too shallow.
+// Of two balls, 2 and 8 mm, each law ends where the ball's does or at the depth that a scene has by default.
+TEST(TipRefusals, NobodyStatedADepthThatASmallBallCannotHave) {
+  const std::string text =
+      "name = \"s\"\n[body]\nshape = \"box\"\nsize_mm = [60, 20, 60]\ntriangles = 800\n[skeleton]\nlaw = \"none\"\n"
+      "[friction]\nlaw = \"none\"\n[contact]\nlaw = \"tool\"\n[[tool.piece]]\nshape = \"sphere\"\nradius_mm = 2\n"
+      "[[tool.piece]]\nshape = \"sphere\"\nradius_mm = 8\nposition_mm = [20, 0, 0]\n";
+  const test::BakedScene baked(text);
+  ASSERT_EQ(baked.model().tip_law.size(), 2u);
+  EXPECT_DOUBLE_EQ(baked.model().tip_law[0].depth_max_m, 0.002);
+  EXPECT_DOUBLE_EQ(baked.model().tip_law[1].depth_max_m, 0.006);
+}
+
 TEST(TipRefusals, MeasuredPlacesAndDepths) {
   const std::string path = (std::filesystem::temp_directory_path() / "palpate_MeasuredPlacesAndDepths.csv").string();
   const auto bake = [&](const std::string& rows) {

@@ -10,11 +10,15 @@
 
 namespace palpate {
 
-// Calls work(i) for i < count on up to `jobs` threads, 0: as many as there are processors. Pieces must not share what
+// 0 jobs: as many as there are processors.
+inline std::size_t pieces_at_once(unsigned jobs) {
+  return jobs > 0 ? jobs : std::max(1U, std::thread::hardware_concurrency());
+}
+
+// Calls work(i) for i < count on up to `jobs` threads. Pieces must not share what
 // they write: then their results do not depend on `jobs`. Throws what the first piece, by its number, has thrown.
 template <class Work>
 void for_each_piece(std::size_t count, unsigned jobs, const Work& work) {
-  const std::size_t wanted = jobs > 0 ? jobs : std::max(1U, std::thread::hardware_concurrency());
   std::vector<std::exception_ptr> thrown(count);
   std::atomic<std::size_t> next{0};
   const auto run = [&] {
@@ -28,7 +32,7 @@ void for_each_piece(std::size_t count, unsigned jobs, const Work& work) {
   };
   {
     std::vector<std::jthread> helper;
-    for (std::size_t k = 1; k < std::min(wanted, count); ++k) helper.emplace_back(run);
+    for (std::size_t k = 1; k < std::min(pieces_at_once(jobs), count); ++k) helper.emplace_back(run);
     run();
   }
   for (const std::exception_ptr& error : thrown)
