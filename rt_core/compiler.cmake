@@ -152,9 +152,6 @@ function(palpate_compile_together target)
     set_property(SOURCE ${source} PROPERTY UNITY_GROUP ${group})
   endforeach()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
-  if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
-    target_compile_options(${target} PRIVATE -Wno-shadow) # of another source's names, by a header that comes after it
-  endif()
 endfunction()
 
 # Headers that nearly every source of a target includes, read once for all of them: for sanitizers, which are clang's.

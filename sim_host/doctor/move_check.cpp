@@ -16,7 +16,7 @@ namespace palpate {
 namespace {
 
 constexpr int kArmJoints = 3;  // a gimbal's come after them
-constexpr double kMostAngle_deg = 35, kLeastShare = 0.6, kMostShare = 1.6;
+constexpr double kMostAngle_deg = 35, kLeastMoved = 0.6, kMostMoved = 1.6;
 constexpr double kDead_m = 0.002;  // of a lever's end, while the handle went 50 mm
 
 std::string axis_text(const ArmProfile& arm, int axis) {
@@ -53,7 +53,7 @@ class Judge {
   }
   static bool fits(const Vec3& seen, const Vec3& asked) {
     const double share = dot(seen, asked), cosine = share / std::max(norm(seen), 1e-12);
-    return cosine >= std::cos(kMostAngle_deg * kPi / 180) && share >= kLeastShare && share <= kMostShare;
+    return cosine >= std::cos(kMostAngle_deg * kPi / 180) && share >= kLeastMoved && share <= kMostMoved;
   }
   bool all_fit(const Wiring& wiring, const Quat& turned = {}, double scale = 1) const {
     return std::ranges::all_of(moves_, [&](const HandMove* move) {
