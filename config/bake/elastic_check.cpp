@@ -146,6 +146,11 @@ std::vector<CheckPress> check_places(const SceneDesc& scene, const ImageContents
   return presses;
 }
 
+int affordable_presses(int wanted, double factor_multiplications) {
+  constexpr double kSeconds = 600;
+  return static_cast<int>(clamp_to(kSeconds / press_seconds(factor_multiplications), 0, wanted));
+}
+
 int press_elements(const SceneDesc& scene, const ImageContents& image, const TetMesh& mesh, CheckPress& press,
                    double edge_share, std::vector<elastic::MovedPlace>* surface) {
   const double modulus_Pa = contact_modulus_at(scene, image.params, mesh, press.place_m);

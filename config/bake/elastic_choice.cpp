@@ -97,10 +97,23 @@ class Chooser {
 
 std::string per_cent(double share) { return number_text(std::round(1e3 * share) / 10) + " %"; }
 
-std::vector<CheckPress> solved_presses(const SceneDesc& scene, const ImageContents& image, const TetMesh& mesh,
-                                       const BakeRun& run) {
+// How many of those that are wanted: all that the scene states, or as many as do not take all day.
+std::int32_t presses_made(const SceneDesc& scene, const ElasticBake& bake, std::vector<std::string>& warnings) {
   const std::int32_t wanted = check_presses_of(scene.elastic);
-  std::vector<CheckPress> presses = check_places(scene, image, mesh, wanted);
+  if (scene.source.has("body.elastic.check_presses")) return wanted;
+  const std::int32_t made = affordable_presses(wanted, bake.factor_multiplications());
+  if (made < wanted)
+    warnings.push_back(scene.source.where("body.elastic.check_presses") + ": " + std::to_string(made) +
+                       " of the usual " + std::to_string(wanted) + " check presses are made, for each takes some " +
+                       number_text(std::ceil(press_seconds(bake.factor_multiplications()) / 60)) +
+                       " minutes with this body's " + std::to_string(bake.mesh().node_m.size()) +
+                       " nodes; state their number to have them, or a larger body.fem.edge_mm");
+  return made;
+}
+
+std::vector<CheckPress> solved_presses(const SceneDesc& scene, const ImageContents& image, const TetMesh& mesh,
+                                       std::int32_t count, const BakeRun& run) {
+  std::vector<CheckPress> presses = check_places(scene, image, mesh, count);
   std::mutex saying;
   double done = 0;
   if (run.progress) run.progress("check presses", 0);
@@ -135,9 +148,10 @@ ElasticReport bake_elastic_body(const SceneDesc& scene, ImageContents& image, st
   const auto unchecked = [&](ElasticBake::Drawn drawn) {
     return bake.write(scene.elastic.soft > 0 ? scene.elastic.soft : kSoftUnlessStated, linear, 0, image, drawn);
   };
-  if (check_presses_of(scene.elastic) == 0) return unchecked(ElasticBake::Drawn::kWritten);
+  const std::int32_t count = presses_made(scene, bake, warnings);
+  if (count == 0) return unchecked(ElasticBake::Drawn::kWritten);
   unchecked(ElasticBake::Drawn::kLeftOut);  // tells how fine the presses' elements are to be
-  std::vector<CheckPress> presses = solved_presses(scene, image, bake.mesh(), run);
+  std::vector<CheckPress> presses = solved_presses(scene, image, bake.mesh(), count, run);
   const std::string where = scene.source.where("body.elastic.check_presses") + ": ";
   if (std::ranges::all_of(presses, [](const CheckPress& press) { return press.depth_m.empty(); })) {
     warnings.push_back(where +

@@ -419,6 +419,7 @@ ElasticBake::ElasticBake(const SceneDesc& scene, const ImageContents& image, int
 ElasticBake::~ElasticBake() = default;
 
 const TetMesh& ElasticBake::mesh() const { return parts_->mesh; }
+double ElasticBake::factor_multiplications() const { return parts_->rest.factor_multiplications(); }
 
 ElasticReport ElasticBake::write(int soft, int linear, double add_c_mpN, ImageContents& image, Drawn drawn) const {
   Parts& parts = *parts_;

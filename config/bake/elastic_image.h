@@ -18,6 +18,8 @@ class ElasticBake {
               unsigned jobs);
   ~ElasticBake();
   const TetMesh& mesh() const;
+  // What a factor of the body's stiffness takes (fem::SupernodalFactor::multiplications).
+  double factor_multiplications() const;
   // What the body looks like when pressed: for images that are kept. No tick of a trial reads it.
   enum class Drawn : std::uint8_t { kLeftOut, kWritten };
   // Fills the elastic arrays and parameters. `add_c_mpN` goes to every self term.

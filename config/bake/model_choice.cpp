@@ -67,7 +67,8 @@ class ModelChoice {
   CompileResult result(double target, bool only_elastic) {
     CompileResult elastic = compile_stated(scene_, run_, {});
     if (elastic.report.elastic.press.empty()) {
-      say("error_target " + per_cent(target) + ": no place could be pressed, so nothing is compared; elastic taken");
+      say("error_target " + per_cent(target) +
+          ": nothing was pressed (the warnings say why), so nothing is compared; elastic taken");
       return finished(std::move(elastic), nullptr);
     }
     const std::vector<CheckPress> presses = elastic.report.elastic.press;

@@ -26,6 +26,9 @@ class RestBody {
   // The same of the elements at a node, their mean.
   double contact_modulus(int node) const;
 
+  // SupernodalFactor::multiplications of the stiffness.
+  double factor_multiplications() const { return factor_.multiplications(); }
+
   // K^-1 f at rest.
   Eigen::VectorXd solve(const Eigen::VectorXd& force_N) const { return solve_all(force_N); }
   // The same for every column, to the same bits.

@@ -23,6 +23,8 @@ class SupernodalFactor {
   // Pivots below zero: as many as eigenvalues.
   int negative_pivots() const;
   std::size_t entries() const { return panel_.size(); }
+  // Of one factorisation, about: a pair of multiplication and addition each.
+  double multiplications() const;
 
  private:
   struct Node {

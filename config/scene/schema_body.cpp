@@ -62,7 +62,9 @@ const KeySpec kElastic[] = {
         "check_presses", -1, 16,
         "places where a ball as large as the tool's tip is pressed into large-strain elements to check the modes, up "
         "to contact.max_depth_mm, 0.45 of what lies above a support or three times device.force_max_N; 10 to 25 s "
-        "each; -1: 5 where soft_modes = 0, else none"),
+        "each, minutes where the body has tens of thousands of nodes; -1: 5 where soft_modes = 0, or as many as are "
+        "done "
+        "in ten minutes of one processor, else none"),
     number<&ElasticDesc::check_error>("check_error", 1e-4, 1, 1, "relative error of the force that they may show"),
 };
 const KeySpec kMaterial[] = {

@@ -88,6 +88,14 @@ TEST(ElasticCheck, PiecesAreDoneOnceByHoweverManyThreads) {
   }
 }
 
+// A cup of 50,458 nodes takes 2.7e10 multiplications a factor, and 265 s a press (2026-11-28).
+TEST(ElasticCheck, PressesOfLargeBodiesAreFewerUnlessStated) {
+  EXPECT_EQ(affordable_presses(5, 1e9), 5);
+  EXPECT_EQ(affordable_presses(5, 2.7e10), 2);
+  EXPECT_EQ(affordable_presses(5, 1e11), 0);
+  EXPECT_EQ(affordable_presses(0, 1e9), 0);
+}
+
 TEST(ElasticCheck, KeysWithoutPressesAreRefused) {
   const std::string scene = elastic_scene(arch(10), 35, 9, 15, 2);
   EXPECT_THROW(parse_scene(with_checks(scene, "check_error = 0.02\n"), "test.toml"), ConfigError);

@@ -110,6 +110,18 @@ TEST(SupernodalFactor, TakesUnknownsThatNothingConnects) {
   EXPECT_LT(residual(lower, 0, factor.solve(b), b), 1e-15);
 }
 
+// A full matrix of n rows: sum over its columns of half the square that is left, n (n + 1) (2 n + 1) / 12.
+TEST(SupernodalFactor, CountsItsMultiplications) {
+  constexpr int kRows = 30;
+  Sparse lower(kRows, kRows);
+  for (int j = 0; j < kRows; ++j)
+    for (int i = j; i < kRows; ++i) lower.insert(i, j) = i == j ? 2.0 * kRows : 1;
+  lower.makeCompressed();
+  SupernodalFactor factor;
+  factor.analyse(lower);
+  EXPECT_DOUBLE_EQ(factor.multiplications(), kRows * (kRows + 1) * (2 * kRows + 1) / 12.0);
+}
+
 TEST(SupernodalFactor, CountsNegativeEigenvalues) {
   Sparse lower(3, 3);  // eigenvalues 1, 3 and -2
   for (int i = 0; i < 2; ++i) lower.insert(i, i) = 2;
