@@ -18,9 +18,10 @@ namespace {
 // A wall's other side and a block's flanks carry nothing of a patch.
 constexpr double kFacingCosine = 0.5;
 constexpr double kPatchSigmas = 4;
-constexpr std::size_t kTogether = 4;  // nodes whose patches are solved in one pass through the factor
-constexpr double kWider = 1.4;        // deviation of the second patch, of the first's
-constexpr double kMostGrowth = 2;     // of a place's give, from the patch to no width
+constexpr std::size_t kTogether = 4;    // nodes whose patches are solved in one pass through the factor
+constexpr std::size_t kMostPieces = 4;  // at a time: of 100,000 nodes each has 48 vectors, 115 MB
+constexpr double kWider = 1.4;          // deviation of the second patch, of the first's
+constexpr double kMostGrowth = 2;       // of a place's give, from the patch to no width
 // Elements are too stiff under a patch, by (edges / deviation) to this power: PatchOptions.
 constexpr double kTooStiffPower = 3.25;
 
@@ -246,7 +247,7 @@ std::vector<SelfSample> self_samples(const RestBody<kDim>& body, const std::vect
     if (body.surface().facets_at(node).empty())
       throw ConfigError("elastic body: contact node " + std::to_string(node) + " lies inside the body");
   std::vector<SelfSample> samples;
-  const std::size_t at_once = kTogether * pieces_at_once(jobs);
+  const std::size_t at_once = kTogether * std::min(pieces_at_once(jobs), kMostPieces);
   for (std::size_t first = 0; first < nodes.size(); first += at_once) {
     const auto some = std::span(nodes).subspan(first, std::min(at_once, nodes.size() - first));
     std::vector<Sampled<kDim>> sampled((some.size() + kTogether - 1) / kTogether);

@@ -88,6 +88,11 @@ TEST(ElasticCheck, PiecesAreDoneOnceByHoweverManyThreads) {
   }
 }
 
+TEST(ElasticCheck, OneThreadAndThreeMakeTheSameImage) {
+  const SceneDesc scene = parse_scene(elastic_scene(arch(10), 35, 9, 15, 2), "test.toml");
+  EXPECT_TRUE(compile_scene(scene, {{}, 1}).bytes == compile_scene(scene, {{}, 3}).bytes);
+}
+
 // A cup of 50,458 nodes takes 2.7e10 multiplications a factor, and 265 s a press (2026-11-28).
 TEST(ElasticCheck, PressesOfLargeBodiesAreFewerUnlessStated) {
   EXPECT_EQ(affordable_presses(5, 1e9), 5);
