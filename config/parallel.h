@@ -15,8 +15,8 @@ inline std::size_t pieces_at_once(unsigned jobs) {
   return jobs > 0 ? jobs : std::max(1U, std::thread::hardware_concurrency());
 }
 
-// Calls work(i) for i < count on up to `jobs` threads. Pieces must not share what
-// they write: then their results do not depend on `jobs`. Throws what the first piece, by its number, has thrown.
+// Calls work(i) for i < count on up to `jobs` threads. Pieces must not share what they write: then their results do not
+// depend on `jobs`. Throws what the first piece, by its number, has thrown.
 template <class Work>
 void for_each_piece(std::size_t count, unsigned jobs, const Work& work) {
   std::vector<std::exception_ptr> thrown(count);

@@ -125,9 +125,9 @@ endfunction()
 # Sources are compiled together, some four in one, for most of what a small one takes is the headers it includes: four of
 # tests/hal 16.2 s of processor time one by one and 8.8 as one, of config 20.4 and 15.6 (gcc 12, 2026-11-27); all of the
 # address sanitizer's build 1,230 and 940 (clang 22, 2026-11-28). By their names' hash, so that one more source moves no
-# other. Those with Eigen take long by themselves; of APART, each a
-# regular expression, names are those of others (cards have functions of one name each). Debug builds (cmake --preset dev,
-# which ./run test --long makes) compile each source by itself, so what forgets an include does not compile there.
+# other. Those with Eigen take long by themselves; of APART, each a regular expression, names are those of others (cards
+# have functions of one name each). Debug builds (cmake --preset dev, which ./run test --long makes) compile each source by
+# itself, so what forgets an include does not compile there.
 function(palpate_compile_together target)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "APART")
   if(CMAKE_BUILD_TYPE STREQUAL "Debug")

@@ -40,7 +40,11 @@ class Prober {
   std::vector<Eigen::VectorXd> pairs() {
     const int s = static_cast<int>(amplitude_.size());
     std::vector<Eigen::VectorXd> k2(static_cast<std::size_t>(s * (s + 1) / 2));
-    for_each_pair([&](int a, int b) {
+    std::vector<std::pair<int, int>> pair;
+    for (int a = 0; a < s; ++a)
+      for (int b = a; b < s; ++b) pair.emplace_back(a, b);
+    for_each_piece(pair.size(), jobs_, [&](std::size_t i) {
+      const auto [a, b] = pair[i];
       Eigen::VectorXd v = amplitude_[a] * phi_.col(a);
       if (b != a) v += amplitude_[b] * phi_.col(b);
       k2[pair_place(a, b, s)] = even(v);
@@ -92,14 +96,6 @@ class Prober {
   int residuals() const { return residuals_; }
 
  private:
-  template <class Work>
-  void for_each_pair(const Work& work) const {
-    std::vector<std::pair<int, int>> pair;
-    for (int a = 0; a < static_cast<int>(amplitude_.size()); ++a)
-      for (int b = a; b < static_cast<int>(amplitude_.size()); ++b) pair.emplace_back(a, b);
-    for_each_piece(pair.size(), jobs_, [&](std::size_t i) { work(pair[i].first, pair[i].second); });
-  }
-
   const RestBody<kDim>& body_;
   Eigen::MatrixXd phi_;
   Eigen::VectorXd lambda_, amplitude_;

@@ -74,7 +74,6 @@ TEST(TipRefusals, NameKeyReasonAndRemedy) {
   EXPECT_EQ(refusal({}), "accepted");
 }
 
-// Presses measured at places: too near to one another, too far from the body, too shallow.
 // Of two balls, 2 and 8 mm, each law ends where the ball's does or at the depth that a scene has by default.
 TEST(TipRefusals, NobodyStatedADepthThatASmallBallCannotHave) {
   const std::string text =
@@ -87,6 +86,7 @@ TEST(TipRefusals, NobodyStatedADepthThatASmallBallCannotHave) {
   EXPECT_DOUBLE_EQ(baked.model().tip_law[1].depth_max_m, 0.006);
 }
 
+// Presses measured at places: too near to one another, too far from the body, too shallow.
 TEST(TipRefusals, MeasuredPlacesAndDepths) {
   const std::string path = (std::filesystem::temp_directory_path() / "palpate_MeasuredPlacesAndDepths.csv").string();
   const auto bake = [&](const std::string& rows) {
