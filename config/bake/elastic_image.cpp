@@ -82,15 +82,18 @@ class NodalGradient {
 // Free surface nodes at least `spacing_m` apart, the first ones that are.
 std::vector<int> sample_nodes(const elastic::Surface<3>& surface, const std::vector<bool>& fixed, double spacing_m) {
   std::vector<int> kept;
+  std::vector<Vec3> place_m, outward;  // of those kept
   for (int n = 0; n < static_cast<int>(fixed.size() / 3); ++n) {
     if (surface.facets_at(n).empty() || fixed[at(3 * n)] || fixed[at(3 * n + 1)] || fixed[at(3 * n + 2)]) continue;
     const double apart = std::max(spacing_m, surface.edge_m(n));
-    const auto normal = elastic::node_normal(surface, n);
-    const bool is_new = std::all_of(kept.begin(), kept.end(), [&](int k) {
-      return (surface.rest(k) - surface.rest(n)).norm() >= apart ||
-             elastic::node_normal(surface, k).dot(normal) < kFacing;
-    });
-    if (is_new) kept.push_back(n);
+    const Vec3 place = vec(surface.rest(n)), normal = vec(elastic::node_normal(surface, n));
+    bool is_new = true;
+    for (std::size_t k = 0; k < kept.size() && is_new; ++k)
+      is_new = norm(place_m[k] - place) >= apart || dot(outward[k], normal) < kFacing;
+    if (!is_new) continue;
+    kept.push_back(n);
+    place_m.push_back(place);
+    outward.push_back(normal);
   }
   return kept;
 }
@@ -182,6 +185,9 @@ void add_vertices(const elastic::ElasticBody<3>& body, const Shapes& shapes, con
   const std::vector<double> curvature = mean_curvatures(image, normals);
   const auto stride = at(vertex_floats(s, linear));
   image.elastic_vertex.assign(stride * image.vertex_m.size(), 0);
+  std::vector<Field> linear_shapes;
+  for (int m = s; m < s + linear; ++m)
+    linear_shapes.emplace_back(body.modes.phi_1pm.col(m) / std::sqrt(body.modes.lambda_Npm3[m]));
   for (std::size_t v = 0; v < image.vertex_m.size(); ++v) {
     const FacetFoot& foot = feet[v];
     float* out = &image.elastic_vertex[stride * v];
@@ -201,10 +207,8 @@ void add_vertices(const elastic::ElasticBody<3>& body, const Shapes& shapes, con
     *out++ = static_cast<float>(curvature[v]);
     *out++ = static_cast<float>(own[2]);
     out += elastic_layout::kOwnFloats - elastic_layout::kOwnValues;
-    for (int m = s; m < s + linear; ++m) {
-      const Field phi = body.modes.phi_1pm.col(m) / std::sqrt(body.modes.lambda_Npm3[m]);
+    for (const Field& phi : linear_shapes)
       for (int i = 0; i < 3; ++i) *out++ = show(phi, 3, i);
-    }
   }
 }
 

@@ -162,19 +162,16 @@ struct Met {
 };
 // All nodes at once.
 template <int kDim>
-std::vector<Met> meet(const RestBody<kDim>& body, std::span<const int> nodes, const PatchOptions& patch, bool drawn) {
+std::vector<Met> meet(const RestBody<kDim>& body, std::span<const int> nodes, const PatchOptions& patch) {
   const Surface<kDim>& surface = body.surface();
   const auto sigma = [&](std::size_t i) {
     return (i % 2 == 0 ? 1 : kWider) * patch.edges * surface.edge_m(nodes[i / 2]);
   };
-  const auto loads = static_cast<Eigen::Index>(2 * nodes.size()), count = static_cast<Eigen::Index>(nodes.size());
-  Eigen::MatrixXd g(body.size(), drawn ? loads + count : loads);
+  Eigen::MatrixXd g(body.size(), static_cast<Eigen::Index>(2 * nodes.size()));
   for (std::size_t i = 0; i < 2 * nodes.size(); ++i) {
     const int node = nodes[i / 2];
-    const Vector<kDim> at = surface.rest(node), normal = node_normal(surface, node);
-    g.col(static_cast<Eigen::Index>(i)) = gaussian_patch<kDim>(body, at, normal, sigma(i));
-    if (drawn && i % 2 == 0)
-      g.col(loads + static_cast<Eigen::Index>(i / 2)) = bent_patch<kDim>(body, at, normal, sigma(i));
+    g.col(static_cast<Eigen::Index>(i)) =
+        gaussian_patch<kDim>(body, surface.rest(node), node_normal(surface, node), sigma(i));
   }
   const Eigen::MatrixXd u = body.solve_all(g);
   std::vector<Met> met(nodes.size());
@@ -184,7 +181,6 @@ std::vector<Met> meet(const RestBody<kDim>& body, std::span<const int> nodes, co
     place.node = nodes[i / 2];
     place.sigma_m[i % 2] = sigma(i);
     place.u_mpN[i % 2] = u.col(col);
-    if (drawn && i % 2 == 0) place.bent_mpN = u.col(loads + col / 2);
     if (i % 2 == 0) place.give_mpN = g.col(col).dot(u.col(col));
     const double half_space =
         gaussian_self_compliance_mpN(kDim == 2, body.contact_modulus(nodes[i / 2]), sigma(i), surface.extent_m());
@@ -205,8 +201,11 @@ template <int kDim>
 Sampled<kDim> sample_some(const RestBody<kDim>& body, std::span<const int> some, double probe_m,
                           const PatchOptions& patch, bool heard) {
   const Surface<kDim>& surface = body.surface();
-  Sampled<kDim> out{{}, meet(body, some, patch, heard)};
-  Eigen::MatrixXd second(body.size(), static_cast<Eigen::Index>(heard ? some.size() : 0));
+  Sampled<kDim> out{{}, meet(body, some, patch)};
+  // What is drawn besides, in one solve, for a solve spends its time on fetching the factor: the second order of every
+  // place, and its patch with a slope.
+  const auto count = static_cast<Eigen::Index>(some.size());
+  Eigen::MatrixXd drawn(body.size(), heard ? 2 * count : 0);
   for (std::size_t i = 0; i < some.size(); ++i) {
     const Met& met = out.met[i];
     const PressedPlace& place = met.place;
@@ -218,10 +217,12 @@ Sampled<kDim> sample_some(const RestBody<kDim>& body, std::span<const int> some,
     const double scale = probe_m / u.cwiseAbs().maxCoeff();
     const Eigen::VectorXd bent = body.internal_force(scale * u) + body.internal_force(-scale * u);
     sample.third_mpN2 = bent.dot(u) / (scale * scale);
-    if (heard)
-      second.col(static_cast<Eigen::Index>(i)) =
-          bent * (-0.5 / (scale * scale)) +
-          turned_patch<kDim>(body, surface.rest(some[i]), node_normal(surface, some[i]), place.sigma_m[0], u);
+    if (heard) {
+      const Vector<kDim> at = surface.rest(some[i]), normal = node_normal(surface, some[i]);
+      const auto col = static_cast<Eigen::Index>(i);
+      drawn.col(col) = bent * (-0.5 / (scale * scale)) + turned_patch<kDim>(body, at, normal, place.sigma_m[0], u);
+      drawn.col(count + col) = bent_patch<kDim>(body, at, normal, place.sigma_m[0]);
+    }
     // A wall's second order is of the third power in how far it gives: on a dome the patches of 4.4 and 3.3 mm stand
     // as 1 to 1.07 in R and 1 to 1.23 in this (2026-11-23). Along the patches' parabola: a plate's own growth, more,
     // leaves half shells and tubes 0.6 to 1 % softer at 5 mm (2026-11-25).
@@ -233,8 +234,11 @@ Sampled<kDim> sample_some(const RestBody<kDim>& body, std::span<const int> some,
     out.samples.push_back(sample);
   }
   if (!heard) return out;
-  second = body.solve_all(second);
-  for (std::size_t i = 0; i < some.size(); ++i) out.met[i].place.second_mpN2 = second.col(static_cast<Eigen::Index>(i));
+  drawn = body.solve_all(drawn);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    out.met[static_cast<std::size_t>(i)].place.second_mpN2 = drawn.col(i);
+    out.met[static_cast<std::size_t>(i)].place.bent_mpN = drawn.col(count + i);
+  }
   return out;
 }
 

@@ -31,8 +31,7 @@ FullPoint full_point(const Gradient<2>& f, double shear, double bulk) {
   const VolumeRatio<2> v = volume_ratio(f);
   const DistortionEnergy<2> w = distortion_energy<2>(f, v, shear);
   const double p = bulk * (v.value - 1);
-  return {w.value + 0.5 * p * (v.value - 1), w.slope + p * v.slope,
-          w.curvature + p * v.curvature + bulk * (v.slope * v.slope.transpose())};
+  return {w.value + 0.5 * p * (v.value - 1), w.slope + p * v.slope, energy_curvature(f, v, w, p, bulk)};
 }
 
 PlaneStressPoint plane_stress_point(Gradient<2> f, double shear, double bulk) {
@@ -216,10 +215,27 @@ Gradient<kDim> LargeStrainAssembly<kDim>::gradient_at(int e, int g, const Eigen:
   return f;
 }
 
-// Adds w B^T stress and w B^T stiffness B. A displacement component touches only its own row of F, and F33 on a ring.
+// Adds w B^T stress. A displacement component touches only its own row of F, and F33 on a ring.
 template <int kDim>
-void LargeStrainAssembly<kDim>::add_point(int e, int g, const Gradient<kDim>& stress,
-                                          const GradientSquare<kDim>& stiffness, bool tangent, ElementSums& out) const {
+void LargeStrainAssembly<kDim>::add_force(int e, int g, const Gradient<kDim>& stress, ElementSums& out) const {
+  const std::size_t first = point_index(e, g) * static_cast<std::size_t>(tables_.nodes);
+  const double w = weight_[point_index(e, g)];
+  const bool ring = !hoop_.empty();
+  for (int a = 0; a < tables_.nodes; ++a) {
+    const Point<kDim>& grad = gradient_[first + static_cast<std::size_t>(a)];
+    for (int i = 0; i < kDim; ++i) {
+      double force =
+          ring && i == 0 ? hoop_[first + static_cast<std::size_t>(a)] * stress[kGradientSize<kDim> - 1] : 0.0;
+      for (int d = 0; d < kDim; ++d) force += grad[static_cast<std::size_t>(d)] * stress[i * kDim + d];
+      out.force[a * kDim + i] += w * force;
+    }
+  }
+}
+
+// Adds w B^T stiffness B.
+template <int kDim>
+void LargeStrainAssembly<kDim>::add_stiffness(int e, int g, const GradientSquare<kDim>& stiffness,
+                                              ElementSums& out) const {
   const std::size_t first = point_index(e, g) * static_cast<std::size_t>(tables_.nodes);
   const double w = weight_[point_index(e, g)];
   const int dofs = tables_.nodes * kDim;
@@ -231,16 +247,11 @@ void LargeStrainAssembly<kDim>::add_point(int e, int g, const Gradient<kDim>& st
   for (int p = 0; p < dofs; ++p) {
     const int i = p % kDim;
     const double hoop = ring && i == 0 ? hoop_[first + static_cast<std::size_t>(p / kDim)] : 0.0;
-    double force = kDim == 2 ? hoop * stress[kGradientSize<kDim> - 1] : 0.0;
-    for (int d = 0; d < kDim; ++d) force += row(p, d) * stress[i * kDim + d];
-    out.force[p] += w * force;
-    if (!tangent) continue;
     auto column = product.col(p);
     column.setZero();
     for (int d = 0; d < kDim; ++d) column += w * row(p, d) * stiffness.col(i * kDim + d);
     if (hoop != 0) column += w * hoop * stiffness.col(kGradientSize<kDim> - 1);
   }
-  if (!tangent) return;
   for (int p = 0; p < dofs; ++p) {
     const int i = p % kDim;
     const double hoop = ring && i == 0 ? hoop_[first + static_cast<std::size_t>(p / kDim)] : 0.0;
@@ -267,7 +278,8 @@ bool LargeStrainAssembly<kDim>::evaluate_element(int e, const Eigen::VectorXd& u
         const PlaneStressPoint point = plane_stress_point(gradient_at(e, g, u), shear_Pa, bulk_Pa);
         if (!std::isfinite(point.energy)) return false;
         out.energy += weight_[point_index(e, g)] * point.energy;
-        add_point(e, g, point.stress, point.stiffness, tangent, out);
+        add_force(e, g, point.stress, out);
+        if (tangent) add_stiffness(e, g, point.stiffness, out);
       }
       return true;
     }
@@ -294,10 +306,9 @@ bool LargeStrainAssembly<kDim>::evaluate_element(int e, const Eigen::VectorXd& u
     const double own = v[g].value - 1, volume = weight_[point_index(e, g)];
     const double p = projected_Pa * dilatation + point_bulk_Pa * own;
     out.energy += volume * (w.value + 0.5 * projected_Pa * dilatation * dilatation + 0.5 * point_bulk_Pa * own * own);
-    GradientSquare<kDim> curvature = w.curvature + p * v[g].curvature;
-    if (point_bulk_Pa > 0) curvature += point_bulk_Pa * v[g].slope * v[g].slope.transpose();
-    add_point(e, g, w.slope + p * v[g].slope, curvature, tangent, out);
+    add_force(e, g, w.slope + p * v[g].slope, out);
     if (!tangent) continue;
+    add_stiffness(e, g, energy_curvature(f[g], v[g], w, p, point_bulk_Pa), out);
     const std::size_t first = point_index(e, g) * static_cast<std::size_t>(tables_.nodes);
     for (int q = 0; q < dofs; ++q) {
       const std::size_t a = first + static_cast<std::size_t>(q / kDim);

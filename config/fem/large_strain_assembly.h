@@ -43,8 +43,8 @@ class LargeStrainAssembly {
   void place_nodes(const StrainMesh<kDim>& mesh);
   void find_pattern();
   bool evaluate_element(int e, const Eigen::VectorXd& u, bool tangent, ElementSums& out) const;
-  void add_point(int e, int g, const Gradient<kDim>& stress, const GradientSquare<kDim>& stiffness, bool tangent,
-                 ElementSums& out) const;
+  void add_force(int e, int g, const Gradient<kDim>& stress, ElementSums& out) const;
+  void add_stiffness(int e, int g, const GradientSquare<kDim>& stiffness, ElementSums& out) const;
   Gradient<kDim> gradient_at(int e, int g, const Eigen::VectorXd& u) const;
   int* element_nodes(int e) { return &connectivity_[static_cast<std::size_t>(e * tables_.nodes)]; }
   const int* element_nodes(int e) const { return &connectivity_[static_cast<std::size_t>(e * tables_.nodes)]; }

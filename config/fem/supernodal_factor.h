@@ -5,6 +5,8 @@
 #pragma once
 
 #include <Eigen/SparseCore>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -42,7 +44,20 @@ class SupernodalFactor {
   template <int kWide>
   void substitute(const Eigen::Ref<const Eigen::MatrixXd>& b, Eigen::Index first,
                   Eigen::Ref<Eigen::MatrixXd> out) const;
-  static bool eliminate(std::vector<double>& front, int rows, int columns, double* diagonal);
+  // Columns of the factor that one pass over their rows takes along: a row of the right hand sides is fetched once for
+  // them all, and sums of different columns do not wait for one another.
+  static constexpr std::size_t kTogether = 3;
+  template <std::size_t kColumns>
+  std::array<const double*, kColumns> columns_of(const Node& node, std::size_t c) const;
+  template <std::size_t kColumns, class Row>
+  void forward_columns(const Node& node, std::size_t c, Row* x) const;
+  template <std::size_t kColumns, class Row>
+  void backward_columns(const Node& node, std::size_t c, Row* x) const;
+  template <class Row>
+  void forward(const Node& node, Row* x) const;
+  template <class Row>
+  void backward(const Node& node, Row* x) const;
+  static bool eliminate(std::vector<double>& front, std::size_t rows, std::size_t columns, double* diagonal);
 
   int size_ = 0;
   std::vector<int> new_of_old_;

@@ -61,6 +61,26 @@ TEST(SupernodalFactor, SolvesDefiniteAndIndefiniteGridsWithAndWithoutAShift) {
 }
 
 // Whether columns go through the factor alone, in fours or in eights is not to be seen in a bit.
+// One front each, so that every share of a panel and of a block of rows and columns is met.
+TEST(SupernodalFactor, SolvesFullMatricesOfEverySize) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> value(-1, 1);
+  for (int size = 1; size <= 110; ++size) {
+    std::vector<Eigen::Triplet<double>> entries;
+    for (int row = 0; row < size; ++row)
+      for (int column = 0; column <= row; ++column)
+        entries.emplace_back(row, column, row != column ? value(random) : row % 3 == 1 ? -size : size);
+    Sparse lower(size, size);
+    lower.setFromTriplets(entries.begin(), entries.end());
+    SupernodalFactor factor;
+    factor.analyse(lower);
+    ASSERT_TRUE(factor.factorise(lower, 0));
+    const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(size, -1, 2);
+    EXPECT_LT(residual(lower, 0, factor.solve(b), b), 1e-12) << size;
+    EXPECT_EQ(factor.negative_pivots(), (size + 1) / 3) << size;
+  }
+}
+
 TEST(SupernodalFactor, SolvesColumnsTogetherAsAlone) {
   std::mt19937 random(3);
   const Sparse lower = grid(5, 3, 1, random);
