@@ -68,20 +68,17 @@ void press_case(const std::string& folder, const Kept& kept) {
   }
 }
 
-// The ring stands at the end of what holds it upright: how far it leans nothing tells, and its surface's bound is that
-// of before; less that lean it is 0.8 % off. The layer is pressed to two fifths of its thickness (docs/accuracy.md).
+// The layer is pressed to two fifths of its thickness (docs/accuracy.md). References of curved bodies were solved again
+// on 2026-11-28, with nodes where their support ends.
 constexpr Kept kCases[] = {
-    {"block", 0.005, 0.005, 0.0035},           // 0.38, 0.31 % on 2026-11-25, its surface 0.33 % on 2026-11-26
-    {"cylinder_side", 0.013, 0.0105, 0.005},   // 1.14, 0.97, 0.48 %
-    {"ellipsoid", 0.004, 0.004, 0.0044},       // 0.25, 0.26, 0.41 %
-    {"half_shell", 0.015, 0.012, 0.0152},      // 1.33, 1.05, 1.48 %
-    {"hollow_cylinder", 0.007, 0.01, 0.0115},  // 0.63, 0.99, 1.12 %
-    {"layer", 0.027, 0.028, 0.0225},           // 2.62, 2.63, 2.2 %
-    {"ring", 0.024, 0.022, 0.067, 0.0085},     // 2.35, 2.13, 3.8 %, upright 0.81 %
-};
-// Beside its crest that ring leans by as much as it is pressed, and goes soft by that: above the 3 % at the deepest.
-constexpr Kept kLeans[] = {
-    {"ring_beside", 0.0315, 0.0365, 0.014},  // 3.09, 3.60 % on 2026-11-26, its surface 1.37 % on 2026-11-27
+    {"block", 0.005, 0.005, 0.0035},              // 0.38, 0.31 % on 2026-11-25, its surface 0.33 % on 2026-11-26
+    {"cylinder_side", 0.0085, 0.012, 0.0054},     // 0.83, 1.16, 0.53 % on 2026-11-28
+    {"ellipsoid", 0.004, 0.004, 0.0044},          // 0.25, 0.26, 0.41 %
+    {"half_shell", 0.0105, 0.0102, 0.0152},       // 1.01, 0.99, 1.49 % on 2026-11-28
+    {"hollow_cylinder", 0.0065, 0.0096, 0.0121},  // 0.62, 0.94, 1.18 % on 2026-11-28
+    {"layer", 0.027, 0.028, 0.0225},              // 2.62, 2.63, 2.2 %
+    {"ring", 0.0195, 0.018, 0.0094},              // 1.93, 1.76, 0.91 % on 2026-11-28
+    {"ring_beside", 0.0285, 0.0335, 0.012},       // 2.77, 3.25, 1.17 % on 2026-11-28
 };
 class AccuracyCases : public testing::TestWithParam<Kept> {};
 
@@ -90,36 +87,33 @@ TEST_P(AccuracyCases, ElasticBodyErrsAsPublished) { press_case(kFolder, GetParam
 INSTANTIATE_TEST_SUITE_P(Of, AccuracyCases, testing::ValuesIn(kCases),
                          [](const auto& given) { return std::string(given.param.name); });
 
-INSTANTIATE_TEST_SUITE_P(Leaning, AccuracyCases, testing::ValuesIn(kLeans),
-                         [](const auto& given) { return std::string(given.param.name); });
-
 TEST(AccuracyFolders, EveryCaseIsGated) {
   std::set<std::string> names;
   for (const Kept& kept : kCases) names.insert(kept.name);
-  for (const Kept& kept : kLeans) names.insert(kept.name);
   EXPECT_EQ(cases_in(kFolder), names);
 }
 
 // Cases that were chosen and committed before they were solved (kept_back/solve.sh). The first width law was never
 // tuned to them; the law of 2026-11-25 was made with their errors in view (docs/accuracy.md).
 constexpr Kept kKeptBack[] = {
-    {"pad", 0.006, 0.006, 0.0148},              // 0.48, 0.48, 1.44 % on 2026-11-25, its surface on 2026-11-26
-    {"spheroid", 0.02, 0.016, 0.0525, 0.0115},  // 1.86, 1.48, 5.1 %, upright 1.1 %
-    {"torus", 0.0292, 0.0225, 0.0275},          // 2.91, 2.23, 2.7 % with the reference of 2026-11-26
-    {"tube", 0.02, 0.011, 0.024},               // 1.93, 1.05, 2.34 % with the reference of 2026-11-27
-    {"dome", 0.0301, 0.026, 0.02},              // 2.82, 2.21, 1.98 %
-    {"box", 0.017, 0.018, 0.0148},              // 1.54, 1.64, 1.44 %
-    {"triaxial", 0.028, 0.029, 0.011},          // 2.70, 2.79, 1.0 %
+    {"pad", 0.006, 0.006, 0.0148},                // 0.48, 0.48, 1.44 % on 2026-11-25, its surface on 2026-11-26
+    {"spheroid", 0.0142, 0.0102, 0.034, 0.0105},  // 1.39, 1.00, 3.3 %, upright 1.0 % on 2026-11-28
+    {"torus", 0.0301, 0.0217, 0.0275},            // 2.998, 2.15, 2.73 % on 2026-11-28
+    {"tube", 0.02, 0.011, 0.024},                 // 1.93, 1.05, 2.34 % with the reference of 2026-11-27
+    {"dome", 0.0285, 0.0225, 0.02},               // 2.82, 2.23, 1.99 % on 2026-11-28
+    {"box", 0.017, 0.018, 0.0148},                // 1.54, 1.64, 1.44 %
+    {"triaxial", 0.028, 0.029, 0.0088},           // 2.71, 2.77, 0.87 % on 2026-11-28
 };
 
 // Cases that were solved after the law of 2026-11-25 was made, slab and loaf after the drawn fields of 2026-11-26, too;
-// as found, above the 3 % or not. The references of lentil and loaf have a clamp that ends half an element off.
+// as found, above the 3 % or not.
 constexpr Kept kBlind[] = {
-    {"lentil", 0.054, 0.051, 0.0092},       // 5.33, 5.03, 0.9 % on 2026-11-27
-    {"disc", 0.011, 0.013, 0.0152},         // 0.98, 1.20, 1.48 %
-    {"small_torus", 0.021, 0.013, 0.0268},  // 1.98, 1.18, 2.65 %
-    {"slab", 0.008, 0.007, 0.0092},         // 0.73, 0.63, 0.9 % on 2026-11-26
-    {"loaf", 0.0085, 0.0135, 0.0055},       // 0.84, 1.26, 0.5 % on 2026-11-27
+    {"lentil", 0.054, 0.051, 0.0092},        // 5.33, 5.03, 0.9 % on 2026-11-28
+    {"foam_ball", 0.149, 0.141, 0.021},      // 14.8, 14.0, 2.09 % on 2026-11-28: curved and compressible
+    {"disc", 0.011, 0.013, 0.0152},          // 0.98, 1.20, 1.48 %
+    {"small_torus", 0.0192, 0.012, 0.0268},  // 1.90, 1.18, 2.65 % on 2026-11-28
+    {"slab", 0.008, 0.007, 0.0092},          // 0.73, 0.63, 0.9 % on 2026-11-26
+    {"loaf", 0.0071, 0.0119, 0.0048},        // 0.69, 1.17, 0.47 % on 2026-11-28
 };
 
 class AccuracyKeptBack : public testing::TestWithParam<Kept> {};
