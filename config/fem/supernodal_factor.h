@@ -44,8 +44,8 @@ class SupernodalFactor {
   template <int kWide>
   void substitute(const Eigen::Ref<const Eigen::MatrixXd>& b, Eigen::Index first,
                   Eigen::Ref<Eigen::MatrixXd> out) const;
-  // Columns of the factor that one pass over their rows takes along: a row of the right hand sides is fetched once for
-  // them all, and sums of different columns do not wait for one another.
+  // Columns of the factor that one pass over their rows takes along, a node in space has three: a row of the right hand
+  // sides is fetched once for them all, and sums of different columns do not wait for one another.
   static constexpr std::size_t kTogether = 3;
   template <std::size_t kColumns>
   std::array<const double*, kColumns> columns_of(const Node& node, std::size_t c) const;
