@@ -39,7 +39,8 @@ std::vector<CheckPress> check_places(const SceneDesc& scene, const ImageContents
 // Check presses that a baker makes of itself where a factor of the body takes so many multiplications: all that are
 // `wanted`, or as many as are done in some ten minutes of one processor; none where one takes longer.
 int affordable_presses(int wanted, double factor_multiplications);
-// What one of them takes of a processor, about, s. A cup of 50,458 nodes (a factor of 2.7e10): 133 s (2026-11-28).
+// What one of them takes of a processor, about, s. A cup of 50,458 nodes (a factor of 2.7e10): 175 and 117 s
+// beside other work (2026-11-28).
 inline double press_seconds(double factor_multiplications) { return 5e-9 * factor_multiplications; }
 
 // Edges of the elements under the ball, of the contact's radius at the deepest. 0.3 instead changes the forces on a

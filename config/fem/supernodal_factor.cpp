@@ -134,13 +134,14 @@ constexpr std::size_t kBlockRows = 8, kBlockColumns = 4;  // of the products tha
 
 // A panel's columns from row `end` on, block by block of rows, what is missing of the last one as zeros.
 template <class Columns>
-void pack_panel(const Columns& at, std::size_t start, std::size_t end, std::size_t rows, std::vector<double>& packed) {
+void pack_panel(const Columns& at, std::size_t start, std::size_t end, std::size_t rows,
+                std::vector<double>& by_block) {
   const std::size_t width = end - start, blocks = (rows - end + kBlockRows - 1) / kBlockRows;
-  packed.assign(blocks * kBlockRows * width, 0.0);
+  by_block.assign(blocks * kBlockRows * width, 0.0);
   for (std::size_t k = 0; k < width; ++k) {
     const double* column = at(start + k) + end;
     for (std::size_t i = 0; i < rows - end; ++i)
-      packed[(i / kBlockRows * width + k) * kBlockRows + i % kBlockRows] = column[i];
+      by_block[(i / kBlockRows * width + k) * kBlockRows + i % kBlockRows] = column[i];
   }
 }
 
@@ -167,13 +168,13 @@ PALPATE_FUSED inline void add_products(const double* panel, const double* factor
 // Takes the panel's part from columns j to j + kColumns, rows from j on (what lands above the diagonal is never read).
 template <std::size_t kColumns, class Columns>
 PALPATE_FUSED void subtract_panel(const Columns& at, std::size_t start, std::size_t end, std::size_t j,
-                                  std::size_t rows, const double* diagonal, const std::vector<double>& packed) {
+                                  std::size_t rows, const double* diagonal, const std::vector<double>& by_block) {
   const std::size_t width = end - start;
   double factor[kPanel * kColumns];
   for (std::size_t k = 0; k < width; ++k)
     for (std::size_t c = 0; c < kColumns; ++c) factor[k * kColumns + c] = -at(start + k)[j + c] * diagonal[start + k];
   for (std::size_t skip = (j - end) / kBlockRows * kBlockRows; end + skip < rows; skip += kBlockRows) {
-    const double* panel = packed.data() + skip * width;
+    const double* panel = by_block.data() + skip * width;
     const std::size_t first = end + skip, left = rows - first;
     double* to[kColumns];
     for (std::size_t c = 0; c < kColumns; ++c) to[c] = at(j + c) + first;
@@ -262,7 +263,7 @@ void SupernodalFactor::place_entries(const Eigen::SparseMatrix<double>& lower) {
 // unwritten), D apart, and the rest of the front less what they carry.
 bool SupernodalFactor::eliminate(std::vector<double>& front, std::size_t rows, std::size_t columns, double* diagonal) {
   const auto at = [&](std::size_t column) { return front.data() + column * rows; };
-  std::vector<double> packed;
+  std::vector<double> by_block;
   for (std::size_t start = 0; start < columns; start += kPanel) {
     const std::size_t end = std::min(columns, start + kPanel);
     for (std::size_t k = start; k < end; ++k) {
@@ -276,11 +277,11 @@ bool SupernodalFactor::eliminate(std::vector<double>& front, std::size_t rows, s
       double* pivot = at(k);
       for (std::size_t i = k + 1; i < rows; ++i) pivot[i] /= diagonal[k];
     }
-    pack_panel(at, start, end, rows, packed);
+    pack_panel(at, start, end, rows, by_block);
     std::size_t j = end;
     for (; j + kBlockColumns <= rows; j += kBlockColumns)
-      subtract_panel<kBlockColumns>(at, start, end, j, rows, diagonal, packed);
-    for (; j < rows; ++j) subtract_panel<1>(at, start, end, j, rows, diagonal, packed);
+      subtract_panel<kBlockColumns>(at, start, end, j, rows, diagonal, by_block);
+    for (; j < rows; ++j) subtract_panel<1>(at, start, end, j, rows, diagonal, by_block);
   }
   return true;
 }

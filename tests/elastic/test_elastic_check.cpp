@@ -93,7 +93,7 @@ TEST(ElasticCheck, OneThreadAndThreeMakeTheSameImage) {
   EXPECT_TRUE(compile_scene(scene, {{}, 1}).bytes == compile_scene(scene, {{}, 3}).bytes);
 }
 
-// A cup of 50,458 nodes takes 2.7e10 multiplications a factor, and 133 s a press (2026-11-28).
+// A cup of 50,458 nodes takes 2.7e10 multiplications a factor, and 175 and 117 s a press (2026-11-28).
 TEST(ElasticCheck, PressesOfLargeBodiesAreFewerUnlessStated) {
   EXPECT_EQ(affordable_presses(5, 1e9), 5);
   EXPECT_EQ(affordable_presses(5, 2.7e10), 4);

@@ -60,7 +60,6 @@ TEST(SupernodalFactor, SolvesDefiniteAndIndefiniteGridsWithAndWithoutAShift) {
     }
 }
 
-// Whether columns go through the factor alone, in fours or in eights is not to be seen in a bit.
 // One front each, so that every share of a panel and of a block of rows and columns is met.
 TEST(SupernodalFactor, SolvesFullMatricesOfEverySize) {
   std::mt19937 random(11);
@@ -81,6 +80,7 @@ TEST(SupernodalFactor, SolvesFullMatricesOfEverySize) {
   }
 }
 
+// Whether columns go through the factor alone, in fours or in eights is not to be seen in a bit.
 TEST(SupernodalFactor, SolvesColumnsTogetherAsAlone) {
   std::mt19937 random(3);
   const Sparse lower = grid(5, 3, 1, random);
