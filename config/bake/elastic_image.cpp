@@ -110,21 +110,19 @@ SampleField self_field(const elastic::Surface<3>& surface, const elastic::SelfTe
   return tame_field(surface, terms.nodes, value, spacing_m);
 }
 
-// Mean curvature at the vertices, convex positive: how fast normals turn along the edges of a face.
-std::vector<double> mean_curvatures(const ImageContents& image, const std::vector<CornerNormals>& normals) {
-  std::vector<double> sum(image.vertex_m.size()), count(image.vertex_m.size());
-  for (std::size_t t = 0; t < image.triangle.size(); ++t)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t next = (k + 1) % 3, a = at(image.triangle[t].vertex[k]), b = at(image.triangle[t].vertex[next]);
-      const Vec3 edge = image.vertex_m[b] - image.vertex_m[a];
-      const double bend = dot(normals[t].normal[next] - normals[t].normal[k], edge) / squared_norm(edge);
-      for (const std::size_t v : {a, b}) {
-        sum[v] += bend;
-        count[v] += 1;
-      }
-    }
-  for (std::size_t v = 0; v < sum.size(); ++v) sum[v] /= count[v];
-  return sum;
+// How the surface curves at the vertices, convex positive: principal curvatures, and that of the sphere that stands for
+// them under the tool's largest ball.
+struct Curvatures {
+  std::vector<std::array<double, 2>> principal_1pm;
+  std::vector<double> sphere_1pm;
+};
+Curvatures curvatures_of(const ImageContents& image, const std::vector<CornerNormals>& normals, double ball_m) {
+  Curvatures out;
+  for (const Bend& form : vertex_curvatures(image.vertex_m, normals, image.triangle)) {
+    out.principal_1pm.push_back(principal_curvatures(form));
+    out.sphere_1pm.push_back(elastic::equal_sphere_1pm(out.principal_1pm.back(), ball_m));
+  }
+  return out;
 }
 
 // Distinct orders of the indices.
@@ -178,11 +176,24 @@ Shapes term_shapes(const elastic::ElasticBody<3>& body, const NodalGradient& gra
   return out;
 }
 
+// The largest of the tool's balls; of no radius where it has none.
+elastic::BallLaw largest_ball(const ImageContents& image, const elastic::RestBody<3>& rest) {
+  elastic::BallLaw ball{0, rest.contact_modulus(), false, rest.material().poisson_ratio, 0, {}};
+  for (std::size_t p = 0; p < image.piece.size(); ++p) {
+    const TipLaw& law = image.tip_law[p];
+    if (image.piece[p].point_count == 0 || law.half_power != 3) continue;
+    const double radius = image.tool_point[at(image.piece[p].first_point)].margin_m;
+    if (radius <= ball.radius_m) continue;
+    ball.radius_m = radius;
+    ball.paraboloid = law.first_factor < 0;
+  }
+  return ball;
+}
+
 void add_vertices(const elastic::ElasticBody<3>& body, const Shapes& shapes, const SampleField& self,
-                  const std::vector<FacetFoot>& feet, ImageContents& image, const std::vector<CornerNormals>& normals) {
+                  const std::vector<FacetFoot>& feet, const Curvatures& curvatures, ImageContents& image) {
   using namespace elastic_layout;
   const int s = body.soft, linear = static_cast<int>(body.modes.lambda_Npm3.size()) - s;
-  const std::vector<double> curvature = mean_curvatures(image, normals);
   const auto stride = at(vertex_floats(s, linear));
   image.elastic_vertex.assign(stride * image.vertex_m.size(), 0);
   std::vector<Field> linear_shapes;
@@ -204,7 +215,7 @@ void add_vertices(const elastic::ElasticBody<3>& body, const Shapes& shapes, con
     const Eigen::RowVectorXd own = self.show(image.vertex_m[v], image.vertex_normal[v]);
     *out++ = static_cast<float>(own[0]);
     *out++ = static_cast<float>(own[1]);
-    *out++ = static_cast<float>(curvature[v]);
+    *out++ = static_cast<float>(curvatures.sphere_1pm[v]);
     *out++ = static_cast<float>(own[2]);
     out += elastic_layout::kOwnFloats - elastic_layout::kOwnValues;
     for (const Field& phi : linear_shapes)
@@ -262,46 +273,33 @@ elastic::ElasticOptions options_of(int soft, int linear, unsigned jobs) {
   return options;
 }
 
-// The largest of the tool's balls; of no radius where it has none.
-elastic::BallLaw largest_ball(const ImageContents& image, const elastic::RestBody<3>& rest) {
-  elastic::BallLaw ball{0, rest.contact_modulus(), false, rest.material().poisson_ratio, 0};
-  for (std::size_t p = 0; p < image.piece.size(); ++p) {
-    const TipLaw& law = image.tip_law[p];
-    if (image.piece[p].point_count == 0 || law.half_power != 3) continue;
-    const double radius = image.tool_point[at(image.piece[p].first_point)].margin_m;
-    if (radius <= ball.radius_m) continue;
-    ball.radius_m = radius;
-    ball.paraboloid = law.first_factor < 0;
-  }
-  return ball;
-}
-
-// The body's curvature at a node, of the nearest vertex that looks the same way: bent facets do not tell it.
-double curvature_at(const elastic::Surface<3>& surface, int node, const ImageContents& image,
-                    const std::vector<double>& curvature) {
+// The vertex nearest to a node that looks the same way, -1 where none does: bent facets do not tell how the body
+// curves.
+int vertex_at(const elastic::Surface<3>& surface, int node, const ImageContents& image) {
   const Vec3 place = vec(surface.rest(node)), normal = vec(elastic::node_normal(surface, node));
-  double nearest = kHuge, found = 0;
-  for (std::size_t v = 0; v < curvature.size(); ++v) {
+  double nearest = kHuge;
+  int found = -1;
+  for (std::size_t v = 0; v < image.vertex_m.size(); ++v) {
     const double distance = norm(image.vertex_m[v] - place);
     if (!(distance < nearest) || dot(image.vertex_normal[v], normal) < kFacing) continue;
     nearest = distance;
-    found = curvature[v];
+    found = static_cast<int>(v);
   }
   return found;
 }
 
 // Beta of every sample, for the largest ball; the tick scales it to the others. What the fit adds to c is added.
 std::vector<double> fit_places(elastic::SelfTerms& self, const elastic::RestBody<3>& rest, const ImageContents& image,
-                               const std::vector<CornerNormals>& normals) {
-  elastic::BallLaw ball = largest_ball(image, rest);
+                               const Curvatures& curvatures, elastic::BallLaw ball) {
   std::vector<double> beta(self.nodes.size(), 0.0);
   if (!(ball.radius_m > 0)) return beta;
-  const std::vector<double> curvature = mean_curvatures(image, normals);
   for (std::size_t i = 0; i < beta.size(); ++i) {
     const std::size_t node = at(self.nodes[i]);
+    const int vertex = vertex_at(rest.surface(), self.nodes[i], image);
     ball.modulus_Pa = rest.contact_modulus(self.nodes[i]);
-    ball.body_curvature_1pm = clamp_to(curvature_at(rest.surface(), self.nodes[i], image, curvature),
-                                       -0.75 / ball.radius_m, 3 / ball.radius_m);
+    ball.body_curvature_1pm =
+        vertex < 0 ? 0 : clamp_to(curvatures.sphere_1pm[at(vertex)], -0.75 / ball.radius_m, 3 / ball.radius_m);
+    ball.principal_1pm = vertex < 0 ? std::array<double, 2>{} : curvatures.principal_1pm[at(vertex)];
     const elastic::PlaceFit fit =
         elastic::fit_place(ball, self.width[node], self.self_mpN[node], image.params.max_depth_m);
     beta[i] = fit.beta_1pmN;
@@ -430,10 +428,12 @@ ElasticReport ElasticBake::write(int soft, int linear, double add_c_mpN, ImageCo
   const elastic::ElasticBody<3>& body = parts.body(soft, linear);
   elastic::SelfTerms terms = body.self;
   for (const int node : terms.nodes) terms.self_mpN[at(node)] += add_c_mpN;
-  const std::vector<double> beta = fit_places(terms, parts.rest, image, parts.normals);
+  const elastic::BallLaw ball = largest_ball(image, parts.rest);
+  const Curvatures curvatures = curvatures_of(image, parts.normals, ball.radius_m);
+  const std::vector<double> beta = fit_places(terms, parts.rest, image, curvatures, ball);
   const SampleField self = self_field(parts.rest.surface(), terms, beta, parts.spacing_m);
   add_energy(body.maps.potential, image);
-  add_vertices(body, term_shapes(body, parts.gradient), self, parts.feet, image, parts.normals);
+  add_vertices(body, term_shapes(body, parts.gradient), self, parts.feet, curvatures, image);
   if (touches_in_parts(model_of(image)))
     PartNumbers(body, image).hold();
   else

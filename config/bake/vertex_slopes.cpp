@@ -1,7 +1,9 @@
 #include "config/bake/vertex_slopes.h"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -142,6 +144,33 @@ std::vector<Bend> vertex_bends(std::span<const Vec3> vertex_m, std::span<const T
   std::vector<Bend> bend;
   for (const BendFit& of : fit) bend.push_back(of.bend());
   return bend;
+}
+
+std::vector<Bend> vertex_curvatures(std::span<const Vec3> vertex_m, std::span<const CornerNormals> normal,
+                                    std::span<const Triangle> triangles) {
+  std::vector<BendFit> fit(vertex_m.size());
+  for (std::size_t i = 0; i < triangles.size(); ++i)
+    for (std::size_t k = 0; k < 3; ++k) {  // every inner edge twice
+      const std::size_t next = (k + 1) % 3;
+      const auto a = static_cast<std::size_t>(triangles[i].vertex[k]),
+                 b = static_cast<std::size_t>(triangles[i].vertex[next]);
+      const Vec3 edge = vertex_m[b] - vertex_m[a];
+      if (!(squared_norm(edge) > 0)) continue;
+      const Vec3 at_a = normal[i].normal[k], at_b = normal[i].normal[next];
+      const double turn = dot(at_b - at_a, edge);
+      fit[a].add(norm(edge) * unit_or(tangential_part(edge, at_a), edge), turn);
+      fit[b].add(norm(edge) * unit_or(tangential_part(edge, at_b), edge), turn);
+    }
+  std::vector<Bend> form;
+  for (const BendFit& of : fit) form.push_back(of.bend());
+  return form;
+}
+
+std::array<double, 2> principal_curvatures(const Bend& form) {
+  const auto& [xx, xy, xz, yy, yz, zz] = form;
+  const double mean = 0.5 * (xx + yy + zz), product = xx * yy + xx * zz + yy * zz - xy * xy - xz * xz - yz * yz;
+  const double apart = std::sqrt(std::max(mean * mean - product, 0.0));
+  return {mean + apart, mean - apart};
 }
 
 }  // namespace palpate

@@ -27,4 +27,11 @@ using Bend = std::array<double, 6>;
 std::vector<Bend> vertex_bends(std::span<const Vec3> vertex_m, std::span<const Triangle> triangles,
                                std::span<const double> value, std::span<const Vec3> slope);
 
+// How fast the surface's normal turns at every vertex, convex positive: the second fundamental form that fits best the
+// turns of the corners' normals along its edges.
+std::vector<Bend> vertex_curvatures(std::span<const Vec3> vertex_m, std::span<const CornerNormals> normal,
+                                    std::span<const Triangle> triangles);
+// A surface's principal curvatures, the larger first: eigenvalues of that form, which has nothing along the normal.
+std::array<double, 2> principal_curvatures(const Bend& form);
+
 }  // namespace palpate

@@ -212,8 +212,9 @@ Sampled<kDim> sample_some(const RestBody<kDim>& body, std::span<const int> some,
     const Eigen::VectorXd& u = place.u_mpN[0];
     SelfSample sample;
     sample.node = some[i];
-    sample.width = WidthLaw(met.give_mpN, place.sigma_m, body.contact_modulus(some[i]), body.material().poisson_ratio);
     sample.curvature_1pm = node_curvature(surface, some[i]);
+    sample.width = WidthLaw(met.give_mpN, place.sigma_m, body.contact_modulus(some[i]), body.material().poisson_ratio,
+                            sample.curvature_1pm);
     const double scale = probe_m / u.cwiseAbs().maxCoeff();
     const Eigen::VectorXd bent = body.internal_force(scale * u) + body.internal_force(-scale * u);
     sample.third_mpN2 = bent.dot(u) / (scale * scale);

@@ -14,14 +14,16 @@ namespace {
 constexpr double kHertzShare = 0.2;  // variance of Hertz' pressure, of a^2
 // Of the force under large strain: header.
 constexpr double kInwards = 0.25, kIncompressible = -0.066, kInwardsSquare = 0.21, kThinner = 3.45, kWidening = 0.1,
-                 kMostThinned = 0.25;
+                 kMostThinned = 0.25, kAway = 0.82;
 constexpr double kMostCurved = 2;
+constexpr double kMostElliptic = 4.0 / 9;
 constexpr double kTooStiff = 0.27, kTooStiffByShare = 0.2, kDeepestInLayer = 0.6;
 constexpr int kFitPoints = 24;
 // Of the dent: what a wall's width may change of it. First order ends there, and with 0.6 the travel of a change that
 // grows as a^3 would turn back.
 constexpr double kMostOfDent = 0.5;
-constexpr double kWidest = 0.98;  // of a ball's radius
+constexpr double kMostBent = 0.3;  // curvature by deviation: nodes at edges
+constexpr double kWidest = 0.98;   // of a ball's radius
 // Of a half space's give under the narrower patch: from mesh to mesh elements differ by so much (self_terms.cpp).
 constexpr double kNoise = 0.007;
 // Of a half space's give: where a layer on a base that gives is told half from its fall, half as one on a rigid base.
@@ -34,7 +36,7 @@ constexpr double kMostGive = 0.06;  // of 1 / (E* R): what the fit may add to c
 constexpr int kWaves = 96;
 constexpr double kStep = 0.125, kPlateFrom = 0.5;
 
-double compressible_share(const BallLaw& ball) { return (1 - 2 * ball.poisson_ratio) / (1 - ball.poisson_ratio); }
+double compressible_share(double poisson_ratio) { return (1 - 2 * poisson_ratio) / (1 - poisson_ratio); }
 double hertz_factor(const BallLaw& ball) { return 4.0 / 3 * ball.modulus_Pa * std::sqrt(ball.radius_m); }  // m
 
 // Simpson's rule for `kernel`, from w = `from`.
@@ -76,8 +78,13 @@ double WidthLaw::plate_mpN(double sigma_m, double thickness_m) const {
          (std::numbers::pi * modulus_Pa_ * thickness_m);
 }
 
-WidthLaw::WidthLaw(const double (&give_mpN)[2], const double (&sigma_m)[2], double modulus_Pa, double poisson_ratio)
-    : modulus_Pa_(modulus_Pa), poisson_ratio_(poisson_ratio) {
+WidthLaw::WidthLaw(const double (&met_mpN)[2], const double (&sigma_m)[2], double modulus_Pa, double poisson_ratio,
+                   double curvature_1pm)
+    : modulus_Pa_(modulus_Pa), poisson_ratio_(poisson_ratio), met_m_(sigma_m[0]) {
+  const double bent = std::clamp(curvature_1pm * sigma_m[0], -kMostBent, kMostBent) / sigma_m[0];
+  curved_mpN_ =
+      (1 - 2 * poisson_ratio) * compressible_share(poisson_ratio) * bent / (2 * std::numbers::pi * modulus_Pa);
+  const double give_mpN[2] = {met_mpN[0], met_mpN[1] + curved_mpN_ * std::log(sigma_m[1] / sigma_m[0])};
   const double square[2] = {sigma_m[0] * sigma_m[0], sigma_m[1] * sigma_m[1]};
   square_1pmN_ = (give_mpN[1] - give_mpN[0]) / (square[1] - square[0]);
   narrow_mpN_ = give_mpN[0] - square_1pmN_ * square[0];
@@ -127,7 +134,8 @@ double WidthLaw::less_noise_mpN(const double (&give_mpN)[2], const double (&sigm
 }
 
 double WidthLaw::give_mpN(double sigma_m) const {
-  const double plain = square_1pmN_ * sigma_m * sigma_m;
+  const double curved = sigma_m > 0 ? curved_mpN_ * std::log(met_m_ / sigma_m) : 0;
+  const double plain = square_1pmN_ * sigma_m * sigma_m + curved;
   if (kind_ == Kind::kLayer) return share_ * layer_mpN(sigma_m, thickness_m_) + plain;
   return narrow_mpN_ + plain + (kind_ == Kind::kPlate ? plate_mpN(sigma_m, thickness_m_) : 0.0);
 }
@@ -135,6 +143,16 @@ double WidthLaw::give_mpN(double sigma_m) const {
 namespace {
 
 constexpr double kNearlyFlat = 1e-3;  // a / r below which a sphere is a paraboloid, to 1e-6
+
+// g of the header: mean, over the principal directions in which the body bends away from the ball.
+double bent_away(const BallLaw& ball) {
+  double sum = 0;
+  for (const double k_1pm : ball.principal_1pm) {
+    const double x = ball.radius_m * std::max(k_1pm, 0.0);
+    sum += 0.5 * x / (1 + 2 * x);
+  }
+  return sum;
+}
 
 // The profiles' shares: a sphere's by Segedin (1957), a paraboloid's by Hertz.
 BallLaw::Point parabola_at(double curvature_1pm, double a, double modulus_Pa) {
@@ -163,12 +181,24 @@ BallLaw::Point BallLaw::at(double a_m) const {
   return {sum.dent_m + body.dent_m, sum.force_N + body.force_N, sum.force_slope_Npm + body.force_slope_Npm};
 }
 
+// With eps = R (k1 - k2) / (2 + R (k1 + k2)), what the axes' curvatures differ by of their sum, force and dent of the
+// ellipse (Johnson 1985, 4.2; by elliptic integrals) are those of a circle of (1 - 2/3 eps^2 - 0.15 eps^4) times the
+// mean relative curvature: to 2.6e-3 of it as far as eps = 2/3.
+double equal_sphere_1pm(const std::array<double, 2>& principal_1pm, double radius_m) {
+  const double mean_1pm = 0.5 * (principal_1pm[0] + principal_1pm[1]), sum = 1 + mean_1pm * radius_m;
+  if (!(radius_m > 0) || !(sum > 0)) return mean_1pm;
+  const double eps = 0.5 * radius_m * (principal_1pm[0] - principal_1pm[1]) / sum;
+  const double square = std::min(eps * eps, kMostElliptic);
+  return (sum * (1 - square * (2.0 / 3 + 0.15 * square)) - 1) / radius_m;
+}
+
 double large_strain_factor(const BallLaw& ball, double narrow_mpN, double depth_m) {
-  const double t = compressible_share(ball), x = std::sqrt(depth_m / ball.radius_m);
+  const double t = compressible_share(ball.poisson_ratio), x = std::sqrt(depth_m / ball.radius_m);
   const double curved = std::clamp(ball.body_curvature_1pm * ball.radius_m, -1.0, kMostCurved);
   const double near = std::max(-narrow_mpN, 0.0), z = near * hertz_factor(ball) * std::sqrt(depth_m);
   const double layer = 1 - 1 / (1 + z * (1.5 + 2.625 * z));
-  return 1 + x * (kInwards * t + kIncompressible * (1 - curved) + kInwardsSquare * t * t * x) +
+  const double away = kAway * t * std::sqrt(t) * bent_away(ball);
+  return 1 + x * (t * (kInwards - away) + kIncompressible * (1 - curved) + kInwardsSquare * t * t * x) +
          std::max(kThinner * t - kWidening, 0.0) * layer * std::min(ball.modulus_Pa * near * depth_m, kMostThinned);
 }
 
@@ -178,7 +208,7 @@ namespace {
 double too_stiff(const BallLaw& ball, const WidthLaw& width, double depth_m) {
   if (!width.is_layer()) return 1;
   const double share = std::min(depth_m / width.thickness_m(), kDeepestInLayer);
-  return 1 + (kTooStiff - kTooStiffByShare * compressible_share(ball)) * share * share * share;
+  return 1 + (kTooStiff - kTooStiffByShare * compressible_share(ball.poisson_ratio)) * share * share * share;
 }
 
 // `x`, which ends at +-`most`: within 0.2 % as far as half of it.

@@ -51,10 +51,12 @@ StrainMesh<2> block_mesh(const PressBody& body, const PressMeshing& m) {
   return make_plane_mesh({patch}, 1e-7 * body.height_m);
 }
 
-// Rays from the centre: the elements there collapse to triangles. An element edge meets the rim of the support.
+// What is held does not move: the body ends at its support's plane. Rays from a point on the axis, the ellipse's centre
+// unless that is held or nearly so: the elements there collapse to triangles. An element edge meets the support's rim.
 StrainMesh<2> ellipsoid_mesh(const PressBody& body, const PressMeshing& m) {
-  const double a = body.outer_radius_m, c = body.height_m;
-  std::vector<double> shells = graded_steps(1, 1 - m.fine_extent_m / c, 0, m.fine_count, m.growth);
+  const double a = body.outer_radius_m, c = body.height_m, base = body.fixed_below_m;
+  const double origin = base < -0.1 * c ? 0 : 0.5 * (c + base);
+  std::vector<double> shells = graded_steps(1, 1 - m.fine_extent_m / (c - origin), 0, m.fine_count, m.growth);
   std::vector<double> turns = graded_steps(0, m.fine_extent_m / a, kHalfTurn, m.fine_count, m.growth);
   // 10 degrees is the coarsest that follows the ellipse.
   std::vector<double> angles = {turns[0]};
@@ -62,12 +64,15 @@ StrainMesh<2> ellipsoid_mesh(const PressBody& body, const PressMeshing& m) {
     const int pieces = static_cast<int>(std::ceil((turns[i] - turns[i - 1]) / (kHalfTurn / 18)));
     for (int k = 1; k <= pieces; ++k) angles.push_back(turns[i - 1] + (turns[i] - turns[i - 1]) * k / pieces);
   }
-  const double rim = kHalfTurn / 2 - std::asin(body.fixed_below_m / c);
+  const double rim = kHalfTurn / 2 - std::asin(base / c);
   *std::min_element(angles.begin() + 1, angles.end() - 1,
                     [&](double x, double y) { return std::abs(x - rim) < std::abs(y - rim); }) = rim;
   for (double& angle : angles) angle = kHalfTurn / 2 - angle;
   const GridPatch patch = {reversed(shells), reversed(angles), [&](double s, double t) {
-                             return Point<2>{a * s * std::cos(t), -c + c * s * std::sin(t)};
+                             const double turn = kHalfTurn / 2 - t;
+                             Point<2> edge{a * std::cos(t), c * std::sin(t)};
+                             if (turn > rim) edge = {a * std::sin(rim) * (kHalfTurn - turn) / (kHalfTurn - rim), base};
+                             return Point<2>{s * edge[0], -c + origin + s * (edge[1] - origin)};
                            }};
   return make_plane_mesh({patch}, 1e-7 * c);
 }
@@ -90,8 +95,8 @@ PressSetup set_up(const PressBody& body, const PressMeshing& meshing) {
   s.mesh = block ? block_mesh(body, meshing) : ellipsoid_mesh(body, meshing);
   // The outermost shell's inner nodes must not count as surface: their distance from it is half the fine step or more.
   for (const Point<2>& p : s.mesh.nodes_m) {
-    const bool held = block ? p[1] < -(1 - 1e-9) * body.height_m
-                            : on_surface(body, p) && p[1] + body.height_m < body.fixed_below_m + 1e-6 * body.height_m;
+    const bool held =
+        block ? p[1] < -(1 - 1e-9) * body.height_m : p[1] + body.height_m < body.fixed_below_m + 1e-6 * body.height_m;
     const bool axis = p[0] < 1e-9 * body.outer_radius_m;
     s.fixed.push_back(axis || (held && !body.slip_base));
     s.fixed.push_back(held);

@@ -12,7 +12,7 @@ struct PressBody {
   enum class Kind : std::uint8_t {
     kBlock,      // cylinder of outer_radius_m and height_m, bottom bonded, side free: a thick block or a thin layer
     kEllipsoid,  // of revolution, semi-axes outer_radius_m (across) and height_m (along the axis, half its height),
-                 // surface lower than fixed_below_m (height above the centre, negative) fixed
+                 // all of it lower than fixed_below_m (height above the centre) fixed, its inside too
   };
   Kind kind = Kind::kBlock;
   double outer_radius_m = 0;

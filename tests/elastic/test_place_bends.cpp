@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -55,6 +56,50 @@ TEST(PlaceBends, OfAParabolaAreItsOwn) {
       EXPECT_NEAR(twice(h, across, across), c, off);
       EXPECT_NEAR(twice(h, normal, normal), 0, off);
     }
+}
+
+// A torus on uneven triangles with the normals of the smooth one: principal curvatures 1 / r and cos / (R + r cos).
+TEST(PlaceBends, ATorusCurvesAsItDoes) {
+  constexpr int kAround = 48, kTube = 20;
+  constexpr double kRing_m = 0.03, kTube_m = 0.01, kTurn = 2 * std::numbers::pi;
+  elastic::FixedRandom random(5);
+  std::vector<Vec3> vertex_m, outward;
+  std::vector<double> cosine;
+  for (int i = 0; i < kAround; ++i)
+    for (int j = 0; j < kTube; ++j) {
+      const double u = kTurn * (i + 0.2 * random.symmetric()) / kAround,
+                   v = kTurn * (j + 0.2 * random.symmetric()) / kTube;
+      const Vec3 out{std::cos(u), 0, std::sin(u)};
+      outward.push_back(std::cos(v) * out + std::sin(v) * Vec3{0, 1, 0});
+      vertex_m.push_back(kRing_m * out + kTube_m * outward.back());
+      cosine.push_back(std::cos(v));
+    }
+  std::vector<Triangle> triangles;
+  std::vector<CornerNormals> normals;
+  const auto number = [](int i, int j) { return (i % kAround) * kTube + j % kTube; };
+  for (int i = 0; i < kAround; ++i)
+    for (int j = 0; j < kTube; ++j)
+      for (const int half : {0, 1}) {
+        Triangle t{};
+        CornerNormals n{};
+        const int corner[3] = {number(i, j), half ? number(i + 1, j + 1) : number(i, j + 1),
+                               half ? number(i + 1, j) : number(i + 1, j + 1)};
+        for (int k = 0; k < 3; ++k) {
+          t.vertex[k] = corner[k];
+          n.normal[k] = outward[static_cast<std::size_t>(corner[k])];
+        }
+        triangles.push_back(t);
+        normals.push_back(n);
+      }
+  const std::vector<Bend> form = vertex_curvatures(vertex_m, normals, triangles);
+  double worst = 0;  // of the tube's
+  for (std::size_t v = 0; v < form.size(); ++v) {
+    const auto [larger, smaller] = principal_curvatures(form[v]);
+    worst = std::max(worst, std::abs(kTube_m * larger - 1));
+    worst = std::max(worst, std::abs(kTube_m * (smaller - cosine[v] / (kRing_m + kTube_m * cosine[v]))));
+  }
+  std::printf("  principal curvatures within %.3f of the tube's\n", worst);
+  EXPECT_LT(worst, 0.08);
 }
 
 // By it what a place asks of the modes fades. From one cubic to the next it jumped by as much as it is, and a ring
