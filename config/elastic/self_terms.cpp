@@ -214,7 +214,7 @@ Sampled<kDim> sample_some(const RestBody<kDim>& body, std::span<const int> some,
     sample.node = some[i];
     sample.curvature_1pm = node_curvature(surface, some[i]);
     sample.width = WidthLaw(met.give_mpN, place.sigma_m, body.contact_modulus(some[i]), body.material().poisson_ratio,
-                            sample.curvature_1pm);
+                            kDim == 3 ? sample.curvature_1pm : 0);  // a line's load leaves the surface unstressed
     const double scale = probe_m / u.cwiseAbs().maxCoeff();
     const Eigen::VectorXd bent = body.internal_force(scale * u) + body.internal_force(-scale * u);
     sample.third_mpN2 = bent.dot(u) / (scale * scale);
