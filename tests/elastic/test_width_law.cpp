@@ -78,8 +78,8 @@ TEST(WidthLaw, APlaceThatGivesMoreTheWiderIsAParabola) {
 }
 
 // A ball of nu = 0 held to 45 % of its height, by quadratic elements: what its top gives of 1 / (E* radius) under
-// patches of 0.149 and 0.208 radii, and on finer meshes under narrower ones (2026-11-28). Without the logarithm it gave
-// -0.18.
+// patches of 0.149 and 0.208 radii, and on finer meshes under narrower ones (2026-11-28). Without the logarithm the law
+// says -0.187 and -0.193 of those.
 TEST(WidthLaw, ACompressibleBallGivesMoreTheNarrower) {
   const double unit = 1 / (kModulus * 0.03), sigma[2] = {0.149 * 0.03, 0.208 * 0.03};
   const double give[2] = {-0.2006 * unit, -0.2288 * unit};
