@@ -18,6 +18,7 @@ constexpr double kInwards = 0.25, kIncompressible = -0.066, kInwardsSquare = 0.2
 constexpr double kMostCurved = 2;
 constexpr double kMostElliptic = 4.0 / 9;
 constexpr double kTooStiff = 0.27, kTooStiffByShare = 0.2, kDeepestInLayer = 0.6;
+constexpr double kThickPlate = 4;  // of the ball's radii: half of what large strain adds is left
 constexpr int kFitPoints = 24;
 // Of the dent: what a wall's width may change of it. First order ends there, and with 0.6 the travel of a change that
 // grows as a^3 would turn back.
@@ -211,6 +212,13 @@ double too_stiff(const BallLaw& ball, const WidthLaw& width, double depth_m) {
   return 1 + (kTooStiff - kTooStiffByShare * compressible_share(ball.poisson_ratio)) * share * share * share;
 }
 
+// What large strain adds to the force on a half space, as much of it as a plate with free faces has: header.
+double on_plate(const BallLaw& ball, const WidthLaw& width, double added) {
+  if (!width.is_plate()) return added;
+  const double thin = kThickPlate * ball.radius_m / width.thickness_m(), square = thin * thin;
+  return added / (1 + square * square);
+}
+
 // `x`, which ends at +-`most`: within 0.2 % as far as half of it.
 double limited(double x, double most) {
   const double share = x / most, square = share * share;
@@ -233,7 +241,8 @@ std::vector<Target> targets(const BallLaw& ball, const WidthLaw& width, double c
     const double depth = p.dent_m + (width.is_layer() ? change : limited(change, kMostOfDent * p.dent_m));
     if (!(depth > (out.empty() ? 0.0 : out.back().depth_m))) continue;
     if (depth > depth_max_m && out.size() > 2) break;
-    out.push_back({depth, p.force_N * large_strain_factor(ball, narrow, depth) / too_stiff(ball, width, depth)});
+    const double large = 1 + on_plate(ball, width, large_strain_factor(ball, narrow, depth) - 1);
+    out.push_back({depth, p.force_N * large / too_stiff(ball, width, depth)});
   }
   return out;
 }
