@@ -111,12 +111,16 @@ SampleField self_field(const elastic::Surface<3>& surface, const elastic::SelfTe
 }
 
 // How the surface curves at the vertices, convex positive: principal curvatures, and that of the sphere that stands for
-// them under the tool's largest ball.
+// them: under a tool of balls the one that the largest dents alike, else their mean, for along a line the tick tells
+// the other curvature by it (line_place.cpp).
 struct Curvatures {
   std::vector<std::array<double, 2>> principal_1pm;
   std::vector<double> sphere_1pm;
 };
-Curvatures curvatures_of(const ImageContents& image, const std::vector<CornerNormals>& normals, double ball_m) {
+Curvatures curvatures_of(const ImageContents& image, const std::vector<CornerNormals>& normals, double largest_m) {
+  const bool all_balls =
+      std::ranges::all_of(image.piece, [](const ToolPiece& p) { return p.shape == PieceShape::kSphere; });
+  const double ball_m = all_balls ? largest_m : 0;
   Curvatures out;
   for (const Bend& form : vertex_curvatures(image.vertex_m, normals, image.triangle)) {
     out.principal_1pm.push_back(principal_curvatures(form));
