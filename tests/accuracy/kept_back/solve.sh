@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # References of the cases that are kept back: where each is pressed, how deep, and the solve itself (minutes each). The
 # scenes and this table were committed before anything was solved, and are not to be changed with a result in hand;
-# foam_ball, foam_rod and foam_saddle came with their results.
+# foam_ball, foam_rod, foam_saddle and edge came with their results.
 # Usage: solve.sh PALPATE OUT [CASE...]
 set -euo pipefail
 palpate=${1:?usage: solve.sh PALPATE OUT [CASE...]} out=${2:?usage: solve.sh PALPATE OUT [CASE...]}
@@ -28,6 +28,9 @@ foam_saddle|16,12,0|-1,0,0|6|3.5
 foam_egg|13.44,68.4,11.88|0.585897,0.719521,0.372844|7|4
 foam_dome|0,34,0|0,1,0|9|4
 foam_tube|0,64,8|0,1,0|7|5
+edge|23.5,30,0|0,1,0|6|3
+rim|24,20,0|0,1,0|5|3
+corner|18,26,14|0,1,0|6|3
 tube|11.833311329,53.376618037,6|0.422618262,0.906307787,0|6|5
 '
 while IFS='|' read -r name place normal radius depth; do
