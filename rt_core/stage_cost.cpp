@@ -29,6 +29,7 @@ void add_most_points(const Model& model, const SceneSizes& n, Work& work) noexce
   const std::int32_t asked = 2 * n.points * kMaxQueryWork, allowed = share + kMaxQueryWork;
   work.looks += asked < allowed ? asked : allowed;      // an elastic body asks twice
   work.queries += n.points < share ? n.points : share;  // each looks at one thing at least
+  work.waiting += n.points;
   if (!model.corner_normal.empty()) work.feet += 2 * kFootNewtonSteps * n.points;
   work.found += n.contacts;
   work.pairs += n.contacts * n.contacts + kMaxContacts * spare;
@@ -38,8 +39,8 @@ void add_most_points(const Model& model, const SceneSizes& n, Work& work) noexce
   work.supports += kMaxRegions * kGjkSupportBudget;
 }
 
-void add_most_regions(const SceneSizes& n, std::int32_t steps, Work& work) noexcept {
-  const std::int32_t evaluations = 1 + steps * (kStepHalvings + 1), square = n.regions * n.regions;
+void add_most_regions(const SceneSizes& n, std::int32_t steps, std::int32_t evaluations, Work& work) noexcept {
+  const std::int32_t square = n.regions * n.regions;
   work.rows += n.contacts;
   work.regions += n.regions;
   work.region_pairs += (evaluations + 2 * steps) * square;

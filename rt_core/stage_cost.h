@@ -34,9 +34,9 @@ double most_stage_cost(const Model& model, Stage stage) noexcept;
 double least_stage_cost(const Model& model, Stage stage) noexcept;
 
 // What methods share, for their ContactMethod::add_most_work: tool points against the surface; and rows in regions,
-// solved in so many Newton steps.
+// solved in so many Newton steps, in which all laws are evaluated so many times.
 void add_most_points(const Model& model, const SceneSizes& n, Work& work) noexcept;
-void add_most_regions(const SceneSizes& n, std::int32_t steps, Work& work) noexcept;
+void add_most_regions(const SceneSizes& n, std::int32_t steps, std::int32_t evaluations, Work& work) noexcept;
 
 // Whether a stage counted more than the image states for it: the statement, by which the controller judged whether the
 // scene fits its period, is wrong. Bound: kStageCount.

@@ -16,6 +16,7 @@ namespace palpate {
   X(pieces, kFindRows, 300, "pieces placed")                                               \
   X(looks, kFindRows, 200, "boxes and triangles of the surface looked at")                 \
   X(queries, kFindRows, 750, "points measured on it")                                      \
+  X(waiting, kFindRows, 220, "points whose turn did not come")                             \
   X(feet, kFindRows, 480, "Newton steps towards a smooth foot")                            \
   X(found, kFindRows, 190, "contacts found")                                               \
   X(pairs, kFindRows, 12, "pairs of contacts compared, and labels changed")                \

@@ -19,9 +19,7 @@ namespace palpate {
 
 namespace {
 
-// A quarter more than was found is allowed: what a longer search would find beyond that waits a tick.
 constexpr int kStarts = 48, kTicks = 40, kRefined = 6;
-constexpr double kSpare = 1.25;
 // Ticks in which the dearest of each stage is looked for. What a million find beyond the dearest whole tick is a few
 // per cent, but a stage of them was 44 % dearer (solve of pinch_block, 2026-11-22): four tenths of each are stated
 // beside, and a share of the whole.
@@ -32,12 +30,24 @@ constexpr double kReserve = 1.4, kReserveOfQuery = 1.25, kReserveOfAll = 0.12;
 // million found a solve of half_shell 2.3 times, and rows of ring 1.6 times the dearest of the baker's
 // (2026-11-22).
 constexpr double kReserveOfElasticRows = 1.8, kReserveOfElasticSolve = 2.2;
+// Points' rows end with the share of surface work: what varies is beside it.
+constexpr double kReserveOfSharedRows = 1.2;
+bool is_shared(const Model& model, Stage stage) {
+  const Method method = method_of(model);
+  return stage == Stage::kFindRows && method != Method::kElastic && method != Method::kNodes;
+}
 double reserve_of(const Model& model, Stage stage) {
+  if (is_shared(model, stage)) return kReserveOfSharedRows;
   if (method_of(model) != Method::kElastic) return kReserve;
   return stage == Stage::kFindRows ? kReserveOfElasticRows : stage == Stage::kSolve ? kReserveOfElasticSolve : kReserve;
 }
 int effort(const Model& model) { return method_of(model) == Method::kElastic ? 4 : 1; }
-constexpr std::int32_t kLeastShare = 1024;  // two queries into the middle of a body
+// A quarter more than was found is allowed, but no more than 256 looks or four a point: what needs more waits some
+// ticks, on the plane it had. Hands on scripted paths look at 126 at most with the 60 points of a grasp, a point near
+// the surface at two. Thirty points as deep in a sphere of 30 mm as its law reaches want 4,986, a million instructions;
+// in turns of twenty ticks at 0.1 m/s they stand up to 0.07 mm off it, 10 mm deep (2026-11-28).
+constexpr double kSpare = 1.25;
+constexpr std::int32_t kFullShare = 256, kLooksOfPoint = 4;
 // Of an elastic body's tick: one tip that looks for it anew and others that know where it was. A tip that touches asks
 // nothing; scripted paths look at 81 at most, in the first touch of ellipsoid_mallet (2026-11-23).
 constexpr std::int32_t kElasticShare = 96;
@@ -63,10 +73,9 @@ class Search {
     return worst;
   }
 
-  // Of the surface, in one query from as far off it on either side as its axis, that starts anywhere. Few ticks meet
-  // the dearest.
-  std::int32_t query() {
-    const std::int32_t searched = method_of(model_) == Method::kElastic ? kMaxTipSearched : kMaxSearched;
+  // Of the surface, in one query from as far off it on either side as its axis, that starts anywhere and searches no
+  // more than so many boxes. Few ticks meet the dearest.
+  std::int32_t query(std::int32_t searched) {
     Adversary adversary(model_, kStageSeed);
     std::int32_t most = 0;
     for (int i = 0; i < effort(model_) * kQueries; ++i) {
@@ -139,13 +148,21 @@ class Search {
 bool is_contact(Stage stage) { return stage == Stage::kFindRows || stage == Stage::kSolve || stage == Stage::kAccount; }
 
 // Every point measured by the dearest query, twice on a body that moves; but none is begun when the tick's share is
-// spent.
-double rows_cost(const Model& model, std::int32_t query) {
+// spent, and a tool point's search ends with it: what it looks at beyond are its walks.
+double rows_cost(const Model& model, Search& search) {
   const std::int32_t points = scene_sizes(model).points, share = surface_work_share(model.params);
   Work work;
   work.points = points;
-  work.queries = (method_of(model) == Method::kElastic ? 2 : 1) * points;
-  work.looks = std::min(work.queries * query, share + query);
+  work.queries = points;
+  std::int32_t query = 0, beyond = 0;
+  if (is_shared(model, Stage::kFindRows)) {
+    query = search.query(std::min(share / 2, kMaxSearched));
+    beyond = search.query(1);
+  } else {
+    work.queries *= 2;
+    query = beyond = search.query(kMaxTipSearched);
+  }
+  work.looks = std::min(work.queries * query, share + beyond);
   return counted_instructions(work, Stage::kFindRows);
 }
 
@@ -164,19 +181,20 @@ TickCost bake_costs(ImageContents& image) {
   image.params.surface_work_max =
       method == Method::kElastic
           ? kElasticShare
-          : std::clamp(static_cast<std::int32_t>(kSpare * cost.surface_work), kLeastShare, kMaxSurfaceWork);
+          : std::clamp(static_cast<std::int32_t>(kSpare * cost.surface_work), kFullShare,
+                       std::clamp(kLooksOfPoint * scene_sizes(model_of(image)).points, kFullShare, kMaxSurfaceWork));
   cost.surface_work_max = image.params.surface_work_max;
   const Model model = model_of(image);
   Search search(model);
   const std::array<double, kStageCount> found = search.stages();
   for (const double stage : found) cost.found += stage;
-  const double rows = method_of(image.params) == Method::kNodes ? 0 : rows_cost(model, search.query());
+  const double rows = method_of(image.params) == Method::kNodes ? 0 : rows_cost(model, search);
   image.stage_cost.clear();
   for (int i = 0; i < kStageCount; ++i) {
     const auto stage = static_cast<Stage>(i);
     double stated = reserve_of(model, stage) * found[static_cast<std::size_t>(i)];
     if (stage == Stage::kFindRows) stated = std::max(stated, kReserveOfQuery * rows);
-    if (is_contact(stage)) stated += kReserveOfAll * cost.found;
+    if (is_contact(stage) && !is_shared(model, stage)) stated += kReserveOfAll * cost.found;
     image.stage_cost.push_back({std::clamp(stated, least_stage_cost(model, stage), most_stage_cost(model, stage))});
   }
   cost.instructions = worst_tick_instructions(model_of(image));

@@ -121,13 +121,28 @@ class Collider {
       if (left_ > 0 && (four.settled >> k & 1) != 0) {
         settle(due_[k], p, four, static_cast<std::uint32_t>(k));
       } else if (left_ > 0) {
-        measure(due_[k], p, closest_surface_point(model_, p, kHuge, points_[due_[k]].triangle));
+        search(due_[k], p);
       } else {
-        if (next_first_ < 0) next_first_ = due_[k];
-        hold(due_[k], p);
+        wait(due_[k], p);
       }
     }
     due_count_ = 0;
+  }
+
+  // With no more boxes and triangles than are left; a point for which they do not suffice is the next tick's first, for
+  // which its whole share must.
+  void search(std::int32_t index, Vec3 p) PALPATE_RT {
+    const std::int32_t most = left_ < 2 * kMaxSearched ? (left_ + 1) / 2 : kMaxSearched;  // of either
+    const SurfacePoint surface = closest_surface_point(model_, p, kHuge, points_[index].triangle, most);
+    if (!surface.truncated || left_ == share_ || most == kMaxSearched) return measure(index, p, surface);
+    left_ -= surface.looked;
+    wait(index, p);
+  }
+
+  void wait(std::int32_t index, Vec3 p) PALPATE_RT {
+    scratch_.work.waiting += 1;
+    if (next_first_ < 0) next_first_ = index;
+    hold(index, p);
   }
 
   // The tick's share of work is spent. A point in contact stays on its plane (a god-object); another's gap has shrunk

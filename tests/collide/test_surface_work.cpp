@@ -95,6 +95,9 @@ struct Crowd {
   ScratchPtr scratch = roomy_scratch();
 };
 
+// Of one query, before its search and in the fan's turn: kMaxQueryWork has twice 512 for the search.
+constexpr std::int32_t kWalks = kMaxQueryWork - 2 * kMaxSearched;
+
 TEST(SurfaceWork, ATickKeepsToItsShareAndNobodyWaitsForEver) {
   constexpr std::int32_t kShare = 128;
   Crowd crowd(50, kShare);
@@ -102,7 +105,7 @@ TEST(SurfaceWork, ATickKeepsToItsShareAndNobodyWaitsForEver) {
   int held_ticks = 0;
   for (int t = 0; t < 200; ++t) {
     crowd.step(pressed);
-    ASSERT_LE(crowd.scratch->surface_work, kShare + kMaxQueryWork);
+    ASSERT_LE(crowd.scratch->surface_work, kShare + kWalks);
     held_ticks += (crowd.scratch->status & Status::kPointsHeld) != 0 ? 1 : 0;
   }
   EXPECT_GT(held_ticks, 0) << "this share is meant to be too small for the first ticks";
@@ -124,9 +127,25 @@ TEST(SurfaceWork, AdversarialPosesOfManyPointsStayWithinTheBound) {
   for (int t = 0; t < 2000; ++t) {
     crowd.step({random_vec(rng, 0.04), random_rotation(rng)});
     most = std::max(most, crowd.scratch->surface_work);
-    ASSERT_LE(crowd.scratch->surface_work, 4096 + kMaxQueryWork);
+    ASSERT_LE(crowd.scratch->surface_work, 4096 + kWalks);
   }
   EXPECT_GT(most, 4096) << "never spent its share: this proves nothing";
+}
+
+// On the axis of a cylinder everything is as near. A search for which the rest of the share does not suffice waits, and
+// the next tick begins there with all of it.
+TEST(SurfaceWork, ASearchThatTheRestDoesNotSufficeForIsTheNextTicksFirst) {
+  constexpr std::int32_t kShare = 64;
+  Crowd crowd(2, kShare);
+  crowd.body.tool_point[0].position_tool_m = {0.012, 0, 0};  // near the side
+  crowd.body.tool_point[1].position_tool_m = {0, 0, -0.015};
+  std::int32_t second_first = 0;
+  for (int t = 0; t < 40; ++t) {
+    crowd.step({{1e-4 * t, 2e-5 * t, 0.031}, small_rotation({0.01 * t, 0, 0})});
+    ASSERT_LE(crowd.scratch->surface_work, kShare + kWalks);
+    second_first += crowd.state->first_point == 1 ? 1 : 0;
+  }
+  EXPECT_GT(second_first, 0) << "this share is meant to be too small for both";
 }
 
 // A point that was in contact stays on its plane while it waits: its depth follows the tool.

@@ -59,8 +59,8 @@ TEST(ImageRules, AWorstTickThatCannotFitItsPeriodIsRefused) {
         "s.toml");
   };
   EXPECT_EQ(refusal([&] { return scene_of("1"); }), "accepted");
-  expect_words(refusal([&] { return scene_of("0.05"); }),
-               {"s.toml", "device.period_ms", "worst tick", "150000", "longer period"});
+  expect_words(refusal([&] { return scene_of("0.02"); }),
+               {"s.toml", "device.period_ms", "worst tick", "60000", "longer period"});
 }
 
 // The rules themselves, over a model.

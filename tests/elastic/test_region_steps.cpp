@@ -162,5 +162,30 @@ TEST(RegionSteps, AnEnergyWithoutALeastIsSolvedWithoutItsSecondOrder) {
   EXPECT_EQ(none.evaluations, 0);
 }
 
+// Laws that no step brings nearer: their solve ends after so many looks at them, whatever steps and halvings are left.
+struct Stubborn {
+  static constexpr std::int32_t kIterations = ElasticLoad::kIterations, kEvaluations = ElasticLoad::kEvaluations;
+  static constexpr Real kEnough_m = 1e-14, kTolerance_m = 1e-9;
+  mutable std::int32_t looks = 0;
+  mutable Real shift_m = 0;
+  Real start(std::int32_t) const PALPATE_RT { return 0; }
+  LawPoint load(std::int32_t, Real shift) const PALPATE_RT {
+    looks += 1;
+    shift_m = shift;
+    return {1, 0};
+  }
+  Real shift_under(const Real*, std::int32_t) const PALPATE_RT { return shift_m + 1; }
+  Real curvature(const Real*, std::int32_t, std::int32_t) const PALPATE_RT { return 0; }
+};
+
+TEST(RegionSteps, ASolveThatNoStepBringsNearerEnds) {
+  const Stubborn laws;
+  RegionSystem system;
+  const RegionSolution result = solve_regions(laws, 1, system);
+  EXPECT_EQ(laws.looks, kTipEvaluations);
+  EXPECT_EQ(result.evaluations, kTipEvaluations);
+  EXPECT_GT(result.residual_m, Stubborn::kTolerance_m);
+}
+
 }  // namespace
 }  // namespace palpate

@@ -124,7 +124,8 @@ void solve_pressed(const Model& model, State& state, Scratch& scratch, Count sof
     const bool is_last = i + 1 == kSolvesOfFriction;
     RegionSolution result = solve_forces(load, laws, scratch, is_last, force_N);
     scratch.work.linearised += i == 0 ? regions : (regions + 1) / 2;  // the second has most of what the first found
-    const bool goes_on = !is_last && body.slips(force_N);
+    const bool is_answer = result.foreseen || result.residual_m <= kTravelTolerance_m;  // else it tells no slip
+    const bool goes_on = !is_last && is_answer && body.slips(force_N);
     if (!goes_on && !is_last) finish_forces(load, scratch, result, force_N);
     judge_solution(load, laws, result, !goes_on, scratch);
     if (!goes_on) break;
@@ -339,17 +340,17 @@ void add_most_work(const Model& model, const SceneSizes& n, Work& work) noexcept
   const std::int32_t place = (3 * (kFootWalk + 2) + 6) * priced_terms(soft) + kMaxTurn + kSlideWork;
   add_most_points(model, n, work);
   work.queries += 2 * n.points;  // a capsule asks three times
-  const std::int32_t steps = 2 * kSolvesOfFriction * TipLaws::kIterations;
-  add_most_regions(n, steps, work);
-  work.evaluations += 1 + steps * (kStepHalvings + 3);
+  const std::int32_t solves = 2 * kSolvesOfFriction, steps = solves * ElasticLoad::kIterations;
+  const std::int32_t evaluations = solves * ElasticLoad::kEvaluations + 1;
+  add_most_regions(n, steps, evaluations, work);
+  work.evaluations += evaluations + 2 * steps;
   const bool in_parts = touches_in_parts(model);
   work.shown += n.points * (2 * place + priced_terms(soft) + 2 * kPushTerms +
                             (in_parts ? kMostPartLooks * kPartLookTerms + kPartVisitTerms : 0));
   work.rubbed += in_parts ? 2 * kLandings : 0;
   work.soft_pairs += soft_work(pair);
-  work.tip_laws += 2 * kLineLaws * kSolvesOfFriction *
-                       (kSeriesIterations + 1 + TipLaws::kIterations * (kStepHalvings + 1)) * n.contacts +
-                   kPlaceLaws * n.regions;
+  const std::int32_t alone = kSolvesOfFriction * (kSeriesIterations + 1), together = evaluations * n.regions;
+  work.tip_laws += kLineLaws * (alone > together ? alone : together) + kPlaceLaws * n.regions;
   work.linearised += n.regions + (n.regions + 1) / 2;
   work.linked += n.regions * (n.regions + 1) / 2 * (model.params.elastic_linear + soft);
   work.soft_pairs_again += soft_work(pair) / 2;

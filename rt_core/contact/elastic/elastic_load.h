@@ -28,6 +28,7 @@ struct ElasticLoad : TipLaws {
   static constexpr bool kPullsAside = true, kTellsTangent = true;  // tool_tangent.h
   // After a step: another one ends at rounding, and the next tick begins with one wherever rounding is not reached.
   static constexpr Real kEnoughStepped_m = 1e-12;
+  static constexpr std::int32_t kEvaluations = kTipEvaluations;
   // Of lines' dents: a step after which their tangents tell the forces within a thousandth, and one after which they
   // tell as much as the laws would. What a place adds to a line has a tangent within 1.4 % (pinch_block, 2026-11-26).
   static constexpr Real kForeseen = 0.1, kKnown = LineLaw::kNear, kOffTangents = 0.02, kKnown_m = 1e-10;

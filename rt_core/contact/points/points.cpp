@@ -163,7 +163,7 @@ ImageResult accept(const Model&) noexcept { return {}; }
 
 void add_most_work(const Model& model, const SceneSizes& n, Work& work) noexcept {
   add_most_points(model, n, work);
-  add_most_regions(n, PointLaws::kIterations, work);
+  add_most_regions(n, PointLaws::kIterations, region_solve::kMostEvaluations<PointLaws>, work);
   work.spring_laws += (1 + PointLaws::kIterations * (kStepHalvings + 1)) * n.contacts;
   const bool mutual = model.params.coupling_law == CouplingLaw::kMutualPaper;
   work.beams += (mutual ? n.anchors + n.regions : n.anchors) * n.regions;

@@ -213,7 +213,7 @@ ImageResult check_data(const Model& model) noexcept {
 
 void add_most_work(const Model& model, const SceneSizes& n, Work& work) noexcept {
   add_most_points(model, n, work);
-  add_most_regions(n, TipLaws::kIterations, work);
+  add_most_regions(n, TipLaws::kIterations, region_solve::kMostEvaluations<TipLaws>, work);
   work.tip_laws += (kSeriesIterations + 1 + TipLaws::kIterations * (kStepHalvings + 1)) * n.contacts;
 }
 
