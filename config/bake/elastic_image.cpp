@@ -6,11 +6,13 @@
 #include <cmath>
 
 #include "config/bake/drawn_fields.h"
+#include "config/bake/edge_fits.h"
 #include "config/bake/elastic_mesh.h"
 #include "config/bake/facet_foot.h"
 #include "config/bake/fem_body.h"
 #include "config/bake/image_rules.h"
 #include "config/bake/sample_field.h"
+#include "config/bake/sample_nodes.h"
 #include "config/bake/surface_parts.h"
 #include "config/bake/vertex_slopes.h"
 #include "config/body/supports.h"
@@ -39,7 +41,6 @@ constexpr double kSampleSpacing = 0.055;
 // a half space's give under the two patches, in the middle of the bonded layers `layer` and `pad` of tests/accuracy,
 // whose give their kernel tells (2026-11-25).
 constexpr elastic::PatchOptions kPatch{0.75, 0.0063};
-constexpr double kFacing = 0.5;  // samples on another face say nothing about this one
 
 Vector<3> eigen(Vec3 v) { return {v.x, v.y, v.z}; }
 
@@ -79,25 +80,6 @@ class NodalGradient {
   std::vector<bool> wanted_;
 };
 
-// Free surface nodes at least `spacing_m` apart, the first ones that are.
-std::vector<int> sample_nodes(const elastic::Surface<3>& surface, const std::vector<bool>& fixed, double spacing_m) {
-  std::vector<int> kept;
-  std::vector<Vec3> place_m, outward;  // of those kept
-  for (int n = 0; n < static_cast<int>(fixed.size() / 3); ++n) {
-    if (surface.facets_at(n).empty() || fixed[at(3 * n)] || fixed[at(3 * n + 1)] || fixed[at(3 * n + 2)]) continue;
-    const double apart = std::max(spacing_m, surface.edge_m(n));
-    const Vec3 place = vec(surface.rest(n)), normal = vec(elastic::node_normal(surface, n));
-    bool is_new = true;
-    for (std::size_t k = 0; k < kept.size() && is_new; ++k)
-      is_new = norm(place_m[k] - place) >= apart || dot(outward[k], normal) < kFacing;
-    if (!is_new) continue;
-    kept.push_back(n);
-    place_m.push_back(place);
-    outward.push_back(normal);
-  }
-  return kept;
-}
-
 // c, c1 and beta anywhere on the surface.
 SampleField self_field(const elastic::Surface<3>& surface, const elastic::SelfTerms& terms,
                        const std::vector<double>& beta, double spacing_m) {
@@ -110,6 +92,10 @@ SampleField self_field(const elastic::Surface<3>& surface, const elastic::SelfTe
   return tame_field(surface, terms.nodes, value, spacing_m);
 }
 
+bool is_of_balls(const ImageContents& image) {
+  return std::ranges::all_of(image.piece, [](const ToolPiece& p) { return p.shape == PieceShape::kSphere; });
+}
+
 // How the surface curves at the vertices, convex positive: principal curvatures, and that of the sphere that stands for
 // them: under a tool of balls the one that the largest dents alike, else their mean, for along a line the tick tells
 // the other curvature by it (line_place.cpp).
@@ -118,9 +104,7 @@ struct Curvatures {
   std::vector<double> sphere_1pm;
 };
 Curvatures curvatures_of(const ImageContents& image, const std::vector<CornerNormals>& normals, double largest_m) {
-  const bool all_balls =
-      std::ranges::all_of(image.piece, [](const ToolPiece& p) { return p.shape == PieceShape::kSphere; });
-  const double ball_m = all_balls ? largest_m : 0;
+  const double ball_m = is_of_balls(image) ? largest_m : 0;
   Curvatures out;
   for (const Bend& form : vertex_curvatures(image.vertex_m, normals, image.triangle)) {
     out.principal_1pm.push_back(principal_curvatures(form));
@@ -195,7 +179,8 @@ elastic::BallLaw largest_ball(const ImageContents& image, const elastic::RestBod
 }
 
 void add_vertices(const elastic::ElasticBody<3>& body, const Shapes& shapes, const SampleField& self,
-                  const std::vector<FacetFoot>& feet, const Curvatures& curvatures, ImageContents& image) {
+                  const EdgeFits& edges, const std::vector<FacetFoot>& feet, const Curvatures& curvatures,
+                  ImageContents& image) {
   using namespace elastic_layout;
   const int s = body.soft, linear = static_cast<int>(body.modes.lambda_Npm3.size()) - s;
   const auto stride = at(vertex_floats(s, linear));
@@ -217,9 +202,12 @@ void add_vertices(const elastic::ElasticBody<3>& body, const Shapes& shapes, con
       for (int i = 0; i < 9; ++i) *out++ = show(shapes.gradient[t], 9, i);
     }
     const Eigen::RowVectorXd own = self.show(image.vertex_m[v], image.vertex_normal[v]);
-    *out++ = static_cast<float>(own[0]);
+    const double curvature = curvatures.sphere_1pm[v];
+    const elastic::EdgeFit edge = edges.of_vertex(image.vertex_m[v], image.vertex_normal[v],
+                                                  body.rest->contact_modulus(foot.node.front()), curvature);
+    *out++ = static_cast<float>(own[0] + edge.give_mpN);
     *out++ = static_cast<float>(own[1]);
-    *out++ = static_cast<float>(curvatures.sphere_1pm[v]);
+    *out++ = static_cast<float>(scaled_curvature_1pm(curvature, edge.scale, edges.radius_m()));
     *out++ = static_cast<float>(own[2]);
     out += elastic_layout::kOwnFloats - elastic_layout::kOwnValues;
     for (const Field& phi : linear_shapes)
@@ -294,7 +282,7 @@ int vertex_at(const elastic::Surface<3>& surface, int node, const ImageContents&
 
 // Beta of every sample, for the largest ball; the tick scales it to the others. What the fit adds to c is added.
 std::vector<double> fit_places(elastic::SelfTerms& self, const elastic::RestBody<3>& rest, const ImageContents& image,
-                               const Curvatures& curvatures, elastic::BallLaw ball) {
+                               const Curvatures& curvatures, const EdgeFits& edges, elastic::BallLaw ball) {
   std::vector<double> beta(self.nodes.size(), 0.0);
   if (!(ball.radius_m > 0)) return beta;
   for (std::size_t i = 0; i < beta.size(); ++i) {
@@ -307,7 +295,9 @@ std::vector<double> fit_places(elastic::SelfTerms& self, const elastic::RestBody
     const elastic::PlaceFit fit =
         elastic::fit_place(ball, self.width[node], self.self_mpN[node], image.params.max_depth_m);
     beta[i] = fit.beta_1pmN;
-    self.self_mpN[node] += fit.more_give_mpN;
+    const elastic::EdgeFit edge =
+        edges.of_sample(rest.surface(), self.nodes[i], ball.modulus_Pa, ball.body_curvature_1pm);
+    self.self_mpN[node] += fit.more_give_mpN - edge.give_mpN;
   }
   return beta;
 }
@@ -378,10 +368,12 @@ struct ElasticBake::Parts {
   elastic::RestBody<3> rest;
   double spacing_m;
   std::vector<FacetFoot> feet;
+  std::vector<CornerNormals> normals;
+  double edge_reach_m;
+  SharpEdges edges;
   DrawnFields drawn;
   elastic::ElasticStock<3> stock;
   NodalGradient gradient;
-  std::vector<CornerNormals> normals;
   elastic::ElasticBody<3> last;  // a number of modes is written with several self compliances in turn
   int last_soft = 0, last_linear = -1;
 
@@ -394,12 +386,16 @@ struct ElasticBake::Parts {
              fixed),
         spacing_m(kSampleSpacing * rest.surface().extent_m()),
         feet(facet_feet(rest.surface(), image.vertex_m)),
+        normals(corner_normals(scene.body, image.vertex_m, image.triangle)),
+        edge_reach_m(reach_of_edges_m(rest.surface())),
+        edges(is_of_balls(image) ? free_sharp_edges(image, normals, feet, fixed) : SharpEdges()),
         drawn(rest, feet, image.vertex_m, image.vertex_normal, image.params.max_depth_m),
-        stock(elastic::make_elastic_stock(rest, sample_nodes(rest.surface(), fixed, spacing_m), modes,
-                                          options_of(modes, 0, jobs),
+        stock(elastic::make_elastic_stock(rest,
+                                          sample_nodes(rest.surface(), fixed, spacing_m, edges, edge_reach_m,
+                                                       kNarrowRadii * largest_ball(image, rest).radius_m),
+                                          modes, options_of(modes, 0, jobs),
                                           [this](const elastic::PressedPlace& place) { drawn.add(place); })),
-        gradient(mesh, rest.surface()),
-        normals(corner_normals(scene.body, image.vertex_m, image.triangle)) {}
+        gradient(mesh, rest.surface()) {}
 
   const elastic::ElasticBody<3>& body(int soft, int linear) {
     if (soft != last_soft || linear != last_linear) {
@@ -434,10 +430,11 @@ ElasticReport ElasticBake::write(int soft, int linear, double add_c_mpN, ImageCo
   for (const int node : terms.nodes) terms.self_mpN[at(node)] += add_c_mpN;
   const elastic::BallLaw ball = largest_ball(image, parts.rest);
   const Curvatures curvatures = curvatures_of(image, parts.normals, ball.radius_m);
-  const std::vector<double> beta = fit_places(terms, parts.rest, image, curvatures, ball);
+  const EdgeFits edges(parts.edges, parts.edge_reach_m, ball, image.params.max_depth_m);
+  const std::vector<double> beta = fit_places(terms, parts.rest, image, curvatures, edges, ball);
   const SampleField self = self_field(parts.rest.surface(), terms, beta, parts.spacing_m);
   add_energy(body.maps.potential, image);
-  add_vertices(body, term_shapes(body, parts.gradient), self, parts.feet, curvatures, image);
+  add_vertices(body, term_shapes(body, parts.gradient), self, edges, parts.feet, curvatures, image);
   if (touches_in_parts(model_of(image)))
     PartNumbers(body, image).hold();
   else

@@ -257,7 +257,7 @@ class ClosedForm {
     flat_.modulus_Pa = ball.modulus_Pa;
     flat_.paraboloid = ball.paraboloid;
     // rt_core/contact/elastic/placed_law.cpp, curvature_factor.
-    const double scale = 1 / std::sqrt(std::clamp(1 + ball.body_curvature_1pm * ball.radius_m, 0.25, 4.0));
+    const double scale = 1 / std::sqrt(std::clamp(1 + ball.body_curvature_1pm * ball.radius_m, 0.25, 16.0));
     scale_ = scale;
     m_ = scale * hertz_factor(ball);
     by_beta_ = ball.radius_m * scale * scale * m_ * m_;

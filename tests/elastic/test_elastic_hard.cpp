@@ -89,7 +89,8 @@ TEST(ElasticHard, WallPinchedFromBothSides) {
     for (const Region& region : bench.state->region)
       if (is_in_contact(region) && found < 2) push[found++] = region.wrench_w.force_N.x;
     EXPECT_GT(std::abs(push[0]), std::max(5.0, 1.2 * closed));
-    EXPECT_LT(std::abs(push[0] + push[1]), 1e-4 * std::abs(push[0]));
+    // 3.1e-4: which nodes near the wall's edges are no samples differs from side to side (1e-4 before 2026-11-28).
+    EXPECT_LT(std::abs(push[0] + push[1]), 4e-4 * std::abs(push[0]));
     EXPECT_LT(held_change_N(bench, {{0, 0.03, 0}, {}}, closing_all(share)), 1e-8);
     EXPECT_EQ(bench.output.status & (Status::kNotConverged | Status::kCouplingSingular), 0u);
     closed = std::abs(push[0]);
@@ -137,6 +138,19 @@ TEST(ElasticHard, EdgesAndCornersAreCrossed) {
   Bench edge(baked.model()), corner(baked.model());
   EXPECT_LT(largest_step(edge, {0.02, 0.047, 0}, {0.02, 0.043, 0}, 2e-5), 0.02);
   EXPECT_LT(largest_step(corner, {0.02, 0.047, 0.02}, {0.02, 0.042, 0.02}, 2e-5), 0.02);
+}
+
+// On and beside a block's edges and a corner, up to 2 mm outside: what stands there is still.
+TEST(ElasticHard, BesideEdgesATipStandsStill) {
+  const BakedScene baked(elastic_scene(box(40, 40, 40) + "triangles = 3000\n", 1, 8, 6, 4));
+  for (const double x_m : {0.0175, 0.0192, 0.02, 0.022})
+    for (const double z_m : {0.0, 0.0175, 0.02, 0.021})
+      for (const double depth_m : {1e-3, 3e-3}) {
+        Bench bench(baked.model());
+        const Vec3 at{x_m, 0.046 - depth_m, z_m};
+        move_to(bench, {x_m, 0.0465, z_m}, at);
+        EXPECT_LT(change_while_held_N(bench, at, 40), 1e-4) << 1e3 * x_m << ' ' << 1e3 * z_m << ' ' << 1e3 * depth_m;
+      }
 }
 
 // A ball of 60 mm on a block of 20: it rolls from foot to foot as the block tilts, which holds the block upright. The

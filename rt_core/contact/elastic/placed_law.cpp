@@ -13,7 +13,7 @@ struct CurvatureFactor {
 CurvatureFactor curvature_factor(const TipLaw& law, const ElasticRow& row) PALPATE_RT {
   if (law.half_power != 3) return {1, 0};
   const Real radius = row.tip.margin_m, relative = 1 + row.curvature_1_per_m * radius;
-  const Real sum = clamp_to(relative, 0.25, 4.0), value = 1.0 / square_root(sum);
+  const Real sum = clamp_to(relative, 0.25, 16.0), value = 1.0 / square_root(sum);
   return {value, sum == relative ? -0.5 * value * radius / sum : 0.0};
 }
 
