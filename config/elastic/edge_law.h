@@ -3,7 +3,7 @@
 //
 // At a distance s from the edge, with t = s / a of Hertz' contact, the force at a depth D is g of a half space's,
 //   g = 1 - loss / (1 + (0.46 + 0.19 T) t' + (0.31 + 0.21 T) t'^2),   t' = t exp(6.8 (0.5 - w)),
-//   loss = (1 - 0.29 - 0.15 T - (0.29 - 0.17 T) sqrt(D / R)) (1.53 w + 0.94 w^2),
+//   loss = (1 - 0.29 - 0.15 T - (0.29 - 0.17 T) min(sqrt(D / R), 0.7)) (1.53 w + 0.94 w^2),
 // T = (1 - 2 nu) / (1 - nu), w = 1 - opening / pi, the opening that of the solid between its faces. Read off
 // large-strain elements in space (2026-11-28): a ball of 12 mm to 4 mm on a block of 100 x 60 x 100 mm, 0 to 16 mm from
 // its edge, nu 0.45 and 0.2 (1.1 % RMS and 2.9 at most of these forces are left), and at and 4 mm beside edges of 135
