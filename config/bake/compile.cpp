@@ -166,13 +166,7 @@ class Compiler {
     image_.vertex_m = mesh_.vertex_m;
     image_.vertex_normal = vertex_normals(mesh_);
     image_.params.surface_size_m = bounds_of(mesh_).largest_m();
-    const std::vector<Corners> adjacent = triangle_adjacency(mesh_);
-    std::vector<Triangle> triangle(mesh_.triangle.size());
-    for (std::size_t t = 0; t < triangle.size(); ++t) {
-      std::copy(mesh_.triangle[t].begin(), mesh_.triangle[t].end(), triangle[t].vertex);
-      std::copy(adjacent[t].begin(), adjacent[t].end(), triangle[t].adjacent);
-    }
-    BvhBuild bvh = build_bvh(image_.vertex_m, triangle);
+    BvhBuild bvh = build_bvh(image_.vertex_m, linked_triangles(mesh_));
     if (bvh.stack_high_water > kMaxTraversalStack)
       fail("body", "the hierarchy needs " + std::to_string(bvh.stack_high_water) + " stack entries; allowed " +
                        std::to_string(kMaxTraversalStack) + ": remesh the body");

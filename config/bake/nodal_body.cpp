@@ -9,16 +9,6 @@ namespace palpate {
 
 namespace {
 
-std::vector<Triangle> linked_triangles(const SurfaceMesh& mesh) {
-  const std::vector<Corners> adjacent = triangle_adjacency(mesh);
-  std::vector<Triangle> triangle(mesh.triangle.size());
-  for (std::size_t t = 0; t < triangle.size(); ++t) {
-    std::copy(mesh.triangle[t].begin(), mesh.triangle[t].end(), triangle[t].vertex);
-    std::copy(adjacent[t].begin(), adjacent[t].end(), triangle[t].adjacent);
-  }
-  return triangle;
-}
-
 std::vector<NodalVertex> nodal_vertices(const CondensedBody& body, const std::vector<Triangle>& triangle) {
   std::vector<NodalVertex> vertex(body.surface.vertex_m.size(), NodalVertex{0, 1, 0, {}, 1});
   for (std::size_t i = 0; i < vertex.size(); ++i) vertex[i].is_free = body.held[i] == 0 ? 1 : 0;

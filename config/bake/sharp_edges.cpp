@@ -1,12 +1,10 @@
 #include "config/bake/sharp_edges.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <map>
 #include <numbers>
-#include <utility>
 
+#include "config/bake/creases.h"
 #include "config/index.h"
 #include "rt_core/vec.h"
 
@@ -37,36 +35,33 @@ Vec3 nearest_on(Vec3 from, Vec3 to, Vec3 p) {
 
 SharpEdges::SharpEdges(std::span<const Vec3> vertex_m, std::span<const CornerNormals> normal,
                        std::span<const Triangle> triangles, const std::vector<bool>& held) {
-  struct Met {
-    std::array<Vec3, 2> at_ends;
-    Side side;
+  const auto face = [&](const Crease::Side& side) {
+    const CornerNormals& n = normal[side.triangle];
+    const auto corner = [&](std::size_t k) {
+      return vertex_m[at(triangles[side.triangle].vertex[(side.corner + k) % 3])];
+    };
+    const Vec3 along = unit_or(corner(1) - corner(0), {}), third = corner(2) - corner(0);
+    const std::size_t next = (side.corner + 1) % 3;
+    return Side{unit_or(n.normal[side.corner] + n.normal[next], {}), unit_or(-(third - dot(third, along) * along), {}),
+                dot(n.normal[side.corner], n.normal[next]) > kFlat};
   };
-  std::map<std::pair<std::int32_t, std::int32_t>, Met> met;  // of every edge by its ends the side met first
-  for (std::size_t i = 0; i < triangles.size(); ++i)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t next = (k + 1) % 3;
-      const std::int32_t a = triangles[i].vertex[k], b = triangles[i].vertex[next];
-      const Vec3 from = vertex_m[at(a)], to = vertex_m[at(b)], third = vertex_m[at(triangles[i].vertex[(k + 2) % 3])];
-      const Vec3 along = unit_or(to - from, {});
-      const Vec3 inwards = third - from - dot(third - from, along) * along;
-      const Side here{unit_or(normal[i].normal[k] + normal[i].normal[next], {}), unit_or(-inwards, {}),
-                      dot(normal[i].normal[k], normal[i].normal[next]) > kFlat};
-      std::array<Vec3, 2> at_ends{normal[i].normal[k], normal[i].normal[next]};
-      if (a > b) std::swap(at_ends[0], at_ends[1]);
-      const auto [other, is_first] = met.try_emplace(std::minmax(a, b), Met{at_ends, here});
-      if (is_first || other->second.at_ends == at_ends || (held[at(a)] && held[at(b)])) continue;
-      const Side& there = other->second.side;
-      const double turn = std::acos(std::clamp(dot(here.normal, there.normal), -1.0, 1.0));
-      if (!(dot(here.across, there.normal) > 0)) continue;  // hollow
-      segments_.push_back({from,
-                           to,
-                           {here.normal, there.normal},
-                           {here.across, there.across},
-                           {here.is_flat, there.is_flat},
-                           std::numbers::pi - turn,
-                           0.5 * (from.x + to.x)});
-      longest_m_ = std::max(longest_m_, norm(to - from));
-    }
+  for (const Crease& crease : creases(normal, triangles)) {
+    if (held[at(crease.vertex[0])] && held[at(crease.vertex[1])]) continue;
+    const Side one = face(crease.side[1]), other = face(crease.side[0]);
+    if (!(dot(one.across, other.normal) > 0)) continue;  // hollow
+    const Triangle& t = triangles[crease.side[1].triangle];
+    const std::size_t k = crease.side[1].corner;
+    const Vec3 from = vertex_m[at(t.vertex[k])], to = vertex_m[at(t.vertex[(k + 1) % 3])];
+    const double turn = std::acos(std::clamp(dot(one.normal, other.normal), -1.0, 1.0));
+    segments_.push_back({from,
+                         to,
+                         {one.normal, other.normal},
+                         {one.across, other.across},
+                         {one.is_flat, other.is_flat},
+                         std::numbers::pi - turn,
+                         0.5 * (from.x + to.x)});
+    longest_m_ = std::max(longest_m_, norm(to - from));
+  }
   std::ranges::sort(segments_, {}, &Segment::middle_x_m);
 }
 

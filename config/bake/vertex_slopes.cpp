@@ -4,9 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
-#include <utility>
 
+#include "config/bake/creases.h"
 #include "rt_core/vec.h"
 
 namespace palpate {
@@ -96,8 +95,6 @@ std::vector<Vec3> vertex_slopes(std::span<const Vec3> vertex_m, std::span<const 
 
 void stop_at_sharp_edges(std::span<const Vec3> vertex_m, std::span<const CornerNormals> normal,
                          std::span<const Triangle> triangles, std::span<Vec3> slope) {
-  // Of every edge by its ends, smaller first: the normals at them on the side met first.
-  std::map<std::pair<std::int32_t, std::int32_t>, std::array<Vec3, 2>> met;
   struct Ends {
     int count = 0;
     Vec3 along;
@@ -109,17 +106,10 @@ void stop_at_sharp_edges(std::span<const Vec3> vertex_m, std::span<const CornerN
     ends.along += (ends.count == 0 ? 1.0 : -1.0) * unit_or(along, {});
     ends.count += 1;
   };
-  for (std::size_t i = 0; i < triangles.size(); ++i)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t next = (k + 1) % 3;
-      std::int32_t a = triangles[i].vertex[k], b = triangles[i].vertex[next];
-      std::array<Vec3, 2> here{normal[i].normal[k], normal[i].normal[next]};
-      if (a > b) std::swap(a, b), std::swap(here[0], here[1]);
-      const auto [at, is_first] = met.try_emplace({a, b}, here);
-      if (is_first || (at->second[0] == here[0] && at->second[1] == here[1])) continue;
-      ends_at(a, b);
-      ends_at(b, a);
-    }
+  for (const Crease& crease : creases(normal, triangles)) {
+    ends_at(crease.vertex[0], crease.vertex[1]);
+    ends_at(crease.vertex[1], crease.vertex[0]);
+  }
   for (std::size_t v = 0; v < sharp.size(); ++v) {
     if (sharp[v].count == 0) continue;
     // Two ends of one line, or a corner.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "config/index.h"
+#include "rt_core/model.h"
 
 namespace palpate {
 
@@ -43,6 +44,16 @@ std::vector<Corners> triangle_adjacency(const SurfaceMesh& mesh) {
     ++i;
   }
   return adjacent;
+}
+
+std::vector<Triangle> linked_triangles(const SurfaceMesh& mesh) {
+  const std::vector<Corners> adjacent = triangle_adjacency(mesh);
+  std::vector<Triangle> triangle(mesh.triangle.size());
+  for (std::size_t t = 0; t < triangle.size(); ++t) {
+    std::ranges::copy(mesh.triangle[t], triangle[t].vertex);
+    std::ranges::copy(adjacent[t], triangle[t].adjacent);
+  }
+  return triangle;
 }
 
 Vec3 triangle_cross(const SurfaceMesh& mesh, std::size_t triangle) {

@@ -11,6 +11,8 @@
 
 namespace palpate {
 
+struct Triangle;
+
 // Corners counter-clockwise seen from outside.
 using Corners = std::array<std::int32_t, 3>;
 
@@ -22,6 +24,8 @@ struct SurfaceMesh {
 // Triangle across the edge (corner k, corner k+1) of each triangle; -1 where there is none. Edges shared by more than
 // two triangles are paired arbitrarily: check_mesh refuses them.
 std::vector<Corners> triangle_adjacency(const SurfaceMesh& mesh);
+// The triangles as an image has them, each with those.
+std::vector<Triangle> linked_triangles(const SurfaceMesh& mesh);
 
 // Not normalised; its length is twice the triangle's area.
 Vec3 triangle_cross(const SurfaceMesh& mesh, std::size_t triangle);

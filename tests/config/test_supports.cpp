@@ -224,13 +224,7 @@ TEST(Placement, ExactNormalsTurnWithTheBody) {
   std::vector<std::string> warnings;
   const SurfaceMesh mesh = make_body(scene, warnings);
   const Vec3 centre = volume_centre_m(mesh);
-  std::vector<Triangle> triangle(mesh.triangle.size());
-  const std::vector<Corners> adjacent = triangle_adjacency(mesh);
-  for (std::size_t t = 0; t < triangle.size(); ++t)
-    for (std::size_t k = 0; k < 3; ++k) {
-      triangle[t].vertex[k] = mesh.triangle[t][k];
-      triangle[t].adjacent[k] = adjacent[t][k];
-    }
+  const std::vector<Triangle> triangle = linked_triangles(mesh);
   const std::vector<CornerNormals> normals = corner_normals(scene.body, mesh.vertex_m, triangle);
   for (std::size_t t = 0; t < triangle.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k) {

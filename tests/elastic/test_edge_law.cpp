@@ -86,13 +86,7 @@ TEST(EdgeLaw, WhatElementsTellIsLeftToThem) {
 SharpEdges edges_of(const SurfaceMesh& mesh, bool is_held = false) {
   BodyDesc body;
   body.shape = BodyShape::kMesh;
-  const auto adjacent = triangle_adjacency(mesh);
-  std::vector<Triangle> triangle(mesh.triangle.size());
-  for (std::size_t t = 0; t < triangle.size(); ++t)
-    for (std::size_t k = 0; k < 3; ++k) {
-      triangle[t].vertex[k] = mesh.triangle[t][k];
-      triangle[t].adjacent[k] = adjacent[t][k];
-    }
+  const std::vector<Triangle> triangle = linked_triangles(mesh);
   const std::vector<bool> held(mesh.vertex_m.size(), is_held);
   return {mesh.vertex_m, corner_normals(body, mesh.vertex_m, triangle), triangle, held};
 }

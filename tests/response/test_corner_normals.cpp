@@ -28,13 +28,7 @@ SurfaceMesh uneven_sphere(double share) {
 std::vector<CornerNormals> normals_of(const SurfaceMesh& mesh) {
   BodyDesc body;
   body.shape = BodyShape::kMesh;
-  const auto adjacent = triangle_adjacency(mesh);
-  std::vector<Triangle> triangle(mesh.triangle.size());
-  for (std::size_t t = 0; t < triangle.size(); ++t)
-    for (std::size_t k = 0; k < 3; ++k) {
-      triangle[t].vertex[k] = mesh.triangle[t][k];
-      triangle[t].adjacent[k] = adjacent[t][k];
-    }
+  const std::vector<Triangle> triangle = linked_triangles(mesh);
   return corner_normals(body, mesh.vertex_m, triangle);
 }
 

@@ -25,16 +25,7 @@ struct Surface {
     model.triangle = triangle;
     model.corner_normal = normal;
   }
-  Surface(const BodyDesc& body, const SurfaceMesh& mesh) : vertex(mesh.vertex_m) {
-    const std::vector<Corners> adjacent = triangle_adjacency(mesh);
-    for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
-      Triangle one;
-      for (std::size_t k = 0; k < 3; ++k) {
-        one.vertex[k] = mesh.triangle[t][k];
-        one.adjacent[k] = adjacent[t][k];
-      }
-      triangle.push_back(one);
-    }
+  Surface(const BodyDesc& body, const SurfaceMesh& mesh) : vertex(mesh.vertex_m), triangle(linked_triangles(mesh)) {
     normal = corner_normals(body, vertex, triangle);
     close();
   }
