@@ -121,9 +121,8 @@ std::string report_text(const CompileReport& r) {
   if (r.grip_N[0] > 0)
     line(text, "grip       thumb %.4g N against %.4g, %.4g, %.4g, %.4g N; %.3g N of their wrench is left for friction",
          r.grip_N[0], r.grip_N[1], r.grip_N[2], r.grip_N[3], r.grip_N[4], r.grip_left_N);
-  if (r.cost.surface_work > 0)
-    line(text, "surface    an adversary made a tick look at %d boxes and triangles; allowed %d", r.cost.surface_work,
-         r.cost.surface_work_max);
+  if (r.cost.looks_max > 0)
+    line(text, "surface    a tick looks at %d boxes and triangles at most; points beyond it wait", r.cost.looks_max);
   for (const std::string& model : r.model) line(text, "model      %s", model.c_str());
   line(text, "worst tick %.0f instructions found by an adversary, %.0f stated", r.cost.found, r.cost.instructions);
   size_lines(text, r);

@@ -19,7 +19,6 @@ namespace palpate {
 
 namespace {
 
-constexpr int kStarts = 48, kTicks = 40, kRefined = 6;
 // Ticks in which the dearest of each stage is looked for. What a million find beyond the dearest whole tick is a few
 // per cent, but a stage of them was 44 % dearer (solve of pinch_block, 2026-11-22): four tenths of each are stated
 // beside, and a share of the whole.
@@ -42,36 +41,18 @@ double reserve_of(const Model& model, Stage stage) {
   return stage == Stage::kFindRows ? kReserveOfElasticRows : stage == Stage::kSolve ? kReserveOfElasticSolve : kReserve;
 }
 int effort(const Model& model) { return method_of(model) == Method::kElastic ? 4 : 1; }
-// A quarter more than was found is allowed, but no more than 256 looks or four a point: what needs more waits some
-// ticks, on the plane it had. Hands on scripted paths look at 126 at most with the 60 points of a grasp, a point near
-// the surface at two. Thirty points as deep in a sphere of 30 mm as its law reaches want 4,986, a million instructions;
-// in turns of twenty ticks at 0.1 m/s they stand up to 0.07 mm off it, 10 mm deep (2026-11-28).
-constexpr double kSpare = 1.25;
-constexpr std::int32_t kFullShare = 256, kLooksOfPoint = 4;
+// What a tick looks at; points it does not suffice for wait some ticks, on the plane they had. Hands on scripted paths
+// look at 126 at most with the 60 points of a grasp, a point near the surface at two. Thirty points as deep in a sphere
+// of 30 mm as its law reaches want 4,986, a million instructions (2026-11-28).
+constexpr std::int32_t kShare = 144;
 // Of an elastic body's tick: one tip that looks for it anew and others that know where it was. A tip that touches asks
-// nothing; scripted paths look at 81 at most, in the first touch of ellipsoid_mallet (2026-11-23).
-constexpr std::int32_t kElasticShare = 96;
+// nothing; scripted paths look at 65 at most, in the first touch of ellipsoid_mallet (2026-11-28).
+constexpr std::int32_t kElasticShare = 72;
 
 class Search {
  public:
   explicit Search(const Model& model)
       : model_(model), memory_(model), state_(memory_.state), scratch_(memory_.scratch) {}
-
-  // Of the surface, in one tick of a hand that creeps over it.
-  std::int32_t surface_work() {
-    struct Found {
-      std::int32_t work;
-      std::uint64_t seed;
-    };
-    std::vector<Found> found;
-    for (std::uint64_t seed = 0; seed < kStarts; ++seed) found.push_back({play(seed, kTicks), seed});
-    std::ranges::sort(
-        found, [](const Found& a, const Found& b) { return a.work != b.work ? a.work > b.work : a.seed < b.seed; });
-    std::int32_t worst = found.front().work;
-    for (int i = 0; i < kRefined; ++i)
-      worst = std::max(worst, play(found[static_cast<std::size_t>(i)].seed, 8 * kTicks));
-    return worst;
-  }
 
   // Of the surface, in one query from as far off it on either side as its axis, that starts anywhere and searches no
   // more than so many boxes. Few ticks meet the dearest.
@@ -106,39 +87,6 @@ class Search {
   }
 
  private:
-  // Most work in one tick but the first, in which nothing is known and nothing armed.
-  std::int32_t play(std::uint64_t seed, int ticks) {
-    Adversary adversary(model_, seed);
-    reset(state_);
-    Input input;
-    input.drive = Drive::kTool;
-    input.pose_w = adversary.start(std::min(model_.params.max_depth_m, 0.25 * model_.params.surface_size_m));
-    for (float& closing : input.joints.closing) closing = static_cast<float>(adversary.uniform(0, 1));
-    const double step_m = std::min(model_.params.speed_max_m_per_s * model_.params.period_s, 2e-3);
-    const double turn_rad = std::min(model_.params.turn_max_rad_per_s * model_.params.period_s, 0.03);
-    Vec3 drift = adversary.direction(), spin = adversary.direction();
-    Output output;
-    std::int32_t most = 0;
-    for (int t = 0; t < ticks; ++t) {
-      tick(model_, state_, scratch_, input, output);
-      if (t > 1) most = std::max(most, scratch_.surface_work);
-      // As deep as the law reaches, and back: what the hand holds deeper may wait a tick.
-      if (output.penetration_m > model_.params.max_depth_m) {
-        drift = -drift;
-        input.pose_w.position_m += (2 * step_m) * drift;
-        continue;
-      }
-      if (adversary.one_in(8)) drift = adversary.direction();
-      if (adversary.one_in(8)) spin = adversary.direction();
-      input.pose_w.position_m += (step_m * adversary.uniform(0, 1)) * drift;
-      input.pose_w.orientation =
-          normalised(small_rotation((turn_rad * adversary.uniform(0, 1)) * spin) * input.pose_w.orientation);
-      for (float& closing : input.joints.closing)
-        closing = std::clamp(closing + static_cast<float>(adversary.uniform(-0.02, 0.02)), 0.0f, 1.0f);
-    }
-    return most;
-  }
-
   const Model& model_;
   TickMemory memory_;
   State& state_;
@@ -177,18 +125,13 @@ void state_most_costs(ImageContents& image) {
 TickCost bake_costs(ImageContents& image) {
   TickCost cost;
   const Method method = method_of(image.params);
-  if (method != Method::kNodes) cost.surface_work = Search(model_of(image)).surface_work();
-  image.params.surface_work_max =
-      method == Method::kElastic
-          ? kElasticShare
-          : std::clamp(static_cast<std::int32_t>(kSpare * cost.surface_work), kFullShare,
-                       std::clamp(kLooksOfPoint * scene_sizes(model_of(image)).points, kFullShare, kMaxSurfaceWork));
-  cost.surface_work_max = image.params.surface_work_max;
+  image.params.surface_work_max = method == Method::kElastic ? kElasticShare : kShare;
+  if (method != Method::kNodes) cost.looks_max = image.params.surface_work_max;
   const Model model = model_of(image);
   Search search(model);
   const std::array<double, kStageCount> found = search.stages();
   for (const double stage : found) cost.found += stage;
-  const double rows = method_of(image.params) == Method::kNodes ? 0 : rows_cost(model, search);
+  const double rows = method == Method::kNodes ? 0 : rows_cost(model, search);
   image.stage_cost.clear();
   for (int i = 0; i < kStageCount; ++i) {
     const auto stage = static_cast<Stage>(i);

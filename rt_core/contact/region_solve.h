@@ -32,7 +32,7 @@ struct RegionSolution {
 // Laws: the local laws of n regions and the potential W(F) of what couples them.
 //   static constexpr: kIterations; kEnough_m, below which another step would change nothing but rounding; kTolerance_m,
 //                     above which a solve counts as not converged; kEnoughStepped_m, if any: enough after a step;
-//                     kEvaluations, if any: of all laws, after which a solve ends where it is
+//   evaluations_left             if any: of all laws, after which a solve ends where it is
 //   start(r)                     a first shift for region r
 //   load(r, shift)               LawPoint: F_r and -dF_r/dshift of its rows, all depths reduced by the shift
 //   shift_under(force, r)        dW/dF_r
@@ -57,12 +57,15 @@ inline constexpr Real kEnoughStepped_m = [] {
 }();
 
 template <class Laws>
-inline constexpr std::int32_t kMostEvaluations = [] {
-  if constexpr (requires { Laws::kEvaluations; })
-    return Laws::kEvaluations;
+inline constexpr std::int32_t kMostEvaluations = 1 + Laws::kIterations*(kStepHalvings + 1);
+
+template <class Laws>
+std::int32_t most_evaluations(const Laws& laws) PALPATE_RT {
+  if constexpr (requires { laws.evaluations_left; })
+    return laws.evaluations_left;
   else
-    return 1 + Laws::kIterations * (kStepHalvings + 1);
-}();
+    return kMostEvaluations<Laws>;
+}
 
 template <class Laws>
 void start(const Laws& laws, std::int32_t n, RegionSystem& s) PALPATE_RT {
@@ -137,14 +140,15 @@ bool foresees(const Laws& laws, RegionSystem& s, bool roughly, RegionSolution& r
 }  // namespace region_solve
 
 // Goes on with a solution until no more than enough_m is left, or after a step `stepped_m`, or a step is foreseen:
-// `roughly`, a longer one. Bound: Laws::kIterations steps, kMostEvaluations evaluations.
+// `roughly`, a longer one. Bound: Laws::kIterations steps, most_evaluations() of all laws, of which one is made at
+// least.
 template <class Laws>
 void refine_regions(const Laws& laws, std::int32_t n, RegionSystem& system, Real enough_m, RegionSolution& result,
                     bool roughly = false, Real stepped_m = region_solve::kEnoughStepped_m<Laws>) PALPATE_RT {
-  constexpr std::int32_t kMost = region_solve::kMostEvaluations<Laws>;
+  const std::int32_t most = region_solve::most_evaluations(laws);
   for (std::int32_t k = 0; k < Laws::kIterations; ++k) {  // bound: Laws::kIterations
     if (result.residual_m <= (result.steps > 0 ? max_of(enough_m, stepped_m) : enough_m)) break;
-    if (result.evaluations >= kMost) break;
+    if (result.evaluations >= most) break;
     result.steps += 1;
     if (!region_solve::newton_step(laws, n, system)) {
       result.singular = true;
@@ -157,7 +161,7 @@ void refine_regions(const Laws& laws, std::int32_t n, RegionSystem& system, Real
       for (std::int32_t r = 0; r < n; ++r) system.trial_m[r] = system.shift_m[r] + share * system.step_m[r];
       result.residual_m = region_solve::evaluate(laws, n, system.trial_m, system);
       result.evaluations += 1;
-      if (result.residual_m < before || result.residual_m <= Laws::kTolerance_m || result.evaluations >= kMost) break;
+      if (result.residual_m < before || result.residual_m <= Laws::kTolerance_m || result.evaluations >= most) break;
       share *= 0.5;
     }
     for (std::int32_t r = 0; r < n; ++r) system.shift_m[r] = system.trial_m[r];  // bound: regions

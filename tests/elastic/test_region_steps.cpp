@@ -164,8 +164,9 @@ TEST(RegionSteps, AnEnergyWithoutALeastIsSolvedWithoutItsSecondOrder) {
 
 // Laws that no step brings nearer: their solve ends after so many looks at them, whatever steps and halvings are left.
 struct Stubborn {
-  static constexpr std::int32_t kIterations = ElasticLoad::kIterations, kEvaluations = ElasticLoad::kEvaluations;
+  static constexpr std::int32_t kIterations = ElasticLoad::kIterations;
   static constexpr Real kEnough_m = 1e-14, kTolerance_m = 1e-9;
+  std::int32_t evaluations_left = kTipEvaluations;
   mutable std::int32_t looks = 0;
   mutable Real shift_m = 0;
   Real start(std::int32_t) const PALPATE_RT { return 0; }

@@ -30,6 +30,8 @@ constexpr std::int32_t kSolvesOfFriction = 2;
 // How exactly the first tells who slips: a thousandth or less of what friction's spring is stretched by where it does.
 // Of lines the tangents' forces after a short step do, too: a thousandth of the force.
 constexpr Real kEnoughToSlip_m = 1e-9;
+// The second is begun with no fewer evaluations left to it.
+constexpr std::int32_t kLeastOfSolve = 3;
 
 // What the places ask of the modes, in tip laws evaluated: two of them, and sums over numbers and modes.
 constexpr std::int32_t kPlaceLaws = 5;
@@ -70,15 +72,8 @@ RegionSolution solve_forces(ElasticLoad& load, std::int32_t laws, Scratch& scrat
 }
 
 // And to the end, where the first solve is the last.
-void finish_forces(const ElasticLoad& load, Scratch& scratch, RegionSolution& result, Real* force_N) PALPATE_RT {
-  if (load.n > 1) {
-    if (result.foreseen) {
-      result.foreseen = false;
-      result.residual_m = load.evaluate(scratch.system.shift_m, scratch.system);
-      result.evaluations += 1;
-    }
-    refine_regions(load, load.n, scratch.system, ElasticLoad::kEnough_m, result);
-  }
+void finish_forces(ElasticLoad& load, Scratch& scratch, RegionSolution& result, Real* force_N) PALPATE_RT {
+  if (load.n > 1) load.finish(scratch.system, result);
   for (std::int32_t r = 0; r < load.n; ++r) force_N[r] = scratch.system.force_N[r];  // bound: kMaxRegions
 }
 
@@ -125,7 +120,7 @@ void solve_pressed(const Model& model, State& state, Scratch& scratch, Count sof
     RegionSolution result = solve_forces(load, laws, scratch, is_last, force_N);
     scratch.work.linearised += i == 0 ? regions : (regions + 1) / 2;  // the second has most of what the first found
     const bool is_answer = result.foreseen || result.residual_m <= kTravelTolerance_m;  // else it tells no slip
-    const bool goes_on = !is_last && is_answer && body.slips(force_N);
+    const bool goes_on = !is_last && is_answer && load.evaluations_left >= kLeastOfSolve && body.slips(force_N);
     if (!goes_on && !is_last) finish_forces(load, scratch, result, force_N);
     judge_solution(load, laws, result, !goes_on, scratch);
     if (!goes_on) break;
@@ -340,8 +335,8 @@ void add_most_work(const Model& model, const SceneSizes& n, Work& work) noexcept
   const std::int32_t place = (3 * (kFootWalk + 2) + 6) * priced_terms(soft) + kMaxTurn + kSlideWork;
   add_most_points(model, n, work);
   work.queries += 2 * n.points;  // a capsule asks three times
-  const std::int32_t solves = 2 * kSolvesOfFriction, steps = solves * ElasticLoad::kIterations;
-  const std::int32_t evaluations = solves * ElasticLoad::kEvaluations + 1;
+  // A solve whose step fails ends with it; one that is foreseen may be looked at again.
+  const std::int32_t evaluations = kTipEvaluations + 1, steps = kTipEvaluations + 2 * kSolvesOfFriction;
   add_most_regions(n, steps, evaluations, work);
   work.evaluations += evaluations + 2 * steps;
   const bool in_parts = touches_in_parts(model);

@@ -127,13 +127,30 @@ bool ElasticLoad::foresees(RegionSystem& s, Real most) const PALPATE_RT {
   return true;
 }
 
+RegionSolution ElasticLoad::solve_once(RegionSystem& system, Real enough_m, bool roughly) PALPATE_RT {
+  const RegionSolution result = solve_regions(*this, n, system, enough_m, roughly);
+  evaluations_left -= result.evaluations;
+  return result;
+}
+
 RegionSolution ElasticLoad::solve(RegionSystem& system, Real enough_m, bool roughly,
                                   RegionSolution& given_up) PALPATE_RT {
-  const RegionSolution result = solve_regions(*this, n, system, enough_m, roughly);
-  if (result.residual_m <= kNoAnswer_m) return result;
+  const RegionSolution result = solve_once(system, enough_m, roughly);
+  if (result.residual_m <= kNoAnswer_m || evaluations_left < 1 || !pair.has_second_order(n)) return result;
   given_up = result;
   pair.drop_second_order(n);
-  return solve_regions(*this, n, system, enough_m, roughly);
+  return solve_once(system, enough_m, roughly);
+}
+
+void ElasticLoad::finish(RegionSystem& system, RegionSolution& result) PALPATE_RT {
+  evaluations_left += result.evaluations;  // to the whole of it
+  if (result.foreseen) {
+    result.foreseen = false;
+    result.residual_m = evaluate(system.shift_m, system);
+    result.evaluations += 1;
+  }
+  refine_regions(*this, n, system, kEnough_m, result);
+  evaluations_left -= result.evaluations;
 }
 
 }  // namespace palpate

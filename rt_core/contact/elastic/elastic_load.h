@@ -28,7 +28,6 @@ struct ElasticLoad : TipLaws {
   static constexpr bool kPullsAside = true, kTellsTangent = true;  // tool_tangent.h
   // After a step: another one ends at rounding, and the next tick begins with one wherever rounding is not reached.
   static constexpr Real kEnoughStepped_m = 1e-12;
-  static constexpr std::int32_t kEvaluations = kTipEvaluations;
   // Of lines' dents: a step after which their tangents tell the forces within a thousandth, and one after which they
   // tell as much as the laws would. What a place adds to a line has a tangent within 1.4 % (pinch_block, 2026-11-26).
   static constexpr Real kForeseen = 0.1, kKnown = LineLaw::kNear, kOffTangents = 0.02, kKnown_m = 1e-10;
@@ -43,7 +42,8 @@ struct ElasticLoad : TipLaws {
   PairLanes pair;                // of several regions
   Real* own_bend_m_per_N;        // room for evaluate() to tell newton_step(): d2W/dF^2 of every region
   Real* change_N;                // and for newton_step() to tell foresees(): the forces' change by their tangents
-  bool goes_on = false;          // from the depths found_m in the tips, of every region, that the last solve found
+  std::int32_t evaluations_left = kTipEvaluations;  // to the tick's solves
+  bool goes_on = false;  // from the depths found_m in the tips, of every region, that the last solve found
   Real found_m[kMaxRegions];
 
   // Normal stiffness under region r as if the soft modes held still; of the laws' tangent there the root.
@@ -167,9 +167,15 @@ struct ElasticLoad : TipLaws {
   Real coupling_J(std::int32_t r, Real force_N, Real) const PALPATE_RT { return far_energy_J(own[r].far, force_N); }
   // Forces and shifts of several regions, to `enough_m` (solve_regions()). Of a solve that is farther off than
   // kNoAnswer_m the energy of the pairs may have no least: their second order, cubic in the forces, is told up to those
-  // of the last tick. Without it there is one: then it is dropped, and `given_up` tells what the first solve took.
+  // of the last tick. Without it there is one: then it is dropped, where there is one and evaluations are left, and
+  // `given_up` tells what the first solve took.
   static constexpr Real kNoAnswer_m = 1e-4;
   RegionSolution solve(RegionSystem& system, Real enough_m, bool roughly, RegionSolution& given_up) PALPATE_RT;
+  // Goes on with one that may have been foreseen, to its end.
+  void finish(RegionSystem& system, RegionSolution& result) PALPATE_RT;
+
+ private:
+  RegionSolution solve_once(RegionSystem& system, Real enough_m, bool roughly) PALPATE_RT;
 };
 
 }  // namespace palpate

@@ -112,7 +112,10 @@ class Finder {
     const RoundTip tip = tip_at(index);
     if (cannot_press(index, tip)) return;
     if (is_far(index, tip) && !(tip.is_of_solid() && has_turn(index))) return;
-    if (look_for(index, tip, state_.point[index].triangle)) settle_row(index);
+    // Of one that was thrown the last place is of no use: from there a walk looked at 24 to 60 boxes and triangles
+    // in vain.
+    const bool is_thrown = tool_moved_m(index, tip) > kFollowed_m;
+    if (look_for(index, tip, is_thrown ? -1 : state_.point[index].triangle)) settle_row(index);
   }
 
  private:

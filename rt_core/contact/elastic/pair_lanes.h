@@ -37,6 +37,15 @@ struct PairLanes {
       store(own + b, o);
     }
   }
+  bool has_second_order(std::int32_t n) const PALPATE_RT {
+    Double4 sum{};
+    for (std::int32_t j = 0; j < n; ++j)  // bound: kMaxRegions^2 / 4
+      for (std::int32_t b = 0; b < n; b += kRegionLanes) {
+        const Double4 h = load4(h_m_per_N2[j] + b);
+        sum += h * h;
+      }
+    return palpate::sum(sum) > 0;
+  }
   void drop_second_order(std::int32_t n) PALPATE_RT {
     for (std::int32_t j = 0; j < n; ++j) {  // bound: kMaxRegions^2 / 4
       for (std::int32_t b = 0; b < n; b += kRegionLanes) {
