@@ -23,6 +23,7 @@
 #include "config/response/corner_normals.h"
 #include "config/scene/config_error.h"
 #include "config/scene/schema.h"
+#include "rt_core/contact/elastic/ball_on_body.h"
 #include "rt_core/contact/elastic/elastic_layout.h"
 #include "rt_core/surface/closest_point.h"
 
@@ -290,7 +291,7 @@ std::vector<double> fit_places(elastic::SelfTerms& self, const elastic::RestBody
     const int vertex = vertex_at(rest.surface(), self.nodes[i], image);
     ball.modulus_Pa = rest.contact_modulus(self.nodes[i]);
     ball.body_curvature_1pm =
-        vertex < 0 ? 0 : clamp_to(curvatures.sphere_1pm[at(vertex)], -0.75 / ball.radius_m, 3 / ball.radius_m);
+        vertex < 0 ? 0 : (sharper(curvatures.sphere_1pm[at(vertex)], ball.radius_m) - 1) / ball.radius_m;
     ball.principal_1pm = vertex < 0 ? std::array<double, 2>{} : curvatures.principal_1pm[at(vertex)];
     const elastic::PlaceFit fit =
         elastic::fit_place(ball, self.width[node], self.self_mpN[node], image.params.max_depth_m);

@@ -3,18 +3,20 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rt_core/contact/elastic/ball_on_body.h"
+
 namespace palpate::elastic {
 
 namespace {
 
 constexpr double kLeastShare = 0.05;
 constexpr int kDepths = 12, kScales = 64;
-// The tick's: rt_core/contact/elastic/placed_law.cpp, curvature_factor.
 constexpr double kLeastScale = 0.25;
+static_assert(kLeastScale * kLeastScale * kMostSharper == 1, "the least scale that the tick's law has");
 
 // Of the ball on the curved body.
 double effective_radius_m(const BallLaw& ball) {
-  return ball.radius_m / std::max(1 + ball.body_curvature_1pm * ball.radius_m, 0.25);
+  return ball.radius_m / std::max(1 + ball.body_curvature_1pm * ball.radius_m, kLeastSharper);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "config/response/layer_loss.h"
+#include "rt_core/contact/elastic/ball_on_body.h"
 
 namespace palpate::elastic {
 
@@ -256,11 +257,9 @@ class ClosedForm {
     flat_.radius_m = ball.radius_m;
     flat_.modulus_Pa = ball.modulus_Pa;
     flat_.paraboloid = ball.paraboloid;
-    // rt_core/contact/elastic/placed_law.cpp, curvature_factor.
-    const double scale = 1 / std::sqrt(std::clamp(1 + ball.body_curvature_1pm * ball.radius_m, 0.25, 16.0));
-    scale_ = scale;
-    m_ = scale * hertz_factor(ball);
-    by_beta_ = ball.radius_m * scale * scale * m_ * m_;
+    scale_ = 1 / std::sqrt(sharper(ball.body_curvature_1pm, ball.radius_m));
+    m_ = scale_ * hertz_factor(ball);
+    by_beta_ = ball.radius_m * scale_ * scale_ * m_ * m_;
   }
   // beta of the least squares for one change of c, and what they leave, of the force.
   struct Left {

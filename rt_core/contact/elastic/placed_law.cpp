@@ -1,5 +1,6 @@
 #include "rt_core/contact/elastic/placed_law.h"
 
+#include "rt_core/contact/elastic/ball_on_body.h"
 #include "rt_core/math.h"
 
 namespace palpate {
@@ -12,9 +13,9 @@ struct CurvatureFactor {
 };
 CurvatureFactor curvature_factor(const TipLaw& law, const ElasticRow& row) PALPATE_RT {
   if (law.half_power != 3) return {1, 0};
-  const Real radius = row.tip.margin_m, relative = 1 + row.curvature_1_per_m * radius;
-  const Real sum = clamp_to(relative, 0.25, 16.0), value = 1.0 / square_root(sum);
-  return {value, sum == relative ? -0.5 * value * radius / sum : 0.0};
+  const Real radius = row.tip.margin_m, sum = sharper(row.curvature_1_per_m, radius), value = 1.0 / square_root(sum);
+  const bool is_within = sum == 1 + row.curvature_1_per_m * radius;
+  return {value, is_within ? -0.5 * value * radius / sum : 0.0};
 }
 
 // A flat punch holds the width of its contact, and what its place takes off its give is one factor of its stiffness: at
