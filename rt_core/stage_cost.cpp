@@ -2,14 +2,15 @@
 
 #include "rt_core/contact/contact.h"
 #include "rt_core/surface/closest_point.h"
+#include "rt_core/tool/landing.h"
 #include "rt_core/tool/two_tools.h"
 
 namespace palpate {
 
 namespace {
 
-// What a stage takes whatever it finds to do, in the stages' order.
-constexpr double kStageInstructions[kStageCount] = {3500, 50, 2500, 1100, 4300, 1500, 400};
+// What a stage takes whatever it finds to do, in the stages' order; the last with what stands between them.
+constexpr double kStageInstructions[kStageCount] = {3800, 80, 2400, 1170, 4310, 1800, 960};
 
 }  // namespace
 
@@ -71,6 +72,7 @@ double most_stage_cost(const Model& model, Stage stage) noexcept {
   work.joint_loads = n.pieces * n.joints;
   work.pieces = 2 * n.pieces;
   if (has_two_tools(model)) work.joints = n.pieces, work.other_samples = work.other_balances = work.other_outputs = 1;
+  if (touches_in_parts(model)) work.landings = work.landings_again = (has_two_tools(model) ? 2 : 1) * (1 + kLandings);
   contact_method(method_of(model)).add_most_work(model, n, work);
   return counted_instructions(work, stage);
 }

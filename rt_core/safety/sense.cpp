@@ -165,7 +165,7 @@ void predict_tool(const Model& model, State& state, Scratch& scratch, const Pose
     const Pose end = held_end(model, from, before, beaten);
     if (beaten != 0) way = twist_between(end, held_end(model, to, before, beaten));
   }
-  if (!follow(model, state, way, tool)) scratch.status |= Status::kCouplingSingular;
+  if (!follow(model, state, way, tool, scratch.work.landings)) scratch.status |= Status::kCouplingSingular;
   state.tool_w = moved(before, tool);
   if (scratch.held_by_hand != 0) scratch.grip_w = held_end(model, to, state.tool_w, scratch.status);
 }

@@ -23,6 +23,8 @@ inline constexpr Real kPassed = -0.05;
 inline constexpr Real kAtVertex = 1e-6;
 // Newton has converged when neither the foot nor the height moves by more than this: far below an atom.
 inline constexpr Real kStill_m = 1e-14;
+// Of a fan, that cost what one of Newton's steps does.
+inline constexpr std::int32_t kSpokesPerStep = 16;
 
 struct Corners {
   Vec3 v[3], u[3];

@@ -19,15 +19,12 @@ foot::Corners corners_of(const Model& model, std::int32_t triangle) PALPATE_RT {
 
 }  // namespace
 
-// Of a fan, that cost what one of Newton's steps does.
-constexpr std::int32_t kSpokesPerStep = 16;
-
 SmoothFoot smooth_foot(const Model& model, Vec3 p, std::int32_t triangle) PALPATE_RT {
   std::int32_t steps = 0, passed = 0;
   SmoothFoot foot = foot::search<false>(
       model, [&model](std::int32_t t) PALPATE_RT { return corners_of(model, t); },
       [](int, Vec3 off) PALPATE_RT { return off; }, p, triangle, p, foot::kStill_m, kFootWalk, &steps, &passed);
-  foot.steps = steps + passed / kSpokesPerStep;
+  foot.steps = steps + passed / foot::kSpokesPerStep;
   return foot;
 }
 

@@ -45,11 +45,12 @@ class Landing {
 
   // By an active set (Lawson & Hanson 1974, chapter 23): the deepest end is held next, and what would have to pull is
   // let go. Taken in turn, the forces of two ends of one seat had not found each other after twelve turns.
-  void turn_aside(const Real* factor, Twist& motion) PALPATE_RT {
+  // Returns how many it took hold of.
+  std::int32_t turn_aside(const Real* factor, Twist& motion) PALPATE_RT {
     const Twist wanted = motion;
     for (std::int32_t i = 0; i < kLandings; ++i) {  // bound: kLandings
       const End* deepest = deepest_of(motion);
-      if (deepest == nullptr) return;
+      if (deepest == nullptr) return i;
       hold(*deepest, factor, wanted);
       share_out();
       motion = wanted;
@@ -58,6 +59,7 @@ class Landing {
         motion.rotation_rad += hold_[k].force_N * hold_[k].per_N.rotation_rad;
       }
     }
+    return kLandings;
   }
 
  private:
@@ -181,8 +183,9 @@ class Landing {
 
 }  // namespace
 
-void land(const Model& model, const State& state, const Pose& from, const Real* factor, Twist& motion) PALPATE_RT {
-  Landing(model, state, from).turn_aside(factor, motion);
+std::int32_t land(const Model& model, const State& state, const Pose& from, const Real* factor,
+                  Twist& motion) PALPATE_RT {
+  return Landing(model, state, from).turn_aside(factor, motion);
 }
 
 }  // namespace palpate

@@ -16,7 +16,8 @@ inline constexpr std::int32_t kLandings = 6;
 //   1/2 dm K dm   over   n . m + turn . m >= -gap   of every end,
 // dm being the change, K = L L^T, L = `factor`. Forces only push: with springs that began at every part which the
 // motion meets, pulling as well, a tube that left a seat between two arms was pulled to where three of their planes
-// cross, 37 um down in the seat, and the model said 370 N (2026-11-26).
-void land(const Model& model, const State& state, const Pose& from, const Real* factor, Twist& motion) PALPATE_RT;
+// cross, 37 um down in the seat, and the model said 370 N (2026-11-26). Returns how many ends it took hold of.
+std::int32_t land(const Model& model, const State& state, const Pose& from, const Real* factor,
+                  Twist& motion) PALPATE_RT;
 
 }  // namespace palpate

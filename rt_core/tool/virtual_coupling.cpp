@@ -67,8 +67,9 @@ bool add_reversals(const State& state, const Twist& motion, ContactStiffness& st
 }
 
 // Motion of the tool from `from` under a wrench: the tangent is right for slipping forwards, so try that first. False,
-// `motion` untouched, when it is singular.
-bool answer(const Model& model, const State& state, const Pose& from, const Wrench& wrench, Twist& motion) PALPATE_RT {
+// `motion` untouched, when it is singular. Adds to `landings` what looking for them took (Work).
+bool answer(const Model& model, const State& state, const Pose& from, const Wrench& wrench, Twist& motion,
+            std::int32_t& landings) PALPATE_RT {
   Real matrix[kDof * kDof];
   if (!factor(model, state.contact_stiffness, matrix)) return false;
   Twist answered = solved(matrix, wrench);
@@ -80,7 +81,7 @@ bool answer(const Model& model, const State& state, const Pose& from, const Wren
     if (!factor(model, stiffer, matrix)) return false;
     answered = solved(matrix, wrench);
   }
-  if (touches_in_parts(model)) land(model, state, from, matrix, answered);
+  if (touches_in_parts(model)) landings += 1 + land(model, state, from, matrix, answered);
   motion = answered;
   return true;
 }
@@ -96,20 +97,21 @@ Pose moved(const Pose& pose, const Twist& twist) PALPATE_RT {
           settled(normalised(small_rotation(twist.rotation_rad) * pose.orientation))};
 }
 
-bool follow(const Model& model, const State& state, const Twist& handle, Twist& tool) PALPATE_RT {
+bool follow(const Model& model, const State& state, const Twist& handle, Twist& tool,
+            std::int32_t& landings) PALPATE_RT {
   tool = handle;
   return answer(
       model, state, state.safety.tool_corrected_w,
       {model.params.coupling_N_per_m * handle.translation_m, model.params.coupling_Nm_per_rad * handle.rotation_rad},
-      tool);
+      tool, landings);
 }
 
 bool correct(const Model& model, const State& state, const Wrench& contact_w, const Wrench& coupling_on_tool_w,
-             Twist& correction) PALPATE_RT {
+             Twist& correction, std::int32_t& landings) PALPATE_RT {
   correction = {};
   return answer(model, state, state.tool_w,
                 {contact_w.force_N + coupling_on_tool_w.force_N, contact_w.torque_Nm + coupling_on_tool_w.torque_Nm},
-                correction);
+                correction, landings);
 }
 
 void balance_tool(const Model& model, const State& state, Scratch& scratch) PALPATE_RT {
@@ -119,7 +121,8 @@ void balance_tool(const Model& model, const State& state, Scratch& scratch) PALP
   const Wrench on_handle = coupling_wrench(model, scratch.grip_w, state.tool_w);
   const Wrench on_tool{-on_handle.force_N, -on_handle.torque_Nm};
   Twist correction;
-  if (!correct(model, state, contact_w, on_tool, correction)) scratch.status |= Status::kCouplingSingular;
+  if (!correct(model, state, contact_w, on_tool, correction, scratch.work.landings_again))
+    scratch.status |= Status::kCouplingSingular;
   scratch.tool_corrected_w = moved(state.tool_w, correction);
   if (scratch.held_by_hand != 0)
     scratch.tool_corrected_w = within_step(model, state, scratch.tool_corrected_w, scratch.status);

@@ -25,13 +25,14 @@ Pose moved(const Pose& pose, const Twist& twist) PALPATE_RT;
 // `state`. A region that slips has no stiffness along its stretch, but only forwards: where the motion would turn it
 // back its elastic stiffness counts. (Without that the tool, which has no mass, is thrown from one sense of sliding to
 // the other in every tick, for ever: measured as 3.3 N at 500 Hz on the handle.) Returns false, with `tool` equal to
-// `handle`, when the system is singular. Bound: kMaxRegions, two solves.
-bool follow(const Model& model, const State& state, const Twist& handle, Twist& tool) PALPATE_RT;
+// `handle`, when the system is singular. Adds to `landings` what landing.h counts. Bound: kMaxRegions, two solves.
+bool follow(const Model& model, const State& state, const Twist& handle, Twist& tool,
+            std::int32_t& landings) PALPATE_RT;
 
 // Newton correction of the tool pose: (K_contact + K_coupling)^-1 (contact wrench + coupling wrench), with the same
 // care. Returns false, with `correction` zero, when the system is singular.
 bool correct(const Model& model, const State& state, const Wrench& contact_w, const Wrench& coupling_on_tool_w,
-             Twist& correction) PALPATE_RT;
+             Twist& correction, std::int32_t& landings) PALPATE_RT;
 
 // Where the tool goes under this tick's contact wrench: scratch.tool_corrected_w. As it is when something drives it;
 // where it was when the wrench is no number. Status: kCouplingSingular.

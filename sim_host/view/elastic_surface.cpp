@@ -29,13 +29,14 @@ struct Amplitudes {
   explicit Amplitudes(const Model& model, const State& state) {
     soft_products(model.params.elastic_soft, state.elastic.soft_rootJ.data(), product);
   }
-  std::int32_t looked = 0, shown = 0;
+  std::int32_t looked = 0;
+  Work work;
   double product[kMaxTerms];
 };
 
 // Every tip that touches, on the surface as the soft modes carry it.
 std::vector<TouchingTip> touching_tips(const Model& model, const State& state, Amplitudes& amplitude) {
-  const CarriedSurface carried{model, amplitude.product, &amplitude.looked, &amplitude.shown};
+  const CarriedSurface carried{model, amplitude.product, &amplitude.looked, &amplitude.work};
   std::vector<TouchingTip> tips;
   for (std::int32_t i = 0; i < model.sizes.n_tool_point; ++i) {
     const PointState& point = state.point[i];
@@ -222,8 +223,9 @@ ElasticShape elastic_shape(const Model& model, const State& state) {
 }
 
 std::vector<Vec3> mode_displacement_m(const Model& model, const ElasticShape& shape) {
-  std::int32_t looked = 0, shown = 0;
-  const CarriedSurface carried{model, shape.soft.data(), &looked, &shown};
+  std::int32_t looked = 0;
+  Work work;
+  const CarriedSurface carried{model, shape.soft.data(), &looked, &work};
   std::vector<Vec3> displacement;
   for (std::int32_t v = 0; v < model.sizes.n_vertex; ++v)
     displacement.push_back(carried.displacement(v) + drawn_shapes::displacement_m(model, v, shape.drawn));

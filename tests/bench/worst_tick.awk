@@ -17,10 +17,11 @@ function finish(    stage) {
     if (contacts > 0 && !chosen) sum[stage] += cost[stage]
   }
 }
-# A method's steps have names of their own where methods share them.
+# A method's steps have names of their own where methods share them. What stands between the stages goes with the last.
 function name_of(text) {
   gsub(/\(anonymous namespace\)::/, "", text); sub(/\(.*/, "", text); sub(/^.*::/, "", text)
   if (text ~ /^find_/) return "find_rows"
+  if (text ~ /^(follow_settings|watch_delay|is_beyond_stated)$/) return "publish"
   return text ~ /^rub/ || text == "load_pieces" ? "account" : text
 }
 /^part: / { finish(); open_part = 0; total = 0; self = 0; in_tick = 0; split("", cost) }
@@ -28,16 +29,20 @@ function name_of(text) {
   open_part = 1; number = $6; label = $0; sub(/^.*Request: /, "", label); contacts = $8
   chosen = $NF == "chosen"
 }
-# The stage contact is counted in its parts.
-/^fn=/ { in_tick = ($0 ~ /^fn=palpate::(tick|contact)\(/); callee = "" }
+# What calls stages is none; contact is counted in its parts.
+function calls_stages(text) {
+  gsub(/\(anonymous namespace\)::/, "", text)
+  return text ~ /^palpate::(tick|render|find_forces|tick_as_set|contact)\(/
+}
+/^fn=/ { in_tick = calls_stages(substr($0, 4)); callee = "" }
 /^cfn=/ { callee = substr($0, 5); next }
 /^calls=/ { want = 1; next }
 /^[0-9+*-]/ {
   if (want) {
     want = 0
     if (callee ~ /^palpate::tick\(/) total += $2
-    if (in_tick && callee !~ /^palpate::contact\(/) cost[name_of(callee)] += $2
-  } else if (in_tick) cost["tick and contact themselves"] += $2
+    if (in_tick && !calls_stages(callee)) cost[name_of(callee)] += $2
+  } else if (in_tick) cost["publish"] += $2
 }
 END {
   finish()

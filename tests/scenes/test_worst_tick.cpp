@@ -82,8 +82,8 @@ TEST_P(WorstTick, TheScriptedHandNeverMeetsIt) {
 // docs/real_time_rules.md has those.
 double shortest_period_s(const std::string& name) {
   if (name == "snap_in_paper" || name == "pinch_block_nodal") return 5e-4;
-  if (name == "snap_in") return 2.5e-4;
-  return name.starts_with("grasp_") ? 1.25e-4 : 1e-4;
+  if (name == "snap_in") return 1.6e-4;
+  return name == "grasp_cylinder_3" ? 1.05e-4 : 1e-4;  // it bakes at 0.1 ms, where it states 2 % less
 }
 TEST_P(WorstTick, FitsAShorterPeriod) {
   EXPECT_LE(worst_tick_instructions(model_), kBakeInstructionsPerSecond * shortest_period_s(GetParam()));

@@ -12,8 +12,6 @@ constexpr Real kStillCarried_m = 1e-9;
 
 // Facets that a foot crosses in a tick, at most: what follows a tip at 4 m/s over edges of a millimetre.
 constexpr std::int32_t kMostCrossed = 5;
-// Spokes of a fan that cost what a term of a vertex does.
-constexpr std::int32_t kSpokesPerTerm = 2;
 // Ends of edges that a foot passes.
 constexpr std::int32_t kMostEnds = 2;
 // Triangles looked at about such an end.
@@ -84,7 +82,7 @@ Vec3 beyond_edge(const CarriedTriangle& last, const Triangle& beside, int edge) 
   std::int32_t apex = beside.vertex[0];
   for (const std::int32_t v : beside.vertex)  // bound: 3
     if (v != here.vertex[edge] && v != here.vertex[(edge + 1) % 3]) apex = v;
-  *last.shown += elastic_layout::terms(last.model.params.elastic_soft);
+  last.work->shown += elastic_layout::terms(last.model.params.elastic_soft);
   return carry(last.model, last.y, apex).position_w;
 }
 
@@ -149,7 +147,7 @@ EdgePlace come_along(const EdgePlace& on, CarriedTriangle& last, ElasticRow& row
 }  // namespace
 
 void find_carried_foot(Vec3 centre_w, Vec3 near_w, CarriedTriangle& last, ElasticRow& row) PALPATE_RT {
-  std::int32_t passed = 0;
+  std::int32_t steps = 0, passed = 0;
   row.foot = foot::search<true>(
       last.model,
       [&last](std::int32_t t) PALPATE_RT {
@@ -158,8 +156,8 @@ void find_carried_foot(Vec3 centre_w, Vec3 near_w, CarriedTriangle& last, Elasti
         return last.corners;
       },
       [&last](int corner, Vec3 off) PALPATE_RT { return last.vertex[corner].at_rest(off); }, centre_w, last.triangle,
-      near_w, kStillCarried_m, kMostCrossed, nullptr, &passed);
-  *last.shown += passed / kSpokesPerTerm;
+      near_w, kStillCarried_m, kMostCrossed, &steps, &passed);
+  last.work->foot_steps += steps + passed / foot::kSpokesPerStep;
 }
 
 EdgePlace place_on_edge(Vec3 centre_w, CarriedTriangle& last, ElasticRow& row) PALPATE_RT {
@@ -183,7 +181,6 @@ EdgePlace place_on_edge(Vec3 centre_w, CarriedTriangle& last, ElasticRow& row) P
   if (is_hollow || is_inside) return {};
   if (dot(out, over - (dot(over, edge) / squared_norm(edge)) * edge) > 0) {
     last.move_to(other);
-    *last.shown += 2 * elastic_layout::terms(last.model.params.elastic_soft);
     find_carried_foot(centre_w, on.place_w, last, row);
     if (row.foot.state == FootState::kFound) return {};
     last.move_to(here);

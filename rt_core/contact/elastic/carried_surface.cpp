@@ -301,7 +301,7 @@ Vec3 CarriedSurface::displacement(std::int32_t vertex) const PALPATE_RT {
 
 void CarriedSurface::place(const RoundTip& tip, std::int32_t triangle, Vec3 near_w, Real nearer_m, const Box& box,
                            ElasticRow& row, Real force_N) const PALPATE_RT {
-  CarriedTriangle last{model, y, shown, -1, {}, {}};
+  CarriedTriangle last{model, y, work, -1, {}, {}};
   row.tip = tip;
   row.has_along = false;
   const Vec3 centre_w = row.placed_w = tip.centre_w();
@@ -324,12 +324,7 @@ void CarriedSurface::place(const RoundTip& tip, std::int32_t triangle, Vec3 near
   const FacetSag sag = found ? smooth_sag(model, last, row.foot) : FacetSag{};
   row.travel_m = on.is_behind ? -kHuge : tip.margin_m - row.foot.height_m;
   row.leads_m = found || tip.is_of_solid() ? lead_of(tip, row.foot.normal_w) : 0.0;
-  if (!(row.travel_m + row.leads_m + nearer_m > 0) || tip.stands_on_end(row.foot.normal_w)) {
-    // Newton's steps to a foot that is too far; with the terms below they count themselves (24,962 instructions against
-    // 24,522 without, half_shell, 2026-11-23).
-    *shown += 2 * terms(model.params.elastic_soft);
-    return;
-  }
+  if (!(row.travel_m + row.leads_m + nearer_m > 0) || tip.stands_on_end(row.foot.normal_w)) return;
   row.has_slide = tip.is_ball() && !tip.is_of_part() && force_N > 0 && (found || on.edge >= 0);
   FootSlopes slopes;
   Real step_m = 0;
@@ -366,16 +361,18 @@ void CarriedSurface::place(const RoundTip& tip, std::int32_t triangle, Vec3 near
     else
       turn_with_foot(n, row, corner);
   });
-  *shown += (found ? 8 : 6) * priced_terms(model.params.elastic_soft) + (tip.is_ball() ? 0 : kSlideWork);
+  work->placed += 1;
+  work->shapes += (row.has_slide ? kMostOfShapes : kMostOfShapes - 1) * terms(model.params.elastic_soft);
+  work->lines += tip.is_ball() ? 0 : 1;
 }
 
 bool CarriedSurface::place_on_facet(Vec3 centre_w, std::int32_t triangle, ElasticRow& row) const PALPATE_RT {
   row.foot = {};
-  if (*looked >= surface_work_share(model.params)) return false;
+  if (*looked > kMostBefore) return false;
   const Vec3 moved = displacement(model.triangle[static_cast<std::size_t>(triangle)].vertex[0]);
   const SurfacePoint facet = closest_surface_point(model, centre_w - moved, kHuge, triangle, kMaxTipSearched);
   *looked += facet.looked;
-  *shown += terms(model.params.elastic_soft);
+  work->shown += terms(model.params.elastic_soft);
   if (!facet.found) return false;
   row.foot.triangle = facet.triangle;
   facet_weights(model, facet.triangle, facet.closest_w, row.foot.weight);

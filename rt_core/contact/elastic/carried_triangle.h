@@ -50,7 +50,7 @@ inline CarriedVertex carry(const Model& model, const Real* y, std::int32_t verte
 struct CarriedTriangle {
   const Model& model;
   const Real* y;
-  std::int32_t* shown;
+  Work* work;
   std::int32_t triangle = -1;
   CarriedVertex vertex[3];
   foot::Corners corners;
@@ -72,7 +72,7 @@ struct CarriedTriangle {
       for (int i = 0; from != nullptr && i < 3; ++i)
         if (from->vertex[i] == t.vertex[k]) known = old + i;
       vertex[k] = known != nullptr ? *known : carry(model, soft, y, t.vertex[k]);
-      *shown += known != nullptr ? 0 : elastic_layout::terms(soft);
+      work->shown += known != nullptr ? 0 : elastic_layout::terms(soft);
       corners.v[k] = vertex[k].position_w;
     }
   }
@@ -97,6 +97,7 @@ struct CarriedTriangle {
       const std::int32_t next = edge < 0 ? -1 : foot::across(model, triangle, edge);
       if (next < 0 || next == left) return;
       left = triangle;
+      work->crossed += 1;
       move_to(next);
     }
   }

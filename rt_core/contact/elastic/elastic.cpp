@@ -12,8 +12,8 @@
 #include "rt_core/contact/tips/tip_check.h"
 #include "rt_core/image_check.h"
 #include "rt_core/surface/closest_point.h"
+#include "rt_core/surface/foot_search.h"
 #include "rt_core/surface/plane_proof.h"
-#include "rt_core/tool/landing.h"
 
 namespace palpate {
 
@@ -118,6 +118,7 @@ void solve_pressed(const Model& model, State& state, Scratch& scratch, Count sof
     body.let_give(i == 0 ? before_N : force_N);
     const bool is_last = i + 1 == kSolvesOfFriction;
     RegionSolution result = solve_forces(load, laws, scratch, is_last, force_N);
+    scratch.work.mode_cubes += soft * soft * soft;
     scratch.work.linearised += i == 0 ? regions : (regions + 1) / 2;  // the second has most of what the first found
     const bool is_answer = result.foreseen || result.residual_m <= kTravelTolerance_m;  // else it tells no slip
     const bool goes_on = !is_last && is_answer && load.evaluations_left >= kLeastOfSolve && body.slips(force_N);
@@ -328,25 +329,35 @@ void create_work(const Model& model, void* block) noexcept {
   }
 }
 
-// A tip stands on the carried surface after kFootWalk triangles and a turn about a fan (twice at an edge, at half a
-// term a spoke) at worst, or on its facet; found twice in a tick that loses it.
+// A tip stands on the carried surface after kFootWalk facets and a turn about a fan, or on its facet; at an edge on
+// both of its sides. Found twice in a tick that loses it.
+void add_most_places(const Model& model, const SceneSizes& n, Work& work) noexcept {
+  const std::int32_t all = terms(model.params.elastic_soft), places = 2 * n.points;
+  work.shown += places * ((3 * (kFootWalk + 2) + 1) * all + kPushTerms);
+  work.crossed += places * kFootWalk;
+  work.foot_steps += 2 * places * (kFootNewtonSteps + kMaxTurn / foot::kSpokesPerStep);
+  work.placed += places;
+  work.lines += places;
+  work.shapes += places * kMostOfShapes * all;
+  if (!touches_in_parts(model)) return;
+  work.part_looks += n.points * kMostPartLooks;
+  work.part_visits += n.points;
+}
+
 void add_most_work(const Model& model, const SceneSizes& n, Work& work) noexcept {
   const std::int32_t soft = model.params.elastic_soft, pair = pairs(soft);
-  const std::int32_t place = (3 * (kFootWalk + 2) + 6) * priced_terms(soft) + kMaxTurn + kSlideWork;
   add_most_points(model, n, work);
   work.queries += 2 * n.points;  // a capsule asks three times
+  add_most_places(model, n, work);
   // A solve whose step fails ends with it; one that is foreseen may be looked at again.
   const std::int32_t evaluations = kTipEvaluations + 1, steps = kTipEvaluations + 2 * kSolvesOfFriction;
   add_most_regions(n, steps, evaluations, work);
   work.evaluations += evaluations + 2 * steps;
-  const bool in_parts = touches_in_parts(model);
-  work.shown += n.points * (2 * place + priced_terms(soft) + 2 * kPushTerms +
-                            (in_parts ? kMostPartLooks * kPartLookTerms + kPartVisitTerms : 0));
-  work.rubbed += in_parts ? 2 * kLandings : 0;
   work.soft_pairs += soft_work(pair);
   const std::int32_t alone = kSolvesOfFriction * (kSeriesIterations + 1), together = evaluations * n.regions;
   work.tip_laws += kLineLaws * (alone > together ? alone : together) + kPlaceLaws * n.regions;
   work.linearised += n.regions + (n.regions + 1) / 2;
+  work.mode_cubes += kSolvesOfFriction * soft * soft * soft;
   work.linked += n.regions * (n.regions + 1) / 2 * (model.params.elastic_linear + soft);
   work.soft_pairs_again += soft_work(pair) / 2;
 }

@@ -23,13 +23,6 @@ inline constexpr Real kLeastModulusRatio = 1e-6, kMostModulusRatio = 1e6;
 
 constexpr std::int32_t pairs(std::int32_t soft) { return soft * (soft + 1) / 2; }
 constexpr std::int32_t terms(std::int32_t soft) { return soft + pairs(soft); }
-// What summing them up costs, in terms as four modes have them: of fewer modes lanes and loops stay half empty. By
-// their own terms stages of heart_compass with one, two and three modes took up to 2.04, 1.34 and 1.005 times their
-// price; with so many none does, nor of the ring with one and two, which budget.work holds (2026-11-27).
-inline constexpr std::int32_t kLeastPricedTerms = 13;
-constexpr std::int32_t priced_terms(std::int32_t soft) {
-  return terms(soft) > kLeastPricedTerms ? terms(soft) : kLeastPricedTerms;
-}
 // a <= b
 constexpr std::int32_t pair_place(std::int32_t a, std::int32_t b, std::int32_t soft) {
   return a * soft - a * (a - 1) / 2 + b - a;

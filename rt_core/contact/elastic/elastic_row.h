@@ -13,6 +13,9 @@ namespace palpate {
 // middle of the body, where every face is as near, has no face of its own. What is found counts, and the next tick goes
 // on from there; how far the surface is at least stays true.
 inline constexpr std::int32_t kMaxTipSearched = 32;
+// Boxes and triangles that a tick may have looked at when another look for the surface is begun, which goes on to its
+// end. A tip that waits has its turn in the next ticks.
+inline constexpr std::int32_t kMostBefore = 36;
 
 // Of the deepest depth: where a line's law is told as a power of the depth.
 inline constexpr Real kTold = 0.25;
@@ -84,16 +87,15 @@ struct ElasticRow {
   alignas(32) Real along[kMaxLinearModes];  // m/J^1/2
 };
 
-// A capsule's step along its axis with the line's law and lean there, in terms of vertices summed up: with three modes
-// a row takes 1,700 to 2,600 instructions more than its vertices' terms cost (2026-11-26).
-inline constexpr std::int32_t kSlideWork = 48;
+// What a term of a tip's pull costs where the foot slides, and one less where it does not (Work::shapes).
+inline constexpr std::int32_t kMostOfShapes = 3;
 
 // The surface with the soft modes at given amplitudes.
 struct CarriedSurface {
   const Model& model;
   const Real* y;         // soft_products
   std::int32_t* looked;  // boxes and triangles this tick has looked at
-  std::int32_t* shown;   // terms of vertices summed up
+  Work* work;            // counts what the tick does beside
 
   // Displacement of a vertex.
   Vec3 displacement(std::int32_t vertex) const PALPATE_RT;

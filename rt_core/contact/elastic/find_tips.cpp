@@ -5,7 +5,6 @@
 #include "rt_core/contact/regions.h"
 #include "rt_core/surface/body_box.h"
 #include "rt_core/surface/closest_point.h"
-#include "rt_core/tool/landing.h"
 #include "rt_core/tool/two_tools.h"
 
 namespace palpate {
@@ -25,6 +24,9 @@ constexpr Real kBehind_m = 5e-4;
 constexpr Real kLeastLean = 0.01;
 // A part that is farther off than so, let go, is not placed.
 constexpr Real kNearPart_m = 4e-3;
+// Facets that come_down() looks at in a tick, after which no other part is looked for: a tube on its way into a clip
+// makes it 109, once in 8,000 ticks 148, and one that is thrown 251 (2026-11-28).
+constexpr std::int32_t kPartShare = 112;
 // Of half a capsule's axis.
 constexpr Real kThird = 1.0 / 3;
 // Another place on the axis is looked for where it is nearer by more. Of a jaw that comes down along a block's edge all
@@ -60,7 +62,7 @@ CarriedSurface look_ahead(const Model& model, State& state, Scratch& scratch) PA
   const std::int32_t soft = model.params.elastic_soft;
   soft_products(soft, state.elastic.soft_rootJ.data(), work_of(scratch).y_begun);
   for (std::int32_t a = 0; a < soft; ++a) state.elastic.soft_rootJ[a] += state.elastic.step_rootJ[a];
-  return look(model, state, scratch, scratch.work.soft_pairs, scratch.work.shown);
+  return look(model, state, scratch);
 }
 
 class Finder {
@@ -99,7 +101,7 @@ class Finder {
   void meet_others(bool all_overlap) PALPATE_RT {
     nearer_m_ = most_let_go_m(model_, work_, work_.reach_m, let_go_);
     if (all_overlap) return;
-    *surface_.shown += push_.count() * kPushTerms;
+    scratch_.work.shown += push_.count() * kPushTerms;
     push_m_ = push_.most_m(model_, work_.linear_reach_m);
   }
   bool overlaps(std::int32_t index) const PALPATE_RT { return stands_[index] && work_.row_of(index).travel_m > 0; }
@@ -161,6 +163,7 @@ class Finder {
     PointState& point = state_.point[index];
     RoundTip tip = tip_at(index);
     if (!touched && stays_apart(index, tip, point)) return false;
+    if (!touched && scratch_.work.part_looks >= kPartShare) return wait_for_turn(point);
     if (touched)
       stand_above(point.closest_w, point.normal_w, tip);
     else if (!come_near_part(index, tip, point))
@@ -168,17 +171,15 @@ class Finder {
     ElasticRow& row = work_.row_of(index);
     const Vec3 near = touched ? point.closest_w : tip.centre_w();
     const Real force_N = force_of(index);
-    *surface_.shown += kPartVisitTerms;
+    scratch_.work.part_visits += 1;
     surface_.place(tip, point.triangle, near, nearer_m_ + push_m_, box_, row, force_N);
     for (std::int32_t i = 0; i < kFurtherWalks && row.foot.state == FootState::kFar; ++i)
       surface_.place(tip, row.foot.triangle, tip.centre_w(), nearer_m_ + push_m_, box_, row, force_N);
     point.triangle = row.foot.triangle;
     point.closest_w = row.foot.foot_w;
     if (row.foot.state == FootState::kFar) {
-      hold(point);
       point.closest_w = displaced(point.triangle);
-      let_be(point);
-      return false;
+      return wait_for_turn(point);
     }
     // From behind: another part is in between.
     if (!touched && row.foot.height_m < 0) {
@@ -233,6 +234,11 @@ class Finder {
     tip_moved_m_ = -1;
     return tip_ = round_tip(model_, index, carrier_w(model_, state_, point.piece));
   }
+  bool wait_for_turn(PointState& point) PALPATE_RT {
+    hold(point);
+    let_be(point);
+    return false;
+  }
   static void let_be(PointState& point, Real apart_m = 0) PALPATE_RT {
     point.gap_m = kHuge;
     point.gap_bound_m = apart_m;
@@ -248,7 +254,7 @@ class Finder {
     const Vec3 moved_m = displaced(point.triangle) - foot::RestCorners(model_, point.triangle).v[0];
     const PartPlace place = come_down(model_, work_.seeds_of(index), tip.centre_w() - moved_m, point.triangle);
     point.triangle = place.triangle;
-    *surface_.shown += kPartLookTerms * place.looked;
+    scratch_.work.part_looks += place.looked;
     const foot::RestCorners facet(model_, place.triangle);
     const Vec3 *v = facet.v, up = unit_or(cross(v[1] - v[0], v[2] - v[0]), {});
     for (std::int32_t i = 0; i < kTurnsOfAxis; ++i) {  // bound: kTurnsOfAxis
@@ -318,7 +324,7 @@ class Finder {
     if (!(depth + nearer_m_ + push_m_ > 0)) return depth + nearer_m_ + push_m_;
     const Real alone = depth + max_of(dot(row.pull, let_go_, model_.params.elastic_soft), 0.0);
     if (alone > 0 || !(alone + push_m_ > 0)) return alone;
-    *surface_.shown += kPushTerms;
+    scratch_.work.shown += kPushTerms;
     return alone + push_.outwards_m(model_, row);
   }
 
@@ -357,7 +363,7 @@ class Finder {
     for (std::int32_t i = 0; i < places; ++i) {  // bound: 3
       if (places > 1) tip.along = ((i == 0 ? last : i <= last ? i - 1 : i) - 1) * (2 * kThird);
       const std::int32_t left = surface_work_share(model_.params) - scratch_.surface_work;
-      if (left <= 0) return hold(point);
+      if (left <= 0 || (i == 0 && scratch_.surface_work > kMostBefore)) return hold(point);
       const bool beside = best.found && best.signed_distance_m > kNearer_m;
       const std::int32_t most = left < kMaxTipSearched ? left : kMaxTipSearched;
       const Vec3 rest = tip.centre_w() - moved;
@@ -459,11 +465,9 @@ void find_elastic_tips(const Model& model, State& state, Scratch& scratch) PALPA
     all_overlap = all_overlap && (points == 1 || (touched[i] && finder.overlaps(i)));
   }
   finder.meet_others(all_overlap);
-  // A solid's parts take turns: near a crest all of its edges are about as near, and with the first ones first what a
-  // tick may look at never came to the face that lay on it (2026-11-26).
-  const bool in_turns =
-      is_of_solid(model.piece[static_cast<std::size_t>(model.tool_point[static_cast<std::size_t>(points - 1)].piece)]);
-  const auto first = in_turns ? static_cast<std::int32_t>(state.tick % static_cast<std::uint64_t>(points)) : 0;
+  // Tips take turns: near a crest all edges of a solid are about as near, and with the first ones first what a tick may
+  // look at never came to the face that lay on it (2026-11-26).
+  const auto first = static_cast<std::int32_t>(state.tick % static_cast<std::uint64_t>(points));
   for (std::int32_t i = 0; i < points; ++i) {  // bound: kMaxPieces
     const std::int32_t index = first + i < points ? first + i : first + i - points;
     touched[index] ? finder.settle(index) : finder.visit(index);
@@ -473,8 +477,6 @@ void find_elastic_tips(const Model& model, State& state, Scratch& scratch) PALPA
   scratch.work.points += points > pieces ? points : pieces;
   scratch.work.found += scratch.contact_count;
   scratch.work.looks = scratch.surface_work;
-  // A tool that comes to parts is balanced once more for each landing, for what the friction of two regions takes.
-  if (touches_in_parts(model)) scratch.work.rubbed += 2 * kLandings;
   group_points(model, state, scratch, nullptr);
 }
 

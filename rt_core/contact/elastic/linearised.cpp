@@ -95,13 +95,12 @@ void answer(const Real* factor, const Real* load, Count n, Real* moved) PALPATE_
 
 }  // namespace
 
-CarriedSurface look(const Model& model, const State& state, Scratch& scratch, std::int32_t& summed,
-                    std::int32_t& shown) PALPATE_RT {
+CarriedSurface look(const Model& model, const State& state, Scratch& scratch) PALPATE_RT {
   ElasticWork& work = work_of(scratch);
   soft_products(model.params.elastic_soft, state.elastic.soft_rootJ.data(), work.y);
   soft_energy(model, state.elastic.soft_rootJ.data(), work.y, work.energy);
-  summed += soft_work(pairs(model.params.elastic_soft));
-  return {model, work.y, &scratch.surface_work, &shown};
+  scratch.work.soft_pairs += soft_work(pairs(model.params.elastic_soft));
+  return {model, work.y, &scratch.surface_work, &scratch.work};
 }
 
 void let_go(const Model& model, const SoftEnergy& energy, Real* step) PALPATE_RT {

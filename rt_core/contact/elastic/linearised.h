@@ -12,9 +12,8 @@ namespace palpate {
 // Entries that the body's energy sums up, and what comes beside them for as much.
 constexpr std::int32_t soft_work(std::int32_t pair) noexcept { return pair * (pair + 20) + 600; }
 
-// Body at its amplitudes: products and energy. What they take, and what places on it will, is counted in two units.
-CarriedSurface look(const Model& model, const State& state, Scratch& scratch, std::int32_t& summed,
-                    std::int32_t& shown) PALPATE_RT;
+// Body at its amplitudes: products and energy.
+CarriedSurface look(const Model& model, const State& state, Scratch& scratch) PALPATE_RT;
 // Step of the amplitudes when every force is let go, with H of no force.
 void let_go(const Model& model, const SoftEnergy& energy, Real* step) PALPATE_RT;
 // Of a tool point: a capsule that touches all over has its point in its middle; at one end, there.

@@ -29,11 +29,9 @@ struct PartPlace {
   bool is_there;        // no facet beside it is nearer; else the next tick goes on
   std::int32_t looked;  // facets looked at
 };
-// Facets that come_down() goes over, with what is beside and beyond each, and what one costs in terms of a vertex.
+// Facets that come_down() goes over, with what is beside and beyond each.
 inline constexpr std::int32_t kMostDown = 6;
-inline constexpr std::int32_t kMostPartLooks = 1 + kPartSeeds + 9 * kMostDown, kPartLookTerms = 7;
-// What a visit takes beside these and beside its Newton steps, in the same terms.
-inline constexpr std::int32_t kPartVisitTerms = 60;
+inline constexpr std::int32_t kMostPartLooks = 1 + kPartSeeds + 9 * kMostDown;
 // From `triangle` on over facets while they come nearer to a place on the body at rest, from those that look away from
 // it to those that do not first; or from a seed that is nearer. Newton's steps may lead a foot to where a part is
 // farthest. Bound: kMostDown facets.
