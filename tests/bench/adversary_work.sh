@@ -27,7 +27,8 @@ for image in "$images"/*.pal "$work"/few/*.pal; do
   valgrind --tool=callgrind --quiet --instr-atstart=no --collect-atstart=no --combine-dumps=yes --compress-strings=no --compress-pos=no \
     --callgrind-out-file="$work/counts" "$program" "$image" "$ticks" "$counted" "$seed" >"$work/log" 2>&1 ||
     { cat "$work/log"; exit 1; }
-  awk -v each=1 -f "$here/worst_tick.awk" "$work/counts" >"$work/table" || { cat "$work/table"; exit 1; }
+  stages=$(awk '$1 == "bound" { print $2 }' "$work/log" | tr '\n' ' ')
+  awk -v each=1 -v functions="$stages" -f "$here/worst_tick.awk" "$work/counts" >"$work/table" || { cat "$work/table"; exit 1; }
   awk -v scene="$(basename "$image" .pal)" -v most="$most_percent" -v file="$here/certified.txt" '
     BEGIN { while ((getline line < file) > 0) if (line !~ /^#/) { split(line, field); limits[field[1]] = field[3] } }
     $1 == "each" { took[$2, $3] = $4; next }

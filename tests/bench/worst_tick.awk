@@ -49,7 +49,10 @@ END {
   if (ticks == 0 || worst == 0) { print "no tick was counted"; exit 1 }
   # In the tick's order; a callee that is no stage (a compiler's memset, say) comes last.
   stages = split(functions, order, " ")
-  for (i = 1; i <= stages; i++) delete others[order[i]]
+  for (i = 1; i <= stages; i++) {
+    if (!(most[order[i]] > 0)) { print order[i] ": counted in no tick; has it another name, or another caller?"; exit 1 }
+    delete others[order[i]]
+  }
   for (s in others) order[++stages] = s
   printf "%-22s %12s %12s %16s\n", "stage (instructions)", "worst tick", "most, any", "mean, in contact"
   for (i = 1; i <= stages; i++) {

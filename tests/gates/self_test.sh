@@ -167,6 +167,28 @@ counted_on_arm fail "a scene that was not counted" "$ring"
 counted_on_arm fail "a program that did not run" "$ring${snap}snap_in no such file\n"
 counted_on_arm fail "nothing" ''
 
+stages_counted() { # pass|fail NAME CALLER: a tick of two stages, one of which CALLER calls
+  cat >"$work/counts" <<COUNTS
+part: 1
+desc: Trigger: Client Request: tick 0 contacts 1 regions 1
+fn=(below main)
+cfn=palpate::tick(palpate::Model const&)
+calls=1 0
+1 300
+fn=palpate::tick(palpate::Model const&)
+cfn=palpate::sense(palpate::Model const&)
+calls=1 0
+1 100
+fn=$3
+cfn=palpate::publish(palpate::State&)
+calls=1 0
+1 200
+COUNTS
+  expect "$1" "stages of a tick, $2" awk -v functions="sense publish" -f "$gates/../bench/worst_tick.awk" "$work/counts"
+}
+stages_counted pass "called from where they are" 'palpate::(anonymous namespace)::render(palpate::Model const&)'
+stages_counted fail "called from elsewhere" 'palpate::(anonymous namespace)::play(palpate::Model const&)'
+
 program() { # NAME TEXT LIBRARY...
   local name=$1
   printf '%b' "$2" >"$work/$name.cpp"
