@@ -32,15 +32,16 @@ constexpr double kReserveOfElasticRows = 1.8, kReserveOfElasticSolve = 2.2;
 // Points' rows end with the share of surface work: what varies is beside it. How many regions their solve has varies
 // most: climbing found 1.47 times the dearest solve of grasp_cylinder_5 that its bake did (2026-11-28).
 constexpr double kReserveOfSharedRows = 1.2, kReserveOfPointsSolve = 1.6;
-bool is_shared(const Model& model, Stage stage) {
+bool is_of_points(const Model& model) {
   const Method method = method_of(model);
-  return stage == Stage::kFindRows && method != Method::kElastic && method != Method::kNodes;
+  return method != Method::kElastic && method != Method::kNodes;
 }
+bool is_shared(const Model& model, Stage stage) { return stage == Stage::kFindRows && is_of_points(model); }
 double reserve_of(const Model& model, Stage stage) {
-  if (is_shared(model, stage)) return kReserveOfSharedRows;
-  if (method_of(model) != Method::kElastic)
-    return is_shared(model, Stage::kFindRows) && stage == Stage::kSolve ? kReserveOfPointsSolve : kReserve;
-  return stage == Stage::kFindRows ? kReserveOfElasticRows : stage == Stage::kSolve ? kReserveOfElasticSolve : kReserve;
+  const bool elastic = method_of(model) == Method::kElastic, points = is_of_points(model);
+  if (stage == Stage::kFindRows) return points ? kReserveOfSharedRows : elastic ? kReserveOfElasticRows : kReserve;
+  if (stage == Stage::kSolve) return points ? kReserveOfPointsSolve : elastic ? kReserveOfElasticSolve : kReserve;
+  return kReserve;
 }
 int effort(const Model& model) { return method_of(model) == Method::kElastic ? 4 : 1; }
 // What a tick looks at; points it does not suffice for wait some ticks, on the plane they had. Hands on scripted paths

@@ -11,10 +11,9 @@
 namespace palpate {
 
 struct TickCost {
-  std::int32_t looks_max =
-      0;                    // boxes and triangles of the surface that a tick may look at; 0: the method looks at none
-  double found = 0;         // instructions: the dearest tick of each stage that was found, summed up
-  double instructions = 0;  // stated of the worst tick
+  std::int32_t looks_max = 0;  // boxes and triangles that a tick may look at; 0: the method looks at none
+  double found = 0;            // instructions: the dearest tick of each stage that was found, summed up
+  double instructions = 0;     // stated of the worst tick
 };
 
 // Fills stage_cost with what no tick can exceed, for an image that is looked at before it is ticked.

@@ -57,7 +57,7 @@ inline constexpr Real kEnoughStepped_m = [] {
 }();
 
 template <class Laws>
-inline constexpr std::int32_t kMostEvaluations = 1 + Laws::kIterations*(kStepHalvings + 1);
+inline constexpr std::int32_t kMostEvaluations = 1 + (kStepHalvings + 1) * Laws::kIterations;
 
 template <class Laws>
 std::int32_t most_evaluations(const Laws& laws) PALPATE_RT {

@@ -30,8 +30,8 @@ constexpr std::int32_t kPartShare = 112;
 // Of half a capsule's axis.
 constexpr Real kThird = 1.0 / 3;
 // Another place on the axis is looked for where it is nearer by more. Of a jaw that comes down along a block's edge all
-// three are equally near, and to find that out two of them looked at 109 boxes and triangles of the 96 that a tick may;
-// now at 48 (2026-11-26).
+// three are equally near, and to find that out two of them looked at 109 boxes and triangles of the 96 that a tick
+// might; now at 48 (2026-11-26).
 constexpr Real kNearer_m = 1e-6;
 // Between two looks at a part of a solid that cannot press as it lies.
 constexpr std::uint64_t kTurns = 16;
@@ -163,7 +163,7 @@ class Finder {
     PointState& point = state_.point[index];
     RoundTip tip = tip_at(index);
     if (!touched && stays_apart(index, tip, point)) return false;
-    if (!touched && scratch_.work.part_looks >= kPartShare) return wait_for_turn(point);
+    if (!touched && part_looks_ >= kPartShare) return wait_for_turn(point);
     if (touched)
       stand_above(point.closest_w, point.normal_w, tip);
     else if (!come_near_part(index, tip, point))
@@ -254,7 +254,8 @@ class Finder {
     const Vec3 moved_m = displaced(point.triangle) - foot::RestCorners(model_, point.triangle).v[0];
     const PartPlace place = come_down(model_, work_.seeds_of(index), tip.centre_w() - moved_m, point.triangle);
     point.triangle = place.triangle;
-    scratch_.work.part_looks += place.looked;
+    part_looks_ += place.looked;
+    scratch_.work.part_looks = part_looks_;
     const foot::RestCorners facet(model_, place.triangle);
     const Vec3 *v = facet.v, up = unit_or(cross(v[1] - v[0], v[2] - v[0]), {});
     for (std::int32_t i = 0; i < kTurnsOfAxis; ++i) {  // bound: kTurnsOfAxis
@@ -443,6 +444,7 @@ class Finder {
   RoundTip tip_{};   // of the point visited last
   std::int32_t tip_of_ = -1;
   Real tip_moved_m_ = -1;  // in this tick; below 0: not asked
+  std::int32_t part_looks_ = 0;
   bool stands_[kMaxPieces];
   Real bound_m_[kMaxPieces];
 };
