@@ -141,13 +141,15 @@ void Renderer::choose_scale() {
 void Renderer::draw_body() {
   RenderMesh mesh;
   std::vector<Vec3> rest_m;
+  const std::vector<double> value =
+      on_surface_ ? drawn_values(surface_, colours_) : std::vector<double>(surface_.rest_m.size());
   for (std::size_t t = 0; t < surface_.triangle.size(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
       const auto v = static_cast<std::size_t>(surface_.triangle[t][k]);
       mesh.position_m.push_back(surface_.position_m[v]);
       rest_m.push_back(surface_.rest_m[v]);
       mesh.normal.push_back(surface_.corner_normal.empty() ? surface_.normal[v] : surface_.corner_normal[t][k]);
-      mesh.value.push_back(on_surface_ ? surface_value(surface_, v, options_.colour) : 0);
+      mesh.value.push_back(value[v]);
     }
     const auto first = static_cast<std::int32_t>(3 * t);
     mesh.triangle.push_back({first, first + 1, first + 2});

@@ -43,6 +43,11 @@ ColourScale colour_scale(SurfaceColour shown, double largest, bool fixed);
 
 // Of a vertex, and the largest of a body, m or Pa; 0 where there is none.
 double surface_value(const DeformedSurface& surface, std::size_t vertex, SurfaceColour shown);
+// Of all vertices, as they are coloured: evened out between neighbours, by no more than kEvenShare of the scale, which
+// no eye reads off a legend. Where a body moves nearly as a whole its values are as rough as they are different, and a
+// contour line ran zigzag from vertex to vertex.
+inline constexpr double kEvenShare = 0.01;
+std::vector<double> drawn_values(const DeformedSurface& surface, const ColourScale& scale);
 double largest_value(const DeformedSurface& surface, const AnchorField& anchors, SurfaceColour shown);
 
 // Arrows of one scale: a newton has the same length wherever it is drawn, and for the whole run.
