@@ -29,19 +29,19 @@ constexpr double kReserve = 1.4, kReserveOfQuery = 1.25, kReserveOfAll = 0.12;
 // million found a solve of half_shell 2.3 times, and rows of ring 1.6 times the dearest of the baker's
 // (2026-11-22).
 constexpr double kReserveOfElasticRows = 1.8, kReserveOfElasticSolve = 2.2;
-// Points' rows end with the share of surface work: what varies is beside it. How many regions their solve has varies
-// most: climbing found 1.47 times the dearest solve of grasp_cylinder_5 that its bake did (2026-11-28).
-constexpr double kReserveOfSharedRows = 1.2, kReserveOfPointsSolve = 1.6;
+// How many regions the solve of points has varies most: climbing found 1.47 times the dearest of grasp_cylinder_5 that
+// its bake did (2026-11-28).
+constexpr double kReserveOfPointsSolve = 1.6;
 bool is_of_points(const Model& model) {
   const Method method = method_of(model);
   return method != Method::kElastic && method != Method::kNodes;
 }
 bool is_shared(const Model& model, Stage stage) { return stage == Stage::kFindRows && is_of_points(model); }
 double reserve_of(const Model& model, Stage stage) {
-  const bool elastic = method_of(model) == Method::kElastic, points = is_of_points(model);
-  if (stage == Stage::kFindRows) return points ? kReserveOfSharedRows : elastic ? kReserveOfElasticRows : kReserve;
-  if (stage == Stage::kSolve) return points ? kReserveOfPointsSolve : elastic ? kReserveOfElasticSolve : kReserve;
-  return kReserve;
+  const bool elastic = method_of(model) == Method::kElastic;
+  if (stage == Stage::kFindRows && elastic) return kReserveOfElasticRows;
+  if (stage != Stage::kSolve) return kReserve;
+  return elastic ? kReserveOfElasticSolve : is_of_points(model) ? kReserveOfPointsSolve : kReserve;
 }
 int effort(const Model& model) { return method_of(model) == Method::kElastic ? 4 : 1; }
 // What a tick looks at; points it does not suffice for wait some ticks, on the plane they had. Hands on scripted paths

@@ -89,7 +89,7 @@ TEST_F(ElasticClip, APartIsTheSameFromEndToEnd) {
     Bench bench{model()};
     // Comes to the seat evenly, or with its end at z = -5 mm.
     const double turn = aside * 2e-3, height_m = 2e-6 + 5e-3 * turn;
-    bench.tick_at({{0, 1e-4, 0}, {}}, {});
+    for (int i = 0; i < 3; ++i) bench.tick_at({{0, 1e-4, 0}, {}}, {});  // parts that were far take turns
     bench.tick_at({{0, height_m, 0}, small_rotation({turn, 0, 0})}, {});
     bench.tick_at({{0, height_m, 0}, small_rotation({turn, 0, 0})}, {});
     bench.tick_at({{0, -2e-6, 0}, {}}, {});
