@@ -78,21 +78,20 @@ double surface_value(const DeformedSurface& surface, std::size_t vertex, Surface
 }
 
 std::vector<double> drawn_values(const DeformedSurface& surface, const ColourScale& scale) {
-  constexpr int kPasses =
-      80;  // over some nine edges, the root of as many; with 12 the line on ellipsoid_mallet was wavy
+  constexpr int kPasses = 80;  // over some nine edges; with 12 the line on ellipsoid_mallet was wavy
   const std::size_t vertices = surface.rest_m.size();
   std::vector<double> solved(vertices);
   for (std::size_t v = 0; v < vertices; ++v) solved[v] = surface_value(surface, v, scale.shown);
   std::vector<double> value = solved, sum(vertices), count(vertices);
+  for (const std::array<std::int32_t, 3>& triangle : surface.triangle)
+    for (const std::int32_t v : triangle) count[static_cast<std::size_t>(v)] += 1;
   const double most = kEvenShare * scale.top;
   for (int pass = 0; pass < kPasses; ++pass) {
     std::ranges::fill(sum, 0.0);
-    std::ranges::fill(count, 0.0);
     for (const std::array<std::int32_t, 3>& triangle : surface.triangle) {
       for (std::size_t k = 0; k < 3; ++k) {
         const auto v = static_cast<std::size_t>(triangle[k]), next = static_cast<std::size_t>(triangle[(k + 1) % 3]);
         sum[v] += value[next];  // the other way in the triangle beside
-        count[v] += 1;
       }
     }
     for (std::size_t v = 0; v < vertices; ++v)

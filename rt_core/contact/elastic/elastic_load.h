@@ -167,8 +167,8 @@ struct ElasticLoad : TipLaws {
   Real coupling_J(std::int32_t r, Real force_N, Real) const PALPATE_RT { return far_energy_J(own[r].far, force_N); }
   // Forces and shifts of several regions, to `enough_m` (solve_regions()). Of a solve that is farther off than
   // kNoAnswer_m the energy of the pairs may have no least: their second order, cubic in the forces, is told up to those
-  // of the last tick. Without it there is one: then it is dropped, where there is one and evaluations are left, and
-  // `given_up` tells what the first solve took.
+  // of the last tick. Without it there is a least: so it is dropped, if the pairs have any and evaluations are left,
+  // and `given_up` tells what the first solve took.
   static constexpr Real kNoAnswer_m = 1e-4;
   RegionSolution solve(RegionSystem& system, Real enough_m, bool roughly, RegionSolution& given_up) PALPATE_RT;
   // Goes on with one that may have been foreseen, to its end.
