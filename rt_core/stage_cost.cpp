@@ -2,6 +2,7 @@
 
 #include "rt_core/contact/contact.h"
 #include "rt_core/surface/closest_point.h"
+#include "rt_core/surface/overlap.h"
 #include "rt_core/tool/landing.h"
 #include "rt_core/tool/two_tools.h"
 
@@ -35,9 +36,9 @@ void add_most_points(const Model& model, const SceneSizes& n, Work& work) noexce
   work.found += n.contacts;
   work.pairs += n.contacts * n.contacts + kMaxContacts * spare;
   work.clusters += n.contacts;
-  work.recalls += n.regions * kMaxRegions * n.contacts;
+  work.recalls += (n.regions + kMaxRegions) * n.contacts;
   work.scans += kMaxRegions * n.points;
-  work.supports += kMaxRegions * kGjkSupportBudget;
+  work.supports += kGjkSupportBudget + kMostSupportsBeyond;
 }
 
 void add_most_regions(const SceneSizes& n, std::int32_t steps, std::int32_t evaluations, Work& work) noexcept {

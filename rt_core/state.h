@@ -355,14 +355,15 @@ struct Scratch {
   Wrench contact_wrench_w;  // sum over regions, on the tool, about the tool's origin
   double energy_J = 0;
   double residual_m = 0;
-  std::int32_t surface_work = 0;  // boxes and triangles this tick looked at: Work::looks
-  Work work;                      // what else it did so far
-  RowsByRegion rows;              // points, tips: written by solve
-  RegionSystem system;            // of the region solver
-  ContactStiffness stiffness;     // of normal loads so far
-  std::int32_t driven = 0;        // the tool's pose is given, nobody holds it by a spring
-  double strain = 0;              // largest at the gauges (nodal)
-  Pose tool_corrected_w;          // where the tool balances
+  std::int32_t surface_work = 0;   // boxes and triangles this tick looked at: Work::looks
+  std::int32_t support_calls = 0;  // of its overlap tests: Work::supports
+  Work work;                       // what else it did so far
+  RowsByRegion rows;               // points, tips: written by solve
+  RegionSystem system;             // of the region solver
+  ContactStiffness stiffness;      // of normal loads so far
+  std::int32_t driven = 0;         // the tool's pose is given, nobody holds it by a spring
+  double strain = 0;               // largest at the gauges (nodal)
+  Pose tool_corrected_w;           // where the tool balances
   Pose grip_w;                    // where the coupling is held: the handle, or as far towards it as the device can pull
   std::int32_t held_by_hand = 0;  // Drive::kDevice: forces and steps are bounded
   OtherFound other;               // of the second of two tools

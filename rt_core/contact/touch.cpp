@@ -339,7 +339,7 @@ std::int32_t point_at(const Model& model, const State& state, const Region& regi
 
 void collide(const Model& model, State& state, Scratch& scratch) PALPATE_RT {
   scratch.contact_count = 0;
-  scratch.surface_work = 0;
+  scratch.surface_work = scratch.support_calls = 0;
   if (!is_finite(state.tool_w)) {
     for (PointState& point : state.point) forget(point);  // bound: kMaxToolPoints
     return;
@@ -361,13 +361,19 @@ bool still_touching(const Model& model, State& state, Scratch& scratch, const Re
   const std::int32_t point = point_at(model, state, region);
   scratch.work.scans += static_cast<std::int32_t>(model.tool_point.size());
   if (point < 0) return false;
+  const std::int32_t left = kGjkSupportBudget - scratch.support_calls;
+  if (left < kLeastSupports) {
+    scratch.status |= Status::kOverlapInconclusive;
+    return true;
+  }
   const Triangle& triangle = model.triangle[static_cast<std::size_t>(state.point[point].triangle)];
   Vec3 corner[3];
   for (int k = 0; k < 3; ++k) corner[k] = model.vertex_m[static_cast<std::size_t>(triangle.vertex[k])];  // bound: 3
   const std::int32_t piece = model.tool_point[static_cast<std::size_t>(point)].piece;
   const OverlapResult result = overlap_piece_triangle(model, model.piece[static_cast<std::size_t>(piece)],
-                                                      carrier_w(model, state, piece), corner);
-  scratch.work.supports += result.support_calls;
+                                                      carrier_w(model, state, piece), corner, left);
+  scratch.support_calls += result.support_calls;
+  scratch.work.supports = scratch.support_calls;
   if (result.support_calls > state.high_water.gjk_support_calls) {
     state.high_water.gjk_support_calls = result.support_calls;
   }

@@ -87,7 +87,7 @@ int intersect(Pair& pair) PALPATE_RT {
 }
 
 // What the closed form takes, in supports.
-constexpr std::int32_t kClosedFormSupports = 2;
+constexpr std::int32_t kClosedFormSupports = kLeastSupports;
 
 // Squared distance of a triangle from the segment of length 2 `half` along z about the origin. Where they do not meet
 // the nearest two points are an end and a place on the triangle, or a place on the segment and one on an edge.

@@ -16,6 +16,7 @@
 #include "sim_host/tick_memory.h"
 #include "tests/bench/dearest_ticks.h"
 #include "tests/support/image_file.h"
+#include "tests/support/work_text.h"
 
 namespace palpate::test {
 namespace {
@@ -30,12 +31,7 @@ void print(int tick, const Work& work) {
   std::printf("work %d", tick);
   for (int i = 0; i < kStageCount; ++i)
     std::printf(" %s %.0f", kStageFunctions[i], counted_instructions(work, static_cast<Stage>(i)));
-  std::printf(" units");
-#define PALPATE_UNIT(unit, stage, price, what) \
-  if (work.unit != 0) std::printf(" %s %d", #unit, work.unit);
-  PALPATE_WORK_UNITS(PALPATE_UNIT)
-#undef PALPATE_UNIT
-  std::printf("\n");
+  std::printf(" units%s\n", work_text(work).c_str());
 }
 
 // What a tick begins with.

@@ -21,7 +21,7 @@ TEST(Overlap, AgreesWithTheDistanceOn20000RandomPairs) {
     const Vec3 t[3] = {random_vec(rng, 0.02), random_vec(rng, 0.02), random_vec(rng, 0.02)};
     const OverlapResult result = overlap_piece_triangle(model, piece, tool, t);
     most_calls = std::max(most_calls, result.support_calls);
-    ASSERT_LE(result.support_calls, kGjkSupportBudget + 2);
+    ASSERT_LE(result.support_calls, kGjkSupportBudget + kMostSupportsBeyond);
     const ConvexDistance d = distance_piece_triangle(model, piece, tool * piece.pose_tool, t);
     if (result.overlap == Overlap::kInconclusive) {
       ++inconclusive;
@@ -57,7 +57,7 @@ TEST(Overlap, DegeneratePairsStayWithinTheBudget) {
     for (Vec3& v : vertex) v = corner(size);
     const Vec3 t[3] = {corner(size), corner(size), corner(size)};
     const OverlapResult result = overlap_piece_triangle(model, hull, {}, t);
-    ASSERT_LE(result.support_calls, kGjkSupportBudget + 2);
+    ASSERT_LE(result.support_calls, kGjkSupportBudget + kMostSupportsBeyond);
   }
 }
 

@@ -36,7 +36,7 @@ struct Rig {
   }
   void step(const std::vector<Touch>& touches) {
     scratch->status = 0;
-    scratch->contact_count = 0;
+    scratch->contact_count = scratch->support_calls = 0;
     for (std::size_t i = 0; i < touches.size(); ++i) {
       Contact& c = place_in_order(*scratch, touches[i].point);
       c = Contact{};
@@ -311,6 +311,21 @@ TEST(Regions, AnInconclusiveOverlapHoldsTheMemoryAndSaysSo) {
     ASSERT_TRUE(rig.scratch->status & Status::kOverlapInconclusive);
     ASSERT_EQ(rig.used(), 1);
   }
+}
+
+TEST(Regions, OverlapTestsOfATickShareTheirBudget) {
+  Rig rig;
+  const Vec3 on_top = rig.body.model.vertex_m[static_cast<std::size_t>(rig.body.model.triangle[0].vertex[0])];
+  std::vector<Touch> touches;
+  for (int i = 0; i < kMaxRegions; ++i) touches.push_back({i, on_top + Vec3{0.02 * i, 0, 0}});
+  rig.step(touches);
+  rig.state->tool_w = {on_top, {}};  // dips into the triangle that all of them touched last
+  rig.step({});
+  rig.step({});
+  EXPECT_GT(rig.scratch->support_calls, kGjkSupportBudget - 2 * kLeastSupports);
+  EXPECT_LE(rig.scratch->support_calls, kGjkSupportBudget + kMostSupportsBeyond);
+  EXPECT_TRUE(rig.scratch->status & Status::kOverlapInconclusive);
+  EXPECT_EQ(rig.used(), kMaxRegions) << "what could not be decided is kept";
 }
 
 TEST(Regions, OverflowKeepsTheDeepest) {

@@ -305,7 +305,7 @@ void add_most_work(const Model& model, const SceneSizes& n, Work& work) noexcept
   work.slid += c;
   work.rubbed += n.regions;
   work.grouped += c;
-  work.joined += c * c + n.regions * kMaxRegions * c;
+  work.joined += c * c + (n.regions + kMaxRegions) * c;
   work.summed += c * (c + 24) + 3 * c * 6 * kMaxStrainGauges / 8;
 }
 
