@@ -41,8 +41,8 @@ inline constexpr std::int32_t kMaxMutualAnchors = kMaxAnchors - (kMaxRegions - 1
 // Depth of the hierarchy's traversal stack: a 4-wide tree over 4 million leaves needs 3 * log4(4e6) = 33 entries.
 // The loader refuses a deeper tree; Status::kTraversalTruncated if it is met all the same.
 inline constexpr std::int32_t kMaxTraversalStack = 64;
-// Support callbacks of all ccdGJKIntersect calls of one tick. Of three million ticks of an adversary 440 asked for more,
-// none of grasps (2026-11-28), of ten million one for 90, 66,000 instructions. Past the budget the answer is
+// Support callbacks of all ccdGJKIntersect calls of one tick. Of three million ticks of an adversary 440 asked for
+// more, none of grasps (2026-11-28), of ten million one for 90, 66,000 instructions. Past the budget the answer is
 // "inconclusive": the last contact is kept for another tick, Status::kOverlapInconclusive.
 inline constexpr std::int32_t kGjkSupportBudget = 28;
 inline constexpr std::int32_t kGjkMaxIterations = 60;

@@ -27,7 +27,7 @@ SceneSizes scene_sizes(const Model& model) noexcept {
 
 void add_most_points(const Model& model, const SceneSizes& n, Work& work) noexcept {
   const std::int32_t share = surface_work_share(model.params), spare = n.points - n.contacts;
-  work.points += n.points;
+  work.points += n.points > n.pieces ? n.points : n.pieces;  // of an elastic body pieces are gone over
   const std::int32_t asked = 2 * n.points * kMaxQueryWork, allowed = share + kMaxQueryWork;
   work.looks += asked < allowed ? asked : allowed;      // an elastic body asks twice
   work.queries += n.points < share ? n.points : share;  // each looks at one thing at least
@@ -66,7 +66,7 @@ double counted_instructions(const Work& work) noexcept {
   return sum;
 }
 
-double most_stage_cost(const Model& model, Stage stage) noexcept {
+Work most_work(const Model& model) noexcept {
   const SceneSizes n = scene_sizes(model);
   Work work;
   work.joints = n.joints + (n.joints > 0 ? n.pieces : 0);
@@ -75,7 +75,11 @@ double most_stage_cost(const Model& model, Stage stage) noexcept {
   if (has_two_tools(model)) work.joints = n.pieces, work.other_samples = work.other_balances = work.other_outputs = 1;
   if (touches_in_parts(model)) work.landings = work.landings_again = (has_two_tools(model) ? 2 : 1) * (1 + kLandings);
   contact_method(method_of(model)).add_most_work(model, n, work);
-  return counted_instructions(work, stage);
+  return work;
+}
+
+double most_stage_cost(const Model& model, Stage stage) noexcept {
+  return counted_instructions(most_work(model), stage);
 }
 
 double least_stage_cost(const Model& model, Stage stage) noexcept {

@@ -25,9 +25,11 @@ SceneSizes scene_sizes(const Model& model) noexcept;
 double counted_instructions(const Work& work, Stage stage) noexcept;
 double counted_instructions(const Work& work) noexcept;
 
-// What no tick of any scene of these sizes can exceed, its capacities all met at once; those of contact are the
-// method's own (ContactMethod::add_most_work). Up to 50 times what a tick that can be found takes: nobody meets every
-// capacity at once. An image states less, what an adversary found and a reserve (config/bake/worst_tick.h).
+// What no tick of any scene of these sizes can exceed in any unit, its capacities all met at once; those of contact are
+// the method's own (ContactMethod::add_most_work).
+Work most_work(const Model& model) noexcept;
+// The same in instructions. Up to 50 times what a tick that can be found takes: nobody meets every capacity at once. An
+// image states less, what an adversary found and a reserve (config/bake/worst_tick.h).
 double most_stage_cost(const Model& model, Stage stage) noexcept;
 // What any tick in contact takes: every point looked at, one contact of one region. No image that states less is
 // loaded, and none that states more than most_stage_cost().

@@ -16,7 +16,7 @@ static_assert(kLeastScale * kLeastScale * kMostSharper == 1, "the least scale th
 
 // Of the ball on the curved body.
 double effective_radius_m(const BallLaw& ball) {
-  return ball.radius_m / std::max(1 + ball.body_curvature_1pm * ball.radius_m, kLeastSharper);
+  return ball.radius_m / sharper(ball.body_curvature_1pm, ball.radius_m);
 }
 
 }  // namespace

@@ -340,7 +340,8 @@ void add_most_places(const Model& model, const SceneSizes& n, Work& work) noexce
   work.lines += places;
   work.shapes += places * kMostOfShapes * all;
   if (!touches_in_parts(model)) return;
-  work.part_looks += n.points * kMostPartLooks;
+  const std::int32_t asked = n.points * kMostPartLooks, allowed = kPartShare - 1 + kMostPartLooks;
+  work.part_looks += asked < allowed ? asked : allowed;
   work.part_visits += n.points;
 }
 

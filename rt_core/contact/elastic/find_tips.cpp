@@ -24,9 +24,6 @@ constexpr Real kBehind_m = 5e-4;
 constexpr Real kLeastLean = 0.01;
 // A part that is farther off than so, let go, is not placed.
 constexpr Real kNearPart_m = 4e-3;
-// Facets that come_down() looks at in a tick, after which no other part is looked for: a tube on its way into a clip
-// makes it 109, once in 8,000 ticks 148, and one that is thrown 251 (2026-11-28).
-constexpr std::int32_t kPartShare = 112;
 // Of half a capsule's axis.
 constexpr Real kThird = 1.0 / 3;
 // Another place on the axis is looked for where it is nearer by more. Of a jaw that comes down along a block's edge all

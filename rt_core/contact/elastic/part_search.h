@@ -32,6 +32,9 @@ struct PartPlace {
 // Facets that come_down() goes over, with what is beside and beyond each.
 inline constexpr std::int32_t kMostDown = 6;
 inline constexpr std::int32_t kMostPartLooks = 1 + kPartSeeds + 9 * kMostDown;
+// Facets that come_down() looks at in a tick, after which no other part is looked for: a tube on its way into a clip
+// makes it 109, once in 8,000 ticks 148, and one that is thrown 251 (2026-11-28).
+inline constexpr std::int32_t kPartShare = 112;
 // From `triangle` on over facets while they come nearer to a place on the body at rest, from those that look away from
 // it to those that do not first; or from a seed that is nearer. Newton's steps may lead a foot to where a part is
 // farthest. Bound: kMostDown facets.
