@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "config/body/body_card.h"
@@ -20,12 +21,22 @@ constexpr double kAtCorner = 0.02, kMoves = 0.35;
 constexpr double kLeastArea = 0.2;  // of a facet, after one of its corners was moved
 constexpr int kBisections = 40;     // 1e-12 of an edge
 constexpr double kSmoothCos = 0.8;  // between neighbouring facets: corners of sharper edges stay where they are
+// Shares of an edge between free corners where it is asked whether it goes through the region. With no corner on such
+// an edge, the facets beside it were cut to and fro ever nearer to it without an end (2026-11-28).
+constexpr int kLooks = 8;
+// What is cut no more: edges so short, of the mean, and those of facets so low over them. As what is cut leaves parts
+// of a fiftieth at least, cutting ends whatever the region.
+constexpr double kShortest = 0.02, kLowest = 1e-3;
 
 // The rim of regions that hold the same components.
 class Rim {
  public:
   using Inside = std::function<bool(Vec3)>;
-  Rim(Inside inside, SurfaceMesh& mesh) : inside_(std::move(inside)), mesh_(mesh) {}
+  Rim(Inside inside, SurfaceMesh& mesh) : inside_(std::move(inside)), mesh_(mesh) {
+    const auto sides = triangles_at_edges(mesh);
+    for (const auto& [edge, triangles] : sides)
+      shortest_m_ += kShortest * length_m(edge) / static_cast<double>(sides.size());
+  }
 
   void lay() {
     move_corners();
@@ -40,8 +51,11 @@ class Rim {
   };
   // Between a held and a free corner.
   Crossing crossing(std::int32_t held, std::int32_t free) const {
-    const Vec3 a = mesh_.vertex_m[at(held)], b = mesh_.vertex_m[at(free)];
-    Crossing out{0, a};
+    return crossing(mesh_.vertex_m[at(held)], mesh_.vertex_m[at(free)], 0);
+  }
+  // From a to b beyond the share `from`, where it is held.
+  Crossing crossing(Vec3 a, Vec3 b, double from) const {
+    Crossing out{from, a + from * (b - a)};
     double end = 1;
     for (int i = 0; i < kBisections; ++i) {
       const double middle = 0.5 * (out.share + end);
@@ -108,30 +122,50 @@ class Rim {
     return is_sharp;
   }
 
-  // At most one cut a triangle; whether any was made. Every cut takes a crossing away, and makes none: the new corner
-  // is at the rim.
+  double length_m(MeshEdge edge) const {
+    return norm(mesh_.vertex_m[at(edge.second)] - mesh_.vertex_m[at(edge.first)]);
+  }
+  // Where the edge leaves the region, unless that is at one of its corners.
+  std::optional<Crossing> leaves(MeshEdge edge) const {
+    const Vec3 a = mesh_.vertex_m[at(edge.first)], b = mesh_.vertex_m[at(edge.second)];
+    const bool first = inside_(a), second = inside_(b);
+    if (first && second) return std::nullopt;
+    if (first || second) {
+      const Crossing rim = first ? crossing(a, b, 0) : crossing(b, a, 0);
+      return rim.share < kAtCorner || rim.share > 1 - kAtCorner ? std::nullopt : std::optional(rim);
+    }
+    for (int i = 1; i < kLooks; ++i) {
+      const double share = static_cast<double>(i) / kLooks;
+      if (inside_(a + share * (b - a))) return crossing(a, b, share);
+    }
+    return std::nullopt;
+  }
+  bool is_worth_cutting(MeshEdge edge, const std::vector<std::size_t>& triangles) const {
+    const double length = length_m(edge);
+    return length > shortest_m_ && std::ranges::all_of(triangles, [&](std::size_t t) {
+             return norm(triangle_cross(mesh_, t)) > kLowest * length * length;
+           });
+  }
+
+  // At most one cut a triangle; whether any was made. Every cut takes a crossing away: the new corner is at the rim.
   bool cut_edges() {
     const auto sides = triangles_at_edges(mesh_);
     std::vector<char> is_cut(mesh_.triangle.size());
     bool any = false;
     for (const auto& [edge, triangles] : sides) {
-      const bool first = is_held(edge.first);
-      if (first == is_held(edge.second)) continue;
-      if (std::any_of(triangles.begin(), triangles.end(), [&](std::size_t t) { return is_cut[t] != 0; })) {
-        any = true;
-        continue;
-      }
-      const Crossing rim = first ? crossing(edge.first, edge.second) : crossing(edge.second, edge.first);
-      if (rim.share < kAtCorner || rim.share > 1 - kAtCorner) continue;
+      if (std::ranges::any_of(triangles, [&](std::size_t t) { return is_cut[t] != 0; })) continue;  // the next time
+      const std::optional<Crossing> rim = leaves(edge);
+      if (!rim || !is_worth_cutting(edge, triangles)) continue;
       any = true;
       for (const std::size_t t : triangles) is_cut[t] = 1;
-      cut_edge(mesh_, edge, triangles, rim.point_m);
+      cut_edge(mesh_, edge, triangles, rim->point_m);
     }
     return any;
   }
 
   Inside inside_;
   SurfaceMesh& mesh_;
+  double shortest_m_ = 0;
 };
 
 }  // namespace

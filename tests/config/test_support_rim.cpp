@@ -65,6 +65,22 @@ TEST(SupportRim, BoxesAndBallsEndAlongEdges) {
                5e-3);
 }
 
+// Strips and spots narrower than the facets: on an edge that has no corner within, cuts beside it went to and fro ever
+// nearer to it without an end (2026-11-28).
+TEST(SupportRim, WhatIsNarrowerThanAFacetEndsAlongEdges) {
+  const std::string block = "shape = \"box\"\nsize_mm = [40, 30, 40]\ntriangles = 300\n";  // facets of 8 mm
+  for (const char* const region :
+       {"from_mm = [-30, 20, -1.3]\nto_mm = [30, 40, 1.1]\n", "from_mm = [2.1, 25, 1.2]\nto_mm = [4.3, 31, 3.9]\n",
+        "from_mm = [-20.5, 12.2, -20.5]\nto_mm = [-18.7, 14.1, 30]\n"}) {
+    SCOPED_TRACE(region);
+    const Rimmed rimmed(block, std::string("[[body.fixed]]\nregion = \"box\"\n") + region);
+    expect_whole(rimmed, 1e-9);
+    int held = 0;
+    for (const Vec3& x : rimmed.after.vertex_m) held += is_fixed(rimmed.scene, x, 0) ? 1 : 0;
+    EXPECT_GE(held, 4);
+  }
+}
+
 // Before, the region ended in the middle of edges: the test can see that.
 TEST(SupportRim, WithoutItRegionsEndWithinEdges) {
   Rimmed rimmed(kTube, "[body.fixed]\nbase_height_mm = 6\n");
