@@ -280,6 +280,54 @@ Real height_bend(const foot::Corners& corners, const ElasticRow& row, Vec3 axis)
   return max_of(turned / (norm(mixed) * squared_norm(axis)), 0.0);
 }
 
+// n . x of each linear mode, x its shape blended of the foot's triangle, in lanes of four.
+void blend_linear_modes(const Model& model, const ElasticRow& row, const Real (&w)[3], Real* along) PALPATE_RT {
+  const Triangle& triangle = model.triangle[static_cast<std::size_t>(row.foot.triangle)];
+  const Vec3 n = row.foot.normal_w;
+  const std::int32_t count = model.params.elastic_linear;
+  const float* shape[3];
+  for (int k = 0; k < 3; ++k) shape[k] = linear_shapes(model, triangle.vertex[k]);  // bound: 3
+  const auto blend = [&](std::int32_t i) PALPATE_RT {
+    return splat4(w[0]) * widen4(shape[0] + i) + splat4(w[1]) * widen4(shape[1] + i) +
+           splat4(w[2]) * widen4(shape[2] + i);
+  };
+  std::int32_t m = 0;
+  for (; m + 4 <= count; m += 4) {  // bound: kMaxLinearModes / 4, and 3
+    Vec3 four[4];
+    for (int i = 0; i < 3; ++i) store(&four[0].x + 4 * i, blend(3 * m + 4 * i));
+    store(along + m, dot(load4(four), splat4(n)));
+  }
+  for (; m < count; ++m) {
+    const auto at = [&](std::int32_t i) PALPATE_RT {
+      const std::int32_t of = 3 * m + i;
+      return w[0] * static_cast<Real>(shape[0][of]) + w[1] * static_cast<Real>(shape[1][of]) +
+             w[2] * static_cast<Real>(shape[2][of]);
+    };
+    along[m] = at(0) * n.x + at(1) * n.y + at(2) * n.z;
+  }
+  for (; m < whole_lanes(count, 4); ++m) along[m] = 0;
+}
+
+// How much the surface at the foot leans along an axis for a moment that turns it there, by all modes: rad/(N m).
+Real lean_of_modes(const Model& model, const ElasticRow& row, Vec3 axis) PALPATE_RT {
+  const Triangle& triangle = model.triangle[static_cast<std::size_t>(row.foot.triangle)];
+  const Vec3 n = row.foot.normal_w;
+  Real slope[3], sum = 0;
+  for (int k = 0; k < 3; ++k) slope[k] = dot(row.foot.gradient_per_m[k], axis);  // bound: 3
+  for (std::int32_t a = 0; a < model.params.elastic_soft; ++a) {                 // bound: kMaxSoftModes
+    Real lean = 0;
+    for (int k = 0; k < 3; ++k) {  // bound: 3
+      const Double4 u = widen4(vertex_block(model, triangle.vertex[k]) + kTermFloats * a);
+      lean += slope[k] * (n.x * u[0] + n.y * u[1] + n.z * u[2]);
+    }
+    sum += lean * lean;
+  }
+  alignas(32) Real leans[kMaxLinearModes];
+  blend_linear_modes(model, row, slope, leans);
+  for (std::int32_t m = 0; m < model.params.elastic_linear; ++m) sum += leans[m] * leans[m];
+  return sum;
+}
+
 // How much sooner than where it stands a capsule that leans may touch: the axis's own lean lowers its line towards the
 // surface's tangent (line_law.h), and a solid's edge or plate may come down on its end.
 Real lead_of(const RoundTip& tip, Vec3 normal_w) PALPATE_RT {
@@ -338,8 +386,12 @@ void CarriedSurface::place(const RoundTip& tip, std::int32_t triangle, Vec3 near
     if (tip.is_line())
       step_m = stand_on_line(model, box, height_bend(last.corners, row, tip.half_axis_w), force_N, row);
     if (tip.is_plate()) {
-      const Vec3 along_w = tip.half_axis_w, across_w = tip.half_across_w;
-      stand_on_plate({height_bend(last.corners, row, along_w), height_bend(last.corners, row, across_w)}, force_N, row);
+      const auto lies = [&](Vec3 half_w) PALPATE_RT {
+        return PlateAxis{height_bend(last.corners, row, half_w),
+                         force_N > 0 ? lean_of_modes(model, row, unit_or(half_w, {})) : 0.0};
+      };
+      stand_on_plate(model, box, lies(tip.half_axis_w), lies(tip.half_across_w), force_N, row);
+      work->shown += 2 * model.params.elastic_soft + model.params.elastic_linear;
     }
     if (row.has_slide) slide_slopes(turns, row, last, below, slopes.slide);
   } else {
@@ -385,32 +437,7 @@ bool CarriedSurface::place_on_facet(Vec3 centre_w, std::int32_t triangle, Elasti
 void show_linear_modes(const Model& model, ElasticRow& row) PALPATE_RT {
   if (row.has_along) return;
   row.has_along = true;
-  Real* const along = row.along;
-  const Triangle& triangle = model.triangle[static_cast<std::size_t>(row.foot.triangle)];
-  const Vec3 n = row.foot.normal_w;
-  const std::int32_t count = model.params.elastic_linear;
-  const float* shape[3];
-  for (int k = 0; k < 3; ++k) shape[k] = linear_shapes(model, triangle.vertex[k]);  // bound: 3
-  const Real* w = row.foot.weight;
-  const auto blend = [&](std::int32_t i) PALPATE_RT {
-    return splat4(w[0]) * widen4(shape[0] + i) + splat4(w[1]) * widen4(shape[1] + i) +
-           splat4(w[2]) * widen4(shape[2] + i);
-  };
-  std::int32_t m = 0;
-  for (; m + 4 <= count; m += 4) {  // bound: kMaxLinearModes / 4, and 3
-    Vec3 four[4];
-    for (int i = 0; i < 3; ++i) store(&four[0].x + 4 * i, blend(3 * m + 4 * i));
-    store(along + m, dot(load4(four), splat4(n)));
-  }
-  for (; m < count; ++m) {
-    const auto at = [&](std::int32_t i) PALPATE_RT {
-      const std::int32_t of = 3 * m + i;
-      return w[0] * static_cast<Real>(shape[0][of]) + w[1] * static_cast<Real>(shape[1][of]) +
-             w[2] * static_cast<Real>(shape[2][of]);
-    };
-    along[m] = at(0) * n.x + at(1) * n.y + at(2) * n.z;
-  }
-  for (; m < whole_lanes(count, 4); ++m) along[m] = 0;
+  blend_linear_modes(model, row, row.foot.weight, row.along);
 }
 
 }  // namespace palpate

@@ -15,32 +15,54 @@ constexpr Real kInset_m = 1e-5;
 constexpr Real kSkewed = 1e-3;  // an axis that leaves a side of the body's box slower than so does not
 // A plate is the flat tip of one that lies on it: from a lean of 30 degrees on it stands back, by two radii at 60.
 constexpr Real kLeansAway = 0.25, kStandsBack = 4;
+constexpr Real kLeastLevel = 0.5, kLeastAcross = 1e-3;  // where a plate has turned away; squared sine
 // Beyond the body an end is that of the body: steeper than round by so much for every radius that is cut off.
 constexpr Real kSteeper = 10, kSteepest = 10;
 
 // How far the body goes on from the foot, towards either end. A body ends where its box about the rest shape does,
-// moved as the foot is; across the axis a round one leaves its box sooner, by a radius at most.
+// moved as the foot is; `room`: by how much more than that along each of the box's axes.
 struct Reach {
   Real left_m = kHuge, right_m = kHuge;
 };
-void limit(Real axis, Real foot_m, Real lower_m, Real upper_m, Real radius_m, Reach& reach) PALPATE_RT {
+void limit(Real axis, Real foot_m, Real lower_m, Real upper_m, Real room_m, Reach& reach) PALPATE_RT {
   const Real along = abs_of(axis);
   if (!(along > kSkewed)) return;
-  const Real room = radius_m * (1 - along * along), inverse = 1.0 / along;
-  const Real up = (max_of(upper_m - foot_m, 0.0) + room) * inverse,
-             down = (max_of(foot_m - lower_m, 0.0) + room) * inverse;
+  const Real inverse = 1.0 / along;
+  const Real up = (max_of(upper_m - foot_m, 0.0) + room_m) * inverse,
+             down = (max_of(foot_m - lower_m, 0.0) + room_m) * inverse;
   reach.right_m = min_of(reach.right_m, axis > 0 ? up : down);
   reach.left_m = min_of(reach.left_m, axis > 0 ? down : up);
 }
-Reach reach_of(const Model& model, const Box& box, Vec3 axis, Real radius, const ElasticRow& row) PALPATE_RT {
+Reach reach_with(const Model& model, const Box& box, Vec3 axis, Vec3 room, const ElasticRow& row) PALPATE_RT {
   const Triangle& triangle = model.triangle[static_cast<std::size_t>(row.foot.triangle)];
   Vec3 rest;
   for (int k = 0; k < 3; ++k)  // bound: 3
     rest += row.foot.weight[k] * model.vertex_m[static_cast<std::size_t>(triangle.vertex[k])];
   Reach reach;
-  limit(axis.x, rest.x, box.lower.x, box.upper.x, radius, reach);
-  limit(axis.y, rest.y, box.lower.y, box.upper.y, radius, reach);
-  limit(axis.z, rest.z, box.lower.z, box.upper.z, radius, reach);
+  limit(axis.x, rest.x, box.lower.x, box.upper.x, room.x, reach);
+  limit(axis.y, rest.y, box.lower.y, box.upper.y, room.y, reach);
+  limit(axis.z, rest.z, box.lower.z, box.upper.z, room.z, reach);
+  return reach;
+}
+// Under a capsule: across the axis a round body leaves its box sooner, by a radius at most.
+Reach reach_of(const Model& model, const Box& box, Vec3 axis, Real radius, const ElasticRow& row) PALPATE_RT {
+  const auto room = [&](Real along) PALPATE_RT { return radius * (1 - along * along); };
+  return reach_with(model, box, axis, {room(axis.x), room(axis.y), room(axis.z)}, row);
+}
+// Under a plate: as the surface goes on from the foot, not as the plate leans. A side of the box that the surface lies
+// along is none of its ends: a crest is on one, and as a plate is drawn over it that side came and went.
+Reach reach_under(const Model& model, const Box& box, Vec3 axis, const ElasticRow& row) PALPATE_RT {
+  const Vec3 n = row.foot.normal_w, size = box.upper - box.lower;
+  const Vec3 level = tangential_part(axis, n);
+  const Real flat = max_of(norm(level), kLeastLevel);
+  const auto room = [](Real normal, Real side_m) PALPATE_RT {
+    const Real square = normal * normal;
+    return side_m * square / max_of(1 - square, kLeastAcross);
+  };
+  Reach reach =
+      reach_with(model, box, (1.0 / flat) * level, {room(n.x, size.x), room(n.y, size.y), room(n.z, size.z)}, row);
+  reach.left_m *= 1.0 / flat;
+  reach.right_m *= 1.0 / flat;
   return reach;
 }
 
@@ -114,23 +136,29 @@ Real stand_on_line(const Model& model, const Box& box, Real bend_1_per_m, Real f
 
 // The plate's tip is to be where it is deepest, on a tangent paraboloid; the plate itself, tilted on what is flat,
 // bears beside its middle by 2/3 b^2 tilt / e, as a round punch does, which is a paraboloid of its own.
-void stand_on_plate(PlateBends bend, Real force_N, ElasticRow& row) PALPATE_RT {
+void stand_on_plate(const Model& model, const Box& box, PlateAxis along, PlateAxis across, Real force_N,
+                    ElasticRow& row) PALPATE_RT {
   RoundTip& tip = row.tip;
   const Real square = tip.flat_m * tip.flat_m, dent = force_N / (2 * tip.modulus_Pa * row.modulus * tip.flat_m);
   const Vec3 out = unit_or(cross(tip.half_axis_w, tip.half_across_w), {});
   const Real own = 1.5 * max_of(dent, kLeastDepth * tip.flat_m) / square;
-  const auto go = [&](Vec3 half_w, Real most_1_per_m, Real& at) PALPATE_RT {
+  const auto go = [&](Vec3 half_w, const PlateAxis& axis, Real& at) PALPATE_RT {
     const Real half = norm(half_w), lean = -dot(row.rise, half_w) / half, from = at * half;
-    const Real bends = min_of(most_1_per_m, kMostBend / tip.margin_m);
-    const Real to = clamp_to((lean + bends * from) / (bends + own), -half, half), step = to - from;
-    row.travel_m += step * (lean - 0.5 * bends * step) - 0.5 * own * to * to;
+    const Real bends = min_of(axis.bend_1_per_m, kMostBend / tip.margin_m), turns = bends + force_N * axis.lean_per_Nm;
+    // What of it the body is under, and the middle of that.
+    const Reach reach = reach_under(model, box, (1.0 / half) * half_w, row);
+    const Real first = clamp_to(from - reach.left_m + kInset_m, -half, from),
+               last = clamp_to(from + reach.right_m - kInset_m, from, half), middle = 0.5 * (first + last);
+    const Real beside = (lean + turns * (from - middle)) / (turns + own);
+    const Real to = clamp_to(middle + beside, first, last), step = to - from;
+    row.travel_m += step * (lean - 0.5 * bends * step) - 0.5 * own * (to - middle) * (to - middle);
     at = to / half;
   };
   const Real lean2 = 1 - dot(row.rise, out) * dot(row.rise, out);
   row.leads_m = 0;
   row.travel_m -= kStandsBack * tip.flat_m * max_of(lean2 - kLeansAway, 0.0);
-  go(tip.half_axis_w, bend.along_1_per_m, tip.along);
-  go(tip.half_across_w, bend.across_1_per_m, tip.across);
+  go(tip.half_axis_w, along, tip.along);
+  go(tip.half_across_w, across, tip.across);
 }
 
 }  // namespace palpate

@@ -10,10 +10,13 @@ namespace palpate {
 // how far it went.
 Real stand_on_line(const Model& model, const Box& box, Real bend_1_per_m, Real force_N, ElasticRow& row) PALPATE_RT;
 
-// Along both of a plate's axes.
-struct PlateBends {
-  Real along_1_per_m, across_1_per_m;  // of the height
+// Along one of a plate's axes: how the height bends, and how much the body leans under a moment, which is how much it
+// would lean back if the force went on. Without the latter a plate on a block narrower than it went from corner to
+// corner in every tick (2026-11-28).
+struct PlateAxis {
+  Real bend_1_per_m, lean_per_Nm;
 };
-void stand_on_plate(PlateBends bend, Real force_N, ElasticRow& row) PALPATE_RT;
+void stand_on_plate(const Model& model, const Box& box, PlateAxis along, PlateAxis across, Real force_N,
+                    ElasticRow& row) PALPATE_RT;
 
 }  // namespace palpate
