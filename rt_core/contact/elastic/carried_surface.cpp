@@ -391,7 +391,7 @@ void CarriedSurface::place(const RoundTip& tip, std::int32_t triangle, Vec3 near
                          force_N > 0 ? lean_of_modes(model, row, unit_or(half_w, {})) : 0.0};
       };
       stand_on_plate(model, box, lies(tip.half_axis_w), lies(tip.half_across_w), force_N, row);
-      work->shown += 2 * model.params.elastic_soft + model.params.elastic_linear;
+      work->shown += terms_of_lean(model.params);
     }
     if (row.has_slide) slide_slopes(turns, row, last, below, slopes.slide);
   } else {

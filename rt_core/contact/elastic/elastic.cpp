@@ -333,8 +333,7 @@ void create_work(const Model& model, void* block) noexcept {
 // both of its sides. Found twice in a tick that loses it.
 void add_most_places(const Model& model, const SceneSizes& n, Work& work) noexcept {
   const std::int32_t all = terms(model.params.elastic_soft), places = 2 * n.points;
-  const std::int32_t lean = 2 * model.params.elastic_soft + model.params.elastic_linear;  // of a plate
-  work.shown += places * ((3 * (kFootWalk + 2) + 1) * all + kPushTerms + lean);
+  work.shown += places * ((3 * (kFootWalk + 2) + 1) * all + kPushTerms + terms_of_lean(model.params));
   work.crossed += places * kFootWalk;
   work.foot_steps += 2 * places * (kFootNewtonSteps + kMaxTurn / foot::kSpokesPerStep);
   work.placed += places;

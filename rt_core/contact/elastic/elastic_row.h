@@ -89,6 +89,8 @@ struct ElasticRow {
 
 // What a term of a tip's pull costs where the foot slides, and one less where it does not (Work::shapes).
 inline constexpr std::int32_t kMostOfShapes = 3;
+// And how the modes lean the body along both axes of a plate, in terms of vertices (Work::shown).
+inline std::int32_t terms_of_lean(const ModelParams& p) PALPATE_RT { return 2 * p.elastic_soft + p.elastic_linear; }
 
 // The surface with the soft modes at given amplitudes.
 struct CarriedSurface {
