@@ -284,6 +284,29 @@ struct OtherTool {
   X(OtherTool, other_tool, model.params.articulation == Articulation::kTwoTools ? 1 : 0, other_tool.size(), \
     "of two hands")
 
+#define PALPATE_DAMPED_STEP(X)                                             \
+  X(double, asked, 0, "how far it was to go")                              \
+  X(double, held, 0, "and the part of that which it did not go")           \
+  X(std::int32_t, turned_ticks, 0, "lately, in which it was to turn back") \
+  X(std::int32_t, reserved, 0, "-")
+
+// What a step from tick to tick remembers that must not go to and fro (contact/elastic/damped_step.h).
+struct DampedStep {
+  PALPATE_STATE_FIELDS_OF(PALPATE_DAMPED_STEP)
+};
+
+using ByAxis = double[2];
+
+#define PALPATE_PLACE_STEP(X)                                  \
+  X(DampedStep, along_m, {}, "of the place on the tip's axis") \
+  X(DampedStep, across_m, {}, "and on a plate's other")        \
+  X(ByAxis, beside_m, {}, "along both from PointState::closest_w")
+
+// What the place of a line or plate remembers (contact/elastic/line_place.h).
+struct PlaceStep {
+  PALPATE_STATE_FIELDS_OF(PALPATE_PLACE_STEP)
+};
+
 #define PALPATE_ELASTIC_STATE(X)                             \
   X(std::int32_t, moved, 0, "1: some amplitude is not zero") \
   X(std::int32_t, reserved, 0, "-")                          \
@@ -291,7 +314,10 @@ struct OtherTool {
 #define PALPATE_ELASTIC_POOLS(X)                                                                      \
   X(double, soft_rootJ, model.params.elastic_soft, soft_rootJ.size(), "amplitudes of the soft modes") \
   X(double, step_rootJ, model.params.elastic_soft, step_rootJ.size(),                                 \
-    "their last change, with which the next tick begins")
+    "their last change, with which the next tick begins")                                             \
+  X(DampedStep, mode, model.params.elastic_soft, mode.size(), "and how it is damped")                 \
+  X(PlaceStep, place, model.params.elastic_soft > 0 ? model.sizes.n_tool_point : 0, place.size(),     \
+    "of each tip that touches")
 
 // Shape of an elastic body: where the next tick begins.
 struct ElasticFields {

@@ -54,17 +54,22 @@ TEST(ElasticFriction, DragOnAColumnFeelsItsBending) {
 
 // Without friction the ball's force follows the upper face and acts where the ball touches it, which holds the column
 // beyond its free Euler load: cos z + z (1 + R/L) sin z = 0, P = z^2 EI / L^2 = 4.1 N. With friction the tip holds it
-// until it buckles as a column held at both ends. (Deeper, the slippery tip slides off, at 1.8 to 2.3 mm: rounding
-// says where.)
+// until it buckles as a column held at both ends. (The slippery one leans out of its ball of amplitudes beyond 2 mm,
+// stands there still, by the tangents of V, and says so; until steps that go to and fro were damped, on 2026-11-29,
+// rounding said where between 1.8 and 2.3 mm it was thrown aside.)
 TEST(ElasticFriction, TheTipHoldsASlenderBodyUp) {
   constexpr Vec3 kAside{3e-4, 0, 0};
-  const auto press = [&](const BakedScene& scene, double depth_m) {
+  const auto output = [&](const BakedScene& scene, double depth_m) {
     Bench bench(scene.model());
-    return move_to(bench, kTop + kAside, kTop + kAside - Vec3{0, depth_m, 0}, 5e-6).contact_w.force_N.y;
+    return move_to(bench, kTop + kAside, kTop + kAside - Vec3{0, depth_m, 0}, 5e-6);
+  };
+  const auto press = [&](const BakedScene& scene, double depth_m) {
+    return output(scene, depth_m).contact_w.force_N.y;
   };
   const BakedScene slippery = baked_column("none", 0), rough = baked_column("presliding", 0.5);
   EXPECT_GT(press(slippery, 1e-3), 2 * kFreeEuler_N);  // 3.17 N
-  EXPECT_LT(press(slippery, 2.4e-3), kFreeEuler_N);
+  EXPECT_EQ(output(slippery, 1.6e-3).status & Status::kDepthBeyondRange, 0u);
+  EXPECT_NE(output(slippery, 2.4e-3).status & Status::kDepthBeyondRange, 0u);
   EXPECT_GT(press(rough, 2.2e-3), 0.6 * kHeldEuler_N);  // 7.2 N of 10.3
 }
 

@@ -18,6 +18,9 @@ constexpr std::int32_t kMostEnds = 2;
 constexpr std::int32_t kMostRound = 8;
 // Of a capsule and an edge the square of the angle between them, at least: more parallel ones come along by parts.
 constexpr Real kLeastAcross = 0.01;
+// One that lies along the edge, within 13 degrees, presses as a line along it, and is where it is nearest from 18 on: a
+// jaw beside the edge that it was parallel to went to and fro along it by 3 mm (2026-11-29).
+constexpr Real kAlong = 0.05;
 // A part's corner normals are longer than one by 2e-12 and more, squared.
 constexpr Real kPartLonger = 5e-13;
 // Normals on both sides of a seam between two parts: its square.
@@ -138,7 +141,8 @@ EdgePlace come_along(const EdgePlace& on, CarriedTriangle& last, ElasticRow& row
   if (!tip.is_line() || !(square > 0)) return on;
   const Vec3 axis = unit_or(tip.half_axis_w, {}), edge = (1.0 / square) * on.along_w;
   const Real across = max_of(1 - dot(axis, edge) * dot(axis, on.along_w), kLeastAcross);
-  const Real half = norm(tip.half_axis_w), step = dot(on.place_w - row.placed_w, axis) / across;
+  const Real crosses = tip.is_of_part() ? 1.0 : clamp_to((across - kAlong) / kAlong, 0.0, 1.0);
+  const Real half = norm(tip.half_axis_w), step = crosses * dot(on.place_w - row.placed_w, axis) / across;
   tip.along = clamp_to(tip.along + step / half, -1.0, 1.0);
   row.placed_w = tip.centre_w();
   return follow_edge(row.placed_w, last);
@@ -185,8 +189,9 @@ EdgePlace place_on_edge(Vec3 centre_w, CarriedTriangle& last, ElasticRow& row) P
     if (row.foot.state == FootState::kFound) return {};
     last.move_to(here);
   }
-  stand_on(on, centre_w, last, row.foot);
-  return on;
+  const EdgePlace nearest = come_along(on, last, row);
+  stand_on(nearest, row.placed_w, last, row.foot);
+  return nearest;
 }
 
 }  // namespace palpate

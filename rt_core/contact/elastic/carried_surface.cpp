@@ -217,34 +217,67 @@ void turn_with_foot(Count soft, ElasticRow& row, const Double4 (&corner)[3][kMax
   }
 }
 
-// The same under a capsule, whose pull goes along by `step_m` to where its force acts. Across its axis as a ball. Along
-// it the line resists what leans the surface, G_a + k t_a / (1 + k d), by LineLaw::Lean::arm_m: a rod that touches with
-// no end slides to where it is deepest, and t_a does nothing. With the pull where the last tick's force acted, jaws
-// pressed 1 mm into a block set it swinging about its height (2026-11-26).
-template <class Count>
-void turn_with_line(Count soft, Real step_m, ElasticRow& row, const Double4 (&corner)[3][kMaxSoftModes]) PALPATE_RT {
-  const Vec3 n = row.foot.normal_w, axis = unit_or(tangential_part(row.tip.half_axis_w, n), {});
-  const Real d = max_of(row.foot.height_m, 0.0);
-  const RoundTurn round(d, row.line.across_1_per_m);
-  const Real bent = 1 + row.line.along_1_per_m * d, on_axis = row.line.along_1_per_m / bent, arm = row.arm_m;
-  const Real by_slope = d * bent + arm, by_both = arm * on_axis - 1, by_way = on_axis * by_both;
+// How the material under a tip goes along the surface with each amplitude, and how the surface slopes there.
+struct Turning {
   Vec3 along[kMaxSoftModes], slope[kMaxSoftModes];
+};
+template <class Count>
+void show_turning(Count soft, const ElasticRow& row, const Double4 (&corner)[3][kMaxSoftModes],
+                  Turning& turning) PALPATE_RT {
+  show_slopes(soft, row, corner, turning.slope);
+  for (std::int32_t a = 0; a < soft; ++a) turning.along[a] = tangential_part(row.sweep_w[a], row.foot.normal_w);
+}
+
+// Along an axis on which a tip goes to where its force acts the pull goes with it, by `step_m`, and what leans the
+// surface, G_a + k t_a / (1 + k d), is resisted by `arm_m` (LineLaw::Lean, PlateAxis): a rod that touches with no end
+// slides to where it is deepest, and t_a does nothing. With the pull where the last tick's force acted, jaws pressed
+// 1 mm into a block set it swinging about its height (2026-11-26); without the arm a plate on a ball threw its top to
+// and fro (2026-11-29). What both have along the axis is taken from them.
+template <class Count>
+void turn_along(Count soft, Vec3 axis, Real step_m, Real curvature_1_per_m, Real arm_m, Turning& turning,
+                ElasticRow& row) PALPATE_RT {
+  const Real d = max_of(row.foot.height_m, 0.0), bent = 1 + curvature_1_per_m * d, on_axis = curvature_1_per_m / bent;
+  const Real by_slope = d * bent + arm_m, by_both = arm_m * on_axis - 1, by_way = on_axis * by_both;
   Real way[kMaxSoftModes], lean[kMaxSoftModes];
-  show_slopes(soft, row, corner, slope);
   for (std::int32_t a = 0; a < soft; ++a) {  // bound: soft
-    along[a] = tangential_part(row.sweep_w[a], n);
-    way[a] = dot(along[a], axis);
-    lean[a] = dot(slope[a], axis);
-    along[a] -= way[a] * axis;
-    slope[a] -= lean[a] * axis;
-    row.pull[a] += step_m * lean[a];
+    way[a] = dot(turning.along[a], axis);
+    lean[a] = dot(turning.slope[a], axis);
+    turning.along[a] -= way[a] * axis;
+    turning.slope[a] -= lean[a] * axis;
+    row.pull[a] += step_m * (lean[a] + on_axis * way[a]);
   }
   std::int32_t pair = 0;
-  for (std::int32_t a = 0; a < soft; ++a) {  // bound: pairs
+  for (std::int32_t a = 0; a < soft; ++a)  // bound: pairs
     for (std::int32_t b = a; b < soft; ++b, ++pair)
-      row.turn[pair] += round.turn(along[a], slope[a], along[b], slope[b]) + by_slope * lean[a] * lean[b] +
-                        by_both * (lean[a] * way[b] + way[a] * lean[b]) + by_way * way[a] * way[b];
-  }
+      row.turn[pair] +=
+          by_slope * lean[a] * lean[b] + by_both * (lean[a] * way[b] + way[a] * lean[b]) + by_way * way[a] * way[b];
+}
+
+// Across a capsule's axis as a ball.
+template <class Count>
+void turn_with_line(Count soft, Real step_m, ElasticRow& row, const Double4 (&corner)[3][kMaxSoftModes]) PALPATE_RT {
+  const RoundTurn round(max_of(row.foot.height_m, 0.0), row.line.across_1_per_m);
+  Turning turning;
+  show_turning(soft, row, corner, turning);
+  turn_along(soft, unit_or(tangential_part(row.tip.half_axis_w, row.foot.normal_w), {}), step_m, row.line.along_1_per_m,
+             row.arm_m, turning, row);
+  std::int32_t pair = 0;
+  for (std::int32_t a = 0; a < soft; ++a)  // bound: pairs
+    for (std::int32_t b = a; b < soft; ++b, ++pair)
+      row.turn[pair] += round.turn(turning.along[a], turning.slope[a], turning.along[b], turning.slope[b]);
+}
+template <class Count>
+void turn_with_plate(Count soft, const PlateAxis (&axes)[2], ElasticRow& row,
+                     const Double4 (&corner)[3][kMaxSoftModes]) PALPATE_RT {
+  const Vec3 n = row.foot.normal_w, first = unit_or(tangential_part(row.tip.half_axis_w, n), {}),
+             unit[2] = {first, cross(n, first)};
+  const Real across = dot(unit[1], row.tip.half_across_w) < 0 ? -1.0 : 1.0,
+             d = clamp_to(row.foot.height_m, 0.0, row.tip.margin_m);
+  Turning turning;
+  show_turning(soft, row, corner, turning);
+  for (int i = 0; i < 2; ++i)  // bound: 2 pairs
+    turn_along(soft, unit[i], i == 0 ? axes[i].step_m : across * axes[i].step_m,
+               axes[i].bend_1_per_m / (1 - axes[i].bend_1_per_m * d), axes[i].arm_m, turning, row);
 }
 
 // On an edge the nearest place slides along it alone, at an end not at all: f_ab = s_a.s_b / d - n.u_ab, s_a what u_a
@@ -280,6 +313,15 @@ Real height_bend(const foot::Corners& corners, const ElasticRow& row, Vec3 axis)
   return max_of(turned / (norm(mixed) * squared_norm(axis)), 0.0);
 }
 
+// The same over a sharp edge or its end, which a line that crosses it turns about. Without it the line was to go on
+// along what it leans by, as if there were no end to that (2026-11-29).
+Real edge_bend(const EdgePlace& on, const ElasticRow& row) PALPATE_RT {
+  const Vec3 axis = unit_or(row.tip.half_axis_w, {}),
+             across = axis - dot(axis, unit_or(on.along_w, {})) * unit_or(on.along_w, {});
+  const Real lean = dot(axis, row.foot.normal_w);
+  return max_of(squared_norm(across) - lean * lean, 0.0) / row.foot.height_m;
+}
+
 // n . x of each linear mode, x its shape blended of the foot's triangle, in lanes of four.
 void blend_linear_modes(const Model& model, const ElasticRow& row, const Real (&w)[3], Real* along) PALPATE_RT {
   const Triangle& triangle = model.triangle[static_cast<std::size_t>(row.foot.triangle)];
@@ -306,26 +348,6 @@ void blend_linear_modes(const Model& model, const ElasticRow& row, const Real (&
     along[m] = at(0) * n.x + at(1) * n.y + at(2) * n.z;
   }
   for (; m < whole_lanes(count, 4); ++m) along[m] = 0;
-}
-
-// How much the surface at the foot leans along an axis for a moment that turns it there, by all modes: rad/(N m).
-Real lean_of_modes(const Model& model, const ElasticRow& row, Vec3 axis) PALPATE_RT {
-  const Triangle& triangle = model.triangle[static_cast<std::size_t>(row.foot.triangle)];
-  const Vec3 n = row.foot.normal_w;
-  Real slope[3], sum = 0;
-  for (int k = 0; k < 3; ++k) slope[k] = dot(row.foot.gradient_per_m[k], axis);  // bound: 3
-  for (std::int32_t a = 0; a < model.params.elastic_soft; ++a) {                 // bound: kMaxSoftModes
-    Real lean = 0;
-    for (int k = 0; k < 3; ++k) {  // bound: 3
-      const Double4 u = widen4(vertex_block(model, triangle.vertex[k]) + kTermFloats * a);
-      lean += slope[k] * (n.x * u[0] + n.y * u[1] + n.z * u[2]);
-    }
-    sum += lean * lean;
-  }
-  alignas(32) Real leans[kMaxLinearModes];
-  blend_linear_modes(model, row, slope, leans);
-  for (std::int32_t m = 0; m < model.params.elastic_linear; ++m) sum += leans[m] * leans[m];
-  return sum;
 }
 
 // How much sooner than where it stands a capsule that leans may touch: the axis's own lean lowers its line towards the
@@ -376,6 +398,7 @@ void CarriedSurface::place(const RoundTip& tip, std::int32_t triangle, Vec3 near
   row.has_slide = tip.is_ball() && !tip.is_of_part() && force_N > 0 && (found || on.edge >= 0);
   FootSlopes slopes;
   Real step_m = 0;
+  PlateAxis plate[2];
   if (found) {
     const Vec3* n = model.corner_normal[static_cast<std::size_t>(row.foot.triangle)].normal;
     const Real* inverse = last.normal_inverse;
@@ -386,19 +409,17 @@ void CarriedSurface::place(const RoundTip& tip, std::int32_t triangle, Vec3 near
     if (tip.is_line())
       step_m = stand_on_line(model, box, height_bend(last.corners, row, tip.half_axis_w), force_N, row);
     if (tip.is_plate()) {
-      const auto lies = [&](Vec3 half_w) PALPATE_RT {
-        return PlateAxis{height_bend(last.corners, row, half_w),
-                         force_N > 0 ? lean_of_modes(model, row, unit_or(half_w, {})) : 0.0};
-      };
-      stand_on_plate(model, box, lies(tip.half_axis_w), lies(tip.half_across_w), force_N, row);
-      work->shown += terms_of_lean(model.params);
+      const Real bends_1_per_m[2] = {height_bend(last.corners, row, tip.half_axis_w),
+                                     height_bend(last.corners, row, tip.half_across_w)};
+      stand_on_plate(model, box, bends_1_per_m, force_N, row, plate);
     }
     if (row.has_slide) slide_slopes(turns, row, last, below, slopes.slide);
   } else {
     show_place_numbers(model, row);
     row.rise = row.foot.normal_w;
     slopes.travel = facet_slope(row);
-    if (tip.is_line()) stand_on_line(model, box, 0, force_N, row);
+    const bool turns = on.edge >= 0 && row.foot.height_m > 0;
+    if (tip.is_line()) stand_on_line(model, box, turns ? edge_bend(on, row) : 0.0, force_N, row);
   }
   with_mode_count(model.params.elastic_soft, [&](auto n) PALPATE_RT {
     Double4 corner[3][kMaxSoftModes];
@@ -410,6 +431,8 @@ void CarriedSurface::place(const RoundTip& tip, std::int32_t triangle, Vec3 near
     if (!found) return;
     if (tip.is_line())
       turn_with_line(n, step_m, row, corner);
+    else if (tip.is_plate())
+      turn_with_plate(n, plate, row, corner);
     else
       turn_with_foot(n, row, corner);
   });

@@ -77,6 +77,20 @@ void finish_forces(ElasticLoad& load, Scratch& scratch, RegionSolution& result, 
   for (std::int32_t r = 0; r < load.n; ++r) force_N[r] = scratch.system.force_N[r];  // bound: kMaxRegions
 }
 
+// Of a solve that found no answer: no tip presses deeper than it overlaps the body let go and its deepest depth
+// together. A box's corner in an hourglass pressed with 1e10 N (2026-11-29).
+void bound_forces(const ElasticLoad& load, Scratch& scratch, Real* force_N) PALPATE_RT {
+  for (std::int32_t r = 0; r < load.n; ++r) {  // bound: kMaxRegions
+    const Tip& tip = load.tip[r];
+    const Real most_m = max_of(tip.depth_m, 0.0) + tip.local.tip->depth_max_m;
+    Real& shift_m = scratch.system.shift_m[r];
+    if (tip.depth_m - shift_m <= most_m) continue;
+    shift_m = tip.depth_m - most_m;
+    scratch.system.force_N[r] = force_N[r] = tip_at(tip, most_m).force_N;
+    scratch.work.tip_laws += load.law[r].is_line ? kLineLaws : 1;
+  }
+}
+
 void judge_solution(const ElasticLoad& load, std::int32_t laws, const RegionSolution& result, bool is_last,
                     Scratch& scratch) PALPATE_RT {
   if (load.n > 1) count(result, load, laws, scratch.work);
@@ -127,6 +141,7 @@ void solve_pressed(const Model& model, State& state, Scratch& scratch, Count sof
     if (!goes_on) break;
     load.go_on_from(scratch.system.shift_m);
   }
+  if ((scratch.status & Status::kNotConverged) != 0) bound_forces(load, scratch, force_N);
   const Real left_m = body.step(force_N);
   scratch.work.soft_pairs_again += soft_work(pairs(model.params.elastic_soft)) / 2;
   if (!(left_m <= kElasticTolerance_m)) scratch.status |= Status::kNotConverged;
@@ -333,7 +348,7 @@ void create_work(const Model& model, void* block) noexcept {
 // both of its sides. Found twice in a tick that loses it.
 void add_most_places(const Model& model, const SceneSizes& n, Work& work) noexcept {
   const std::int32_t all = terms(model.params.elastic_soft), places = 2 * n.points;
-  work.shown += places * ((3 * (kFootWalk + 2) + 1) * all + kPushTerms + terms_of_lean(model.params));
+  work.shown += places * ((3 * (kFootWalk + 2) + 1) * all + kPushTerms);
   work.crossed += places * kFootWalk;
   work.foot_steps += 2 * places * (kFootNewtonSteps + kMaxTurn / foot::kSpokesPerStep);
   work.placed += places;
@@ -348,14 +363,14 @@ void add_most_places(const Model& model, const SceneSizes& n, Work& work) noexce
 void add_most_work(const Model& model, const SceneSizes& n, Work& work) noexcept {
   const std::int32_t soft = model.params.elastic_soft, pair = pairs(soft);
   add_most_points(model, n, work);
-  work.queries += 2 * n.points;  // a capsule asks three times
+  work.queries += 3 * n.points;  // a capsule asks four times
   add_most_places(model, n, work);
   // A solve whose step fails ends with it; one that is foreseen may be looked at again.
   const std::int32_t evaluations = kTipEvaluations + 1, steps = kTipEvaluations + 2 * kSolvesOfFriction;
   add_most_regions(n, steps, evaluations, work);
   work.evaluations += evaluations + 2 * steps;
   work.soft_pairs += soft_work(pair);
-  const std::int32_t alone = kSolvesOfFriction * (kSeriesIterations + 1), together = evaluations * n.regions;
+  const std::int32_t alone = kSolvesOfFriction * (kSeriesIterations + 1), together = (evaluations + 1) * n.regions;
   work.tip_laws += kLineLaws * (alone > together ? alone : together) + kPlaceLaws * n.regions;
   work.linearised += n.regions + (n.regions + 1) / 2;
   work.mode_cubes += kSolvesOfFriction * soft * soft * soft;

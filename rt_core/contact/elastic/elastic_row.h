@@ -33,6 +33,7 @@ struct RoundTip {
   Real leaves[2] = {0, 0};
   Vec3 half_across_w;
   Real flat_m = 0, across = 0;
+  PlaceStep step;
 
   bool is_of_part() const PALPATE_RT { return begins_at > 0; }
   bool is_plate() const PALPATE_RT { return flat_m > 0; }
@@ -52,6 +53,14 @@ struct RoundTip {
   Vec3 centre_w() const PALPATE_RT { return middle_w + along * half_axis_w + across * half_across_w; }
   bool is_ball() const PALPATE_RT { return !(squared_norm(half_axis_w) > 0); }
   bool is_line() const PALPATE_RT { return squared_norm(half_axis_w) > 0 && !is_plate(); }
+  // Along each axis from `w`, to where the tip stands.
+  void tell_beside(Vec3 w) PALPATE_RT {
+    step.beside_m[0] = dot(centre_w() - w, unit_or(half_axis_w, {}));
+    step.beside_m[1] = dot(centre_w() - w, unit_or(half_across_w, {}));
+  }
+  Vec3 beside(Vec3 w) const PALPATE_RT {
+    return w + step.beside_m[0] * unit_or(half_axis_w, {}) + step.beside_m[1] * unit_or(half_across_w, {});
+  }
   void come_near(Vec3 w) PALPATE_RT {
     if (!is_ball()) along = clamp_to(dot(w - middle_w, half_axis_w) / squared_norm(half_axis_w), -1.0, 1.0);
     if (is_plate()) across = clamp_to(dot(w - middle_w, half_across_w) / squared_norm(half_across_w), -1.0, 1.0);
@@ -89,9 +98,6 @@ struct ElasticRow {
 
 // What a term of a tip's pull costs where the foot slides, and one less where it does not (Work::shapes).
 inline constexpr std::int32_t kMostOfShapes = 3;
-// And how the modes lean the body along both axes of a plate, in terms of vertices (Work::shown).
-inline std::int32_t terms_of_lean(const ModelParams& p) PALPATE_RT { return 2 * p.elastic_soft + p.elastic_linear; }
-
 // The surface with the soft modes at given amplitudes.
 struct CarriedSurface {
   const Model& model;

@@ -1,5 +1,6 @@
 #include "rt_core/contact/elastic/line_place.h"
 
+#include "rt_core/contact/elastic/damped_step.h"
 #include "rt_core/math.h"
 
 namespace palpate {
@@ -8,8 +9,8 @@ namespace {
 
 // Of a capsule's radius: how deep it is at least to tell where its force acts, and how stiff it is against leaning.
 constexpr Real kLeastDepth = 1e-3, kLeastArmDepth = 1e-2;
-constexpr Real kMostBend = 0.9;   // of 1 / R, of the height's bend along the axis
-constexpr Real kMostSlide = 0.5;  // of the half axis, in one step
+constexpr Real kMostBend = 0.9;      // of 1 / R, of the height's bend along the axis
+constexpr Real kMostSlide_m = 4e-3;  // in one step: the foot there is told by a parabola, and looked for from here
 // A place of a part stands on it, whatever the line that leans does beyond: on the rim it would have no side.
 constexpr Real kInset_m = 1e-5;
 constexpr Real kSkewed = 1e-3;  // an axis that leaves a side of the body's box slower than so does not
@@ -125,7 +126,8 @@ Real stand_on_line(const Model& model, const Box& box, Real bend_1_per_m, Real f
     const Reach on_face = reach_of(model, box, axis, 0, row);
     way_m = clamp_to(way_m, min_of(kInset_m - on_face.left_m, 0.0), max_of(on_face.right_m - kInset_m, 0.0));
   }
-  row.tip.along = clamp_to(before + clamp_to(way_m / half, -kMostSlide, kMostSlide), -1.0, 1.0);
+  way_m = clamp_to(way_m, max_of(-kMostSlide_m, (-1 - before) * half), min_of(kMostSlide_m, (1 - before) * half));
+  row.tip.along = before + way_m * damp(way_m, row.tip.step.along_m) / half;
   const Real step = (row.tip.along - before) * half;
   row.travel_m += step * (lean - 0.5 * step * bend);
   line.lean = lean - bend * step;
@@ -136,29 +138,31 @@ Real stand_on_line(const Model& model, const Box& box, Real bend_1_per_m, Real f
 
 // The plate's tip is to be where it is deepest, on a tangent paraboloid; the plate itself, tilted on what is flat,
 // bears beside its middle by 2/3 b^2 tilt / e, as a round punch does, which is a paraboloid of its own.
-void stand_on_plate(const Model& model, const Box& box, PlateAxis along, PlateAxis across, Real force_N,
-                    ElasticRow& row) PALPATE_RT {
+void stand_on_plate(const Model& model, const Box& box, const Real (&bends_1_per_m)[2], Real force_N, ElasticRow& row,
+                    PlateAxis (&axes)[2]) PALPATE_RT {
   RoundTip& tip = row.tip;
   const Real square = tip.flat_m * tip.flat_m, dent = force_N / (2 * tip.modulus_Pa * row.modulus * tip.flat_m);
   const Vec3 out = unit_or(cross(tip.half_axis_w, tip.half_across_w), {});
   const Real own = 1.5 * max_of(dent, kLeastDepth * tip.flat_m) / square;
-  const auto go = [&](Vec3 half_w, const PlateAxis& axis, Real& at) PALPATE_RT {
+  const auto go = [&](Vec3 half_w, Real bend, DampedStep& memory, Real& at) PALPATE_RT {
     const Real half = norm(half_w), lean = -dot(row.rise, half_w) / half, from = at * half;
-    const Real bends = min_of(axis.bend_1_per_m, kMostBend / tip.margin_m), turns = bends + force_N * axis.lean_per_Nm;
+    const Real bends = min_of(bend, kMostBend / tip.margin_m);
     // What of it the body is under, and the middle of that.
     const Reach reach = reach_under(model, box, (1.0 / half) * half_w, row);
     const Real first = clamp_to(from - reach.left_m + kInset_m, -half, from),
                last = clamp_to(from + reach.right_m - kInset_m, from, half), middle = 0.5 * (first + last);
-    const Real beside = (lean + turns * (from - middle)) / (turns + own);
-    const Real to = clamp_to(middle + beside, first, last), step = to - from;
+    const Real wish = middle + (lean + bends * (from - middle)) / (bends + own), end = clamp_to(wish, first, last);
+    const Real asked = clamp_to(end - from, -kMostSlide_m, kMostSlide_m);
+    const Real step = asked * damp(asked, memory), to = from + step;
     row.travel_m += step * (lean - 0.5 * bends * step) - 0.5 * own * (to - middle) * (to - middle);
     at = to / half;
+    return PlateAxis{step, bends, end == wish ? 1.0 / (bends + own) : 0.0};
   };
   const Real lean2 = 1 - dot(row.rise, out) * dot(row.rise, out);
   row.leads_m = 0;
   row.travel_m -= kStandsBack * tip.flat_m * max_of(lean2 - kLeansAway, 0.0);
-  go(tip.half_axis_w, along, tip.along);
-  go(tip.half_across_w, across, tip.across);
+  axes[0] = go(tip.half_axis_w, bends_1_per_m[0], tip.step.along_m, tip.along);
+  axes[1] = go(tip.half_across_w, bends_1_per_m[1], tip.step.across_m, tip.across);
 }
 
 }  // namespace palpate

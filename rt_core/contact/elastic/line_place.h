@@ -10,13 +10,13 @@ namespace palpate {
 // how far it went.
 Real stand_on_line(const Model& model, const Box& box, Real bend_1_per_m, Real force_N, ElasticRow& row) PALPATE_RT;
 
-// Along one of a plate's axes: how the height bends, and how much the body leans under a moment, which is how much it
-// would lean back if the force went on. Without the latter a plate on a block narrower than it went from corner to
-// corner in every tick (2026-11-28).
+// Along one axis of a plate that went `step_m` to where it is to press: how the height bends there, and how far a lean
+// of the surface takes the place along, its moment per lean and force.
 struct PlateAxis {
-  Real bend_1_per_m, lean_per_Nm;
+  Real step_m, bend_1_per_m, arm_m;
 };
-void stand_on_plate(const Model& model, const Box& box, PlateAxis along, PlateAxis across, Real force_N,
-                    ElasticRow& row) PALPATE_RT;
+// The same for a plate on both of its axes. `bends_1_per_m`: of the height along them.
+void stand_on_plate(const Model& model, const Box& box, const Real (&bends_1_per_m)[2], Real force_N, ElasticRow& row,
+                    PlateAxis (&axes)[2]) PALPATE_RT;
 
 }  // namespace palpate

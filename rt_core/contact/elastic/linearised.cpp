@@ -1,6 +1,7 @@
 #include "rt_core/contact/elastic/linearised.h"
 
 #include "rt_core/cholesky.h"
+#include "rt_core/contact/elastic/damped_step.h"
 #include "rt_core/contact/elastic/place_pull.h"
 
 namespace palpate {
@@ -255,33 +256,49 @@ Real Linearised<Count>::find_step(const Real* force_N, Real* delta) const PALPAT
   return length <= longest ? 1.0 : longest / length;
 }
 
+// Shortens the step of every amplitude that goes to and fro; returns whether the motion is one to go on with.
+template <class Count>
+bool Linearised<Count>::damp_step(Real* delta) PALPATE_RT {
+  bool goes_on = false, is_damped = false;
+  for (std::int32_t a = 0; a < n_; ++a) {  // bound: soft
+    DampedStep& mode = state_.elastic.mode[a];
+    goes_on = goes_on || mode.asked != 0;
+    const Real share = damp(state_.elastic.step_rootJ[a] + delta[a], mode);
+    is_damped = is_damped || share < 1;
+    delta[a] *= share;
+  }
+  return goes_on && !is_damped;
+}
+
 template <class Count>
 Real Linearised<Count>::step(const Real* force_N) PALPATE_RT {
   Real delta[kMaxSoftModes];
-  const Real share = find_step(force_N, delta);
-  auto &p = state_.elastic.soft_rootJ, &goes = state_.elastic.step_rootJ;
-  Real back = 0;
-  for (std::int32_t a = 0; a < n_; ++a) back += goes[a] * (goes[a] + share * delta[a]);  // bound: soft
   bool rubs = false;
   for (std::int32_t r = 0; r < regions(); ++r) rubs = rubs || work_.rub[r].is_on;  // bound: kMaxRegions
+  const Real share = find_step(force_N, delta);
+  for (std::int32_t a = 0; a < n_; ++a) delta[a] *= share;
+  const bool goes_on = rubs || damp_step(delta);
+  auto &p = state_.elastic.soft_rootJ, &goes = state_.elastic.step_rootJ;
+  Real back = 0;
+  for (std::int32_t a = 0; a < n_; ++a) back += goes[a] * (goes[a] + delta[a]);  // bound: soft
   // What springs back from under a tip that slips does not go on: a column swung between the two every other tick. Nor
   // does what turns back, but for its direction: steps twice too far alternate where H is off by a third (a ring on its
   // rim, 4e-4 N every other tick, 2026-11-25). With friction every amplitude by itself: jaws that drag a block along
   // bent and twisted it to and fro across the drag, by up to 34 mN for as long as it went on (2026-11-26). Without,
   // that would leave a loop over an arch 1e-6 of the stored energy instead of 4e-8.
-  const bool stops = share < 1 || slips_;
+  const bool stops = !goes_on || share < 1 || slips_;
   for (std::int32_t a = 0; a < n_; ++a) {  // bound: soft
-    const Real d = share * delta[a], turns = rubs ? goes[a] * (goes[a] + d) : back;
+    const Real d = delta[a], turns = rubs ? goes[a] * (goes[a] + d) : back;
     p[a] += is_finite(d) ? d : 0.0;
     goes[a] = (stops ? 0.0 : turns < 0 ? kTurnedBack : 1.0) * (p[a] - work_.y_begun[a]);
   }
-  for (std::int32_t r = 0; r < regions(); ++r) sweep(share, delta, r);  // bound: kMaxRegions
-  return left_m(force_N, share, delta);
+  for (std::int32_t r = 0; r < regions(); ++r) sweep(delta, r);  // bound: kMaxRegions
+  return left_m(force_N, delta);
 }
 
 // V' + sum F pull + places' - friction where the step ended, and what H^-1 of it moves.
 template <class Count>
-Real Linearised<Count>::left_m(const Real* force_N, Real share, const Real* delta) PALPATE_RT {
+Real Linearised<Count>::left_m(const Real* force_N, const Real* delta) PALPATE_RT {
   Real left[kMaxSoftModes];
   soft_products(n_, state_.elastic.soft_rootJ.data(), work_.y);
   energy_J_ = soft_slope(model_, state_.elastic.soft_rootJ.data(), work_.y, left);
@@ -292,14 +309,14 @@ Real Linearised<Count>::left_m(const Real* force_N, Real share, const Real* delt
     for (std::int32_t a = 0; a < n_; ++a) {
       left[a] += force_N[r] * row.pull[a];
       for (std::int32_t b = a; b < n_; ++b, ++pair) {
-        const Real turn = force_N[r] * share * row.turn[pair];
+        const Real turn = force_N[r] * row.turn[pair];
         left[a] += turn * delta[b];
         if (a != b) left[b] += turn * delta[a];
       }
     }
     if (!work_.rub[r].is_on) continue;
     for (const RubAxis& axis : work_.rub[r].axis) {  // bound: 2
-      const Real rubs_N = axis.force_N - axis.stiffness_N_per_m * share * dot(axis.sweep, delta, n_);
+      const Real rubs_N = axis.force_N - axis.stiffness_N_per_m * dot(axis.sweep, delta, n_);
       for (std::int32_t a = 0; a < n_; ++a) left[a] -= rubs_N * axis.sweep[a];
     }
   }
@@ -314,10 +331,10 @@ Real Linearised<Count>::left_m(const Real* force_N, Real share, const Real* delt
 
 // How far the surface under a region went along.
 template <class Count>
-void Linearised<Count>::sweep(Real share, const Real* delta, std::int32_t r) PALPATE_RT {
+void Linearised<Count>::sweep(const Real* delta, std::int32_t r) PALPATE_RT {
   BodyRub& rub = work_.rub[r];
   if (!rub.is_on) return;
-  for (const RubAxis& axis : rub.axis) rub.moved_w += (share * dot(axis.sweep, delta, n_)) * axis.unit_w;  // bound: 2
+  for (const RubAxis& axis : rub.axis) rub.moved_w += dot(axis.sweep, delta, n_) * axis.unit_w;  // bound: 2
 }
 
 // H as stiff as it has to be without friction: a tangent below zero would not be one to step by.

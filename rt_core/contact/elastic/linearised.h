@@ -68,9 +68,10 @@ class Linearised {
   void aim_normal(Size size, std::int32_t r, ToolTangent::Spring& out) const PALPATE_RT;
   template <class Size>
   void tell_pairs(Size size, const Real* force_N) const PALPATE_RT;
+  bool damp_step(Real* delta) PALPATE_RT;
   Real find_step(const Real* force_N, Real* delta) const PALPATE_RT;
-  void sweep(Real share, const Real* delta, std::int32_t r) PALPATE_RT;
-  Real left_m(const Real* force_N, Real share, const Real* delta) PALPATE_RT;
+  void sweep(const Real* delta, std::int32_t r) PALPATE_RT;
+  Real left_m(const Real* force_N, const Real* delta) PALPATE_RT;
   void add_tip(Contact& contact, std::int32_t at) PALPATE_RT;
   void couple() PALPATE_RT;
 
