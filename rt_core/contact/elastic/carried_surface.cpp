@@ -301,16 +301,21 @@ void turn_on_edge(Count soft, const EdgePlace& on, const Double4 (&corner)[3][kM
     for (std::int32_t b = a; b < soft; ++b, ++pair) row.turn[pair] -= bend * dot(across[a], across[b]);
 }
 
-// How the height bends along an axis, at height t above a surface of curvature k by k / (1 + k t); none below
-// zero.
-Real height_bend(const foot::Corners& corners, const ElasticRow& row, Vec3 axis) PALPATE_RT {
+// How the height bends along unit vectors a and b, at height t above a surface of curvature k by k / (1 + k t) along
+// one of its own directions.
+Real height_bend(const foot::Corners& corners, const ElasticRow& row, Vec3 a, Vec3 b) PALPATE_RT {
   const Vec3 n = row.foot.normal_w;
   Vec3 mixed;
   for (int k = 0; k < 3; ++k) mixed += row.foot.weight[k] * corners.u[k];  // bound: 3
   Real turned = 0;
   for (int k = 0; k < 3; ++k)  // bound: 3
-    turned += dot(row.foot.gradient_per_m[k], axis) * (dot(corners.u[k], axis) - dot(corners.u[k], n) * dot(n, axis));
-  return max_of(turned / (norm(mixed) * squared_norm(axis)), 0.0);
+    turned += dot(row.foot.gradient_per_m[k], a) * (dot(corners.u[k], b) - dot(corners.u[k], n) * dot(n, b));
+  return turned / norm(mixed);
+}
+// Along one, and none below zero.
+Real height_bend(const foot::Corners& corners, const ElasticRow& row, Vec3 axis) PALPATE_RT {
+  const Vec3 unit = unit_or(axis, {});
+  return max_of(height_bend(corners, row, unit, unit), 0.0);
 }
 
 // The same over a sharp edge or its end, which a line that crosses it turns about. Without it the line was to go on
@@ -409,9 +414,11 @@ void CarriedSurface::place(const RoundTip& tip, std::int32_t triangle, Vec3 near
     if (tip.is_line())
       step_m = stand_on_line(model, box, height_bend(last.corners, row, tip.half_axis_w), force_N, row);
     if (tip.is_plate()) {
-      const Real bends_1_per_m[2] = {height_bend(last.corners, row, tip.half_axis_w),
-                                     height_bend(last.corners, row, tip.half_across_w)};
-      stand_on_plate(model, box, bends_1_per_m, force_N, row, plate);
+      const Vec3 along = unit_or(tip.half_axis_w, {}), across = unit_or(tip.half_across_w, {});
+      const PlateBends bends{
+          height_bend(last.corners, row, along), height_bend(last.corners, row, across),
+          0.5 * (height_bend(last.corners, row, along, across) + height_bend(last.corners, row, across, along))};
+      stand_on_plate(model, box, bends, force_N, row, plate);
     }
     if (row.has_slide) slide_slopes(turns, row, last, below, slopes.slide);
   } else {

@@ -363,7 +363,7 @@ void add_most_places(const Model& model, const SceneSizes& n, Work& work) noexce
 void add_most_work(const Model& model, const SceneSizes& n, Work& work) noexcept {
   const std::int32_t soft = model.params.elastic_soft, pair = pairs(soft);
   add_most_points(model, n, work);
-  work.queries += 3 * n.points;  // a capsule asks four times
+  work.queries += 2 * n.points;  // a capsule asks three times
   add_most_places(model, n, work);
   // A solve whose step fails ends with it; one that is foreseen may be looked at again.
   const std::int32_t evaluations = kTipEvaluations + 1, steps = kTipEvaluations + 2 * kSolvesOfFriction;

@@ -350,24 +350,26 @@ class Finder {
   }
 
   // The facet nearest to the centre on the body at rest, as the surface about the last place has moved. A capsule: from
-  // the place above where it was found last, which comes nearer from tick to tick, or the nearest of three on its axis,
-  // no point of which is farther than a third from one of them, and which need to look no farther. By the three alone a
-  // rod of 150 mm went 20 mm into a tube before it touched (2026-11-29). `warm`: a triangle to begin with, or -1.
-  // False: no part of the body is in reach.
+  // the place above where it was found last, which comes nearer from tick to tick, or in the middle of either other
+  // third of its axis, which need to look no farther. From three thirds alone a rod of 150 mm went 20 mm into a tube
+  // before it touched (2026-11-29). `warm`: a triangle to begin with, or -1. False: no part of the body is in reach.
   bool search(RoundTip& tip, PointState& point, std::int32_t warm) PALPATE_RT {
     Vec3 moved;
     if (point.triangle >= 0)
       moved = surface_.displacement(model_.triangle[static_cast<std::size_t>(point.triangle)].vertex[0]);
     tip.come_near(point.closest_w);
-    const std::int32_t places = tip.is_line() ? 4 : 1;
+    const std::int32_t places = tip.is_line() ? 3 : 1, last = tip.along < -kThird ? 0 : tip.along > kThird ? 2 : 1;
+    const Real third_m = norm(tip.half_axis_w) * kThird;
     SurfacePoint best;
     Real along = tip.along, bound = kHuge;
-    for (std::int32_t i = 0; i < places; ++i) {  // bound: 4
-      if (i > 0) tip.along = (i - 2) * (2 * kThird);
+    for (std::int32_t i = 0; i < places; ++i) {  // bound: 3
+      if (i > 0) tip.along = ((i <= last ? i - 1 : i) - 1) * (2 * kThird);
       const std::int32_t left = surface_work_share(model_.params) - scratch_.surface_work;
       if (i == 0 && (left <= 0 || scratch_.surface_work > kMostBefore)) return hold(point);
-      if (left <= 0) bound = 0;  // what was found counts
-      if (left <= 0) break;
+      if (left <= 0) {  // what was found counts, and nothing is known to be apart
+        bound = 0;
+        break;
+      }
       const bool beside = best.found && best.signed_distance_m > kNearer_m;
       const std::int32_t most = left < kMaxTipSearched ? left : kMaxTipSearched;
       const Vec3 rest = tip.centre_w() - moved;
@@ -376,7 +378,7 @@ class Finder {
       scratch_.surface_work += here.looked;
       scratch_.work.queries += 1;
       if (here.truncated) scratch_.status |= Status::kTraversalTruncated;
-      bound = min_of(bound, here.lower_bound_m);
+      bound = min_of(bound, here.lower_bound_m - (i == 0 ? third_m : 0.0));  // its own third is up to two away
       if (!here.found || (i > 0 && !(here.signed_distance_m < best.signed_distance_m))) continue;
       best = here;
       along = tip.along;
@@ -387,8 +389,7 @@ class Finder {
     point.triangle = best.triangle;
     point.closest_w = best.closest_w + moved;
     point.normal_w = best.normal_w;
-    const Real beside_m =
-        tip.is_plate() ? 2 * (norm(tip.half_axis_w) + norm(tip.half_across_w)) : norm(tip.half_axis_w) * kThird;
+    const Real beside_m = tip.is_plate() ? 2 * (norm(tip.half_axis_w) + norm(tip.half_across_w)) : third_m;
     reach_m_ = bound - tip.margin_m - beside_m - model_.params.smooth_slack_m -
                (state_.elastic.moved != 0 ? moved_m_ + norm(moved) : 0.0);
     if (best.signed_distance_m < 0 || !(reach_m_ > nearer_m_ + push_m_ + kSearchMargin_m)) return true;

@@ -138,14 +138,14 @@ Real stand_on_line(const Model& model, const Box& box, Real bend_1_per_m, Real f
 
 // The plate's tip is to be where it is deepest, on a tangent paraboloid; the plate itself, tilted on what is flat,
 // bears beside its middle by 2/3 b^2 tilt / e, as a round punch does, which is a paraboloid of its own.
-void stand_on_plate(const Model& model, const Box& box, const Real (&bends_1_per_m)[2], Real force_N, ElasticRow& row,
+void stand_on_plate(const Model& model, const Box& box, const PlateBends& plate, Real force_N, ElasticRow& row,
                     PlateAxis (&axes)[2]) PALPATE_RT {
   RoundTip& tip = row.tip;
   const Real square = tip.flat_m * tip.flat_m, dent = force_N / (2 * tip.modulus_Pa * row.modulus * tip.flat_m);
   const Vec3 out = unit_or(cross(tip.half_axis_w, tip.half_across_w), {});
   const Real own = 1.5 * max_of(dent, kLeastDepth * tip.flat_m) / square;
-  const auto go = [&](Vec3 half_w, Real bend, DampedStep& memory, Real& at) PALPATE_RT {
-    const Real half = norm(half_w), lean = -dot(row.rise, half_w) / half, from = at * half;
+  const auto go = [&](Vec3 half_w, Real bend, Real leant, DampedStep& memory, Real& at) PALPATE_RT {
+    const Real half = norm(half_w), lean = -dot(row.rise, half_w) / half - leant, from = at * half;
     const Real bends = min_of(bend, kMostBend / tip.margin_m);
     // What of it the body is under, and the middle of that.
     const Reach reach = reach_under(model, box, (1.0 / half) * half_w, row);
@@ -153,7 +153,7 @@ void stand_on_plate(const Model& model, const Box& box, const Real (&bends_1_per
                last = clamp_to(from + reach.right_m - kInset_m, from, half), middle = 0.5 * (first + last);
     const Real wish = middle + (lean + bends * (from - middle)) / (bends + own), end = clamp_to(wish, first, last);
     const Real asked = clamp_to(end - from, -kMostSlide_m, kMostSlide_m);
-    const Real step = asked * damp(asked, memory), to = from + step;
+    const Real step = end == wish ? asked : asked * damp(asked, memory), to = from + step;
     row.travel_m += step * (lean - 0.5 * bends * step) - 0.5 * own * (to - middle) * (to - middle);
     at = to / half;
     return PlateAxis{step, bends, end == wish ? 1.0 / (bends + own) : 0.0};
@@ -161,8 +161,9 @@ void stand_on_plate(const Model& model, const Box& box, const Real (&bends_1_per
   const Real lean2 = 1 - dot(row.rise, out) * dot(row.rise, out);
   row.leads_m = 0;
   row.travel_m -= kStandsBack * tip.flat_m * max_of(lean2 - kLeansAway, 0.0);
-  axes[0] = go(tip.half_axis_w, bends_1_per_m[0], tip.step.along_m, tip.along);
-  axes[1] = go(tip.half_across_w, bends_1_per_m[1], tip.step.across_m, tip.across);
+  axes[0] = go(tip.half_axis_w, plate.along_1_per_m, 0, tip.step.along_m, tip.along);
+  axes[1] =
+      go(tip.half_across_w, plate.across_1_per_m, plate.mixed_1_per_m * axes[0].step_m, tip.step.across_m, tip.across);
 }
 
 }  // namespace palpate

@@ -15,8 +15,12 @@ Real stand_on_line(const Model& model, const Box& box, Real bend_1_per_m, Real f
 struct PlateAxis {
   Real step_m, bend_1_per_m, arm_m;
 };
-// The same for a plate on both of its axes. `bends_1_per_m`: of the height along them.
-void stand_on_plate(const Model& model, const Box& box, const Real (&bends_1_per_m)[2], Real force_N, ElasticRow& row,
+// How the height bends along a plate's axes, and how much it leans along either for a step along the other.
+struct PlateBends {
+  Real along_1_per_m, across_1_per_m, mixed_1_per_m;
+};
+// The same for a plate, along one axis and then along the other.
+void stand_on_plate(const Model& model, const Box& box, const PlateBends& bends, Real force_N, ElasticRow& row,
                     PlateAxis (&axes)[2]) PALPATE_RT;
 
 }  // namespace palpate
