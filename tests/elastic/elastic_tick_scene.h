@@ -37,11 +37,11 @@ inline const Output& move_to(Bench& bench, Vec3 from, Vec3 to, double step_m = 2
   return bench.output;
 }
 // Largest change of the force from tick to tick while the tool is held for 60 ticks; the first `settling` do not count.
-inline double change_while_held_N(Bench& bench, Vec3 at, int settling) {
+inline double change_while_held_N(Bench& bench, const Pose& at, int settling) {
   double change = 0;
   Vec3 before;
   for (int i = 0; i < 60; ++i) {
-    const Vec3 force = bench.tick_at({at, {}}, {}).contact_w.force_N;
+    const Vec3 force = bench.tick_at(at, {}).contact_w.force_N;
     if (i > settling) change = std::max(change, norm(force - before));
     before = force;
   }

@@ -163,7 +163,7 @@ TEST(ElasticFriction, AStillTipGetsAStillForce) {
   move_to(bench, kTop, kTop - Vec3{0, 3e-4, 0}, 5e-6);
   const Vec3 held = kTop + Vec3{5e-4, -3e-4, 2e-4};
   move_to(bench, kTop - Vec3{0, 3e-4, 0}, held, 1e-4);
-  EXPECT_LT(change_while_held_N(bench, held, 10), 1e-9);
+  EXPECT_LT(change_while_held_N(bench, {held, {}}, 10), 1e-9);
 }
 
 }  // namespace

@@ -116,7 +116,7 @@ TEST(ElasticHard, TwoTipsSideBySideFeelOneAnothersDent) {
       Bench bench(baked.model());
       force[balls - 1] = move_to(bench, {0, 0.042, 0}, {0, 0.042 - kDepth_m, 0}).contact_w.force_N.y / balls;
       EXPECT_EQ(bench.output.regions, balls);
-      EXPECT_LT(change_while_held_N(bench, {0, 0.042 - kDepth_m, 0}, 20), 1e-9);
+      EXPECT_LT(change_while_held_N(bench, {{0, 0.042 - kDepth_m, 0}, {}}, 20), 1e-9);
     }
     RecordProperty("apart_" + std::to_string(static_cast<int>(apart_mm)) + "_mm",
                    std::to_string(force[1] / force[0]) + " of " + std::to_string(both / one));
@@ -149,7 +149,8 @@ TEST(ElasticHard, BesideEdgesATipStandsStill) {
         Bench bench(baked.model());
         const Vec3 at{x_m, 0.046 - depth_m, z_m};
         move_to(bench, {x_m, 0.0465, z_m}, at);
-        EXPECT_LT(change_while_held_N(bench, at, 40), 1e-4) << 1e3 * x_m << ' ' << 1e3 * z_m << ' ' << 1e3 * depth_m;
+        EXPECT_LT(change_while_held_N(bench, {at, {}}, 40), 1e-4)
+            << 1e3 * x_m << ' ' << 1e3 * z_m << ' ' << 1e3 * depth_m;
       }
 }
 
@@ -162,7 +163,7 @@ TEST(ElasticHard, ToolLargerThanTheBody) {
   const Vec3 force = bench.output.contact_w.force_N;
   EXPECT_GT(force.y, 20);
   EXPECT_LT(std::hypot(force.x, force.z), 0.02 * force.y);
-  EXPECT_LT(change_while_held_N(bench, {0, 0.078, 0}, 20), 1e-7);
+  EXPECT_LT(change_while_held_N(bench, {{0, 0.078, 0}, {}}, 20), 1e-7);
 }
 
 // All triangles of a cylinder's lid meet in its middle.
@@ -174,7 +175,7 @@ TEST(ElasticHard, HubOfNeedles) {
   EXPECT_LT(largest_step(bench, {-2e-3, 0.0345, 3e-4}, {2e-3, 0.0345, -2e-4}, 2e-5), 5e-3);
   EXPECT_GT(bench.output.contact_w.force_N.y, 10);
   move_to(bench, {0, 0.0365, 0}, {0, 0.0345, 0});
-  EXPECT_LT(change_while_held_N(bench, {0, 0.0345, 0}, 20), 1e-9);
+  EXPECT_LT(change_while_held_N(bench, {{0, 0.0345, 0}, {}}, 20), 1e-9);
   // Where all needles meet no tick searches the hierarchy, which looks at 32 nodes before it gives up, nor stands on a
   // facet: what its walk looks at is all.
   std::int64_t looks = 0;

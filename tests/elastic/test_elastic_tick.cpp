@@ -129,7 +129,7 @@ TEST_F(ArchInTick, ClosedLoopWithoutFrictionReturnsItsWork) {
 TEST_F(ArchInTick, StillToolGetsAStillForce) {
   Bench bench(scene().model());
   move_to(bench, kTop, kTop + Vec3{3e-3, -4e-3, 2e-3}, 1e-4);
-  EXPECT_LT(change_while_held_N(bench, kTop + Vec3{3e-3, -4e-3, 2e-3}, 20), 1e-9);
+  EXPECT_LT(change_while_held_N(bench, {kTop + Vec3{3e-3, -4e-3, 2e-3}, {}}, 20), 1e-9);
 }
 
 // One linearisation a tick, around where the body goes: on the way at 20 and at 200 mm/s the force is that of the tool

@@ -84,7 +84,7 @@ TEST_F(RodOnAnArch, StillRodGetsAStillForce) {
   const Vec3 held = kTop + Vec3{4e-3, -3e-3, 2e-3};
   move_to(bench, kTop, held, 1e-4);
   // 1e-7 N of 33 N after 20 ticks: its place on the axis takes one Newton step a tick.
-  EXPECT_LT(change_while_held_N(bench, held, 40), 1e-9);
+  EXPECT_LT(change_while_held_N(bench, {held, {}}, 40), 1e-9);
 }
 
 // Ends first, through the body, inside it.

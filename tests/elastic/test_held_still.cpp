@@ -2,11 +2,10 @@
 // did, by up to all of itself, or was no force of that body.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <numbers>
 #include <string>
 
-#include "rt_core/status.h"
+#include "config/bake/tool_points.h"
 #include "tests/elastic/elastic_tick_scene.h"
 
 namespace palpate::test {
@@ -30,19 +29,14 @@ std::string capsule(double radius_mm, double length_mm) {
 }
 constexpr const char* kPlate = "shape = \"box\"\nsize_mm = [150, 20, 150]\n";
 
-Quat turned(Vec3 degrees) {
-  const Vec3 half = (std::numbers::pi / 360) * degrees;
-  const double angle = norm(half), share = angle > 0 ? std::sin(angle) / angle : 0;
-  return {std::cos(angle), share * half.x, share * half.y, share * half.z};
-}
-
 // A tool that comes down from `top` along -y.
 struct Press {
   Bench bench;
   Vec3 top;
   Quat turn;
   double down_m = 0;
-  Press(const Model& model, Vec3 top_m, Vec3 turn_deg = {}) : bench(model), top(top_m), turn(turned(turn_deg)) {}
+  Press(const Model& model, Vec3 top_m, Vec3 turn_deg = {})
+      : bench(model), top(top_m), turn(rotation_of((std::numbers::pi / 180) * turn_deg)) {}
 
   Pose pose() const { return {top - Vec3{0, down_m, 0}, turn}; }
   const Output& go(double to_m) {
@@ -54,24 +48,14 @@ struct Press {
     }
     return bench.output;
   }
-  // Largest change between ticks of the last 20 of 60.
-  double swings_N() {
-    double change_N = 0;
-    Vec3 before = bench.output.contact_w.force_N;
-    for (int i = 0; i < 60; ++i) {
-      const Vec3 now = bench.tick_at(pose(), {}).contact_w.force_N;
-      if (i >= 40) change_N = std::max(change_N, norm(now - before));
-      before = now;
-    }
-    return change_N;
-  }
 };
 
 // Held at each depth, the force grows and stands still. Measured 1e-4 of it or less; before, 0.6 to 1.4 of it.
 void expect_still(Press& press, std::initializer_list<double> depths_m) {
   double before_N = 0;
   for (const double depth_m : depths_m) {
-    const double force_N = norm(press.go(depth_m).contact_w.force_N), swings_N = press.swings_N();
+    const double force_N = norm(press.go(depth_m).contact_w.force_N),
+                 swings_N = change_while_held_N(press.bench, press.pose(), 39);
     EXPECT_GT(force_N, before_N) << depth_m;
     EXPECT_LT(swings_N, 1e-3 * force_N) << depth_m;
     before_N = force_N;

@@ -270,14 +270,13 @@ template <class Count>
 void turn_with_plate(Count soft, const PlateAxis (&axes)[2], ElasticRow& row,
                      const Double4 (&corner)[3][kMaxSoftModes]) PALPATE_RT {
   const Vec3 n = row.foot.normal_w, first = unit_or(tangential_part(row.tip.half_axis_w, n), {}),
-             unit[2] = {first, cross(n, first)};
-  const Real across = dot(unit[1], row.tip.half_across_w) < 0 ? -1.0 : 1.0,
-             d = clamp_to(row.foot.height_m, 0.0, row.tip.margin_m);
+             second = cross(n, first), unit[2] = {first, dot(second, row.tip.half_across_w) < 0 ? -second : second};
+  const Real d = clamp_to(row.foot.height_m, 0.0, row.tip.margin_m);
   Turning turning;
   show_turning(soft, row, corner, turning);
   for (int i = 0; i < 2; ++i)  // bound: 2 pairs
-    turn_along(soft, unit[i], i == 0 ? axes[i].step_m : across * axes[i].step_m,
-               axes[i].bend_1_per_m / (1 - axes[i].bend_1_per_m * d), axes[i].arm_m, turning, row);
+    turn_along(soft, unit[i], axes[i].step_m, axes[i].bend_1_per_m / (1 - axes[i].bend_1_per_m * d), axes[i].arm_m,
+               turning, row);
 }
 
 // On an edge the nearest place slides along it alone, at an end not at all: f_ab = s_a.s_b / d - n.u_ab, s_a what u_a
@@ -321,8 +320,7 @@ Real height_bend(const foot::Corners& corners, const ElasticRow& row, Vec3 axis)
 // The same over a sharp edge or its end, which a line that crosses it turns about. Without it the line was to go on
 // along what it leans by, as if there were no end to that (2026-11-29).
 Real edge_bend(const EdgePlace& on, const ElasticRow& row) PALPATE_RT {
-  const Vec3 axis = unit_or(row.tip.half_axis_w, {}),
-             across = axis - dot(axis, unit_or(on.along_w, {})) * unit_or(on.along_w, {});
+  const Vec3 axis = unit_or(row.tip.half_axis_w, {}), across = tangential_part(axis, unit_or(on.along_w, {}));
   const Real lean = dot(axis, row.foot.normal_w);
   return max_of(squared_norm(across) - lean * lean, 0.0) / row.foot.height_m;
 }

@@ -53,10 +53,12 @@ struct RoundTip {
   Vec3 centre_w() const PALPATE_RT { return middle_w + along * half_axis_w + across * half_across_w; }
   bool is_ball() const PALPATE_RT { return !(squared_norm(half_axis_w) > 0); }
   bool is_line() const PALPATE_RT { return squared_norm(half_axis_w) > 0 && !is_plate(); }
-  // Along each axis from `w`, to where the tip stands.
-  void tell_beside(Vec3 w) PALPATE_RT {
-    step.beside_m[0] = dot(centre_w() - w, unit_or(half_axis_w, {}));
-    step.beside_m[1] = dot(centre_w() - w, unit_or(half_across_w, {}));
+  // `step` with how far along each axis the tip stands from `w`.
+  PlaceStep step_beside(Vec3 w) const PALPATE_RT {
+    PlaceStep out = step;
+    out.beside_m[0] = dot(centre_w() - w, unit_or(half_axis_w, {}));
+    out.beside_m[1] = dot(centre_w() - w, unit_or(half_across_w, {}));
+    return out;
   }
   Vec3 beside(Vec3 w) const PALPATE_RT {
     return w + step.beside_m[0] * unit_or(half_axis_w, {}) + step.beside_m[1] * unit_or(half_across_w, {});
@@ -94,6 +96,11 @@ struct ElasticRow {
   Vec3 rise;  // gradient of the tip's height: the normal but for the facets' share
   Vec3 c_gradient, c1_gradient, curvature_gradient, beta_gradient;
   alignas(32) Real along[kMaxLinearModes];  // m/J^1/2
+
+  // Of a line's depth, with which its force grows where it is told: 1 as flat to 1.5 as a ball's.
+  Real told_power(Real depth_max_m) const PALPATE_RT {
+    return clamp_to(told.tangent_N_per_m * (kTold * depth_max_m) / told.force_N, 1.0, 1.5);
+  }
 };
 
 // What a term of a tip's pull costs where the foot slides, and one less where it does not (Work::shapes).

@@ -424,9 +424,7 @@ class Finder {
     contact.position_w = row.foot.foot_w;
     // Below where a line or plate was found to press, with which the next tick begins.
     point.closest_w = row.foot.foot_w + tangential_part(row.tip.centre_w() - row.placed_w, row.foot.normal_w);
-    RoundTip tip = row.tip;
-    tip.tell_beside(point.closest_w);
-    state_.elastic.place[index] = tip.step;
+    if (!row.tip.is_ball()) state_.elastic.place[index] = row.tip.step_beside(point.closest_w);
     contact.normal_w = point.normal_w = row.foot.normal_w;
     contact.depth_m = depth_m;
     contact.weight = tool_point.weight;

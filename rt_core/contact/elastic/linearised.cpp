@@ -181,8 +181,7 @@ void Linearised<Count>::add_places(const Real* force_N) PALPATE_RT {
 template <class Count>
 bool Linearised<Count>::slips(const Real* force_N) PALPATE_RT {
   Real delta[kMaxSoftModes];
-  const Real share = find_step(force_N, delta);
-  for (std::int32_t a = 0; a < n_; ++a) delta[a] *= share;
+  find_step(force_N, delta);
   bool some = false;
   for (std::int32_t r = 0; r < regions(); ++r) {  // bound: kMaxRegions
     const bool slips = let_slip(friction_, row_[r]->foot.normal_w, force_N[r], delta, n_, work_.rub[r]);
@@ -253,7 +252,9 @@ Real Linearised<Count>::find_step(const Real* force_N, Real* delta) const PALPAT
     for (std::int32_t r = 0; r < regions(); ++r) delta[a] -= force_N[r] * moved_[a][r];
   }
   const Real length = square_root(dot(delta, delta, n_)), longest = kLongestStep * model_.params.elastic_radius_rootJ;
-  return length <= longest ? 1.0 : longest / length;
+  const Real share = length <= longest ? 1.0 : longest / length;
+  for (std::int32_t a = 0; a < n_; ++a) delta[a] *= share;
+  return share;
 }
 
 // Shortens the step of every amplitude that goes to and fro; returns whether the motion is one to go on with.
@@ -276,7 +277,6 @@ Real Linearised<Count>::step(const Real* force_N) PALPATE_RT {
   bool rubs = false;
   for (std::int32_t r = 0; r < regions(); ++r) rubs = rubs || work_.rub[r].is_on;  // bound: kMaxRegions
   const Real share = find_step(force_N, delta);
-  for (std::int32_t a = 0; a < n_; ++a) delta[a] *= share;
   const bool goes_on = rubs || damp_step(delta);
   auto &p = state_.elastic.soft_rootJ, &goes = state_.elastic.step_rootJ;
   Real back = 0;

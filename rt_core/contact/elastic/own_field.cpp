@@ -17,9 +17,9 @@ constexpr Real kLayer = 0.2;
 // what is there: a rod pressed an hourglass with 70,000 N (2026-11-29).
 Real dent_m_per_N(const TipLaw& law, const ElasticRow& row) PALPATE_RT {
   if (row.tip.is_line() && row.told.force_N > 0) {
-    const Real power = row.told.tangent_N_per_m * kTold * law.depth_max_m / row.told.force_N;
-    const Real more = clamp_to(power - 1, 0.0, 0.5), by_beta = max_of(row.beta_1_per_mN, 0.0) * row.tip.margin_m;
-    return 1.0 / (row.told.tangent_N_per_m * (1 + 2 * more) * (1 + by_beta * row.told.force_N * (8 + 16 * more)));
+    const Real power = row.told_power(law.depth_max_m);
+    const Real by_beta = max_of(row.beta_1_per_mN, 0.0) * row.tip.margin_m * row.told.force_N * (8 * power - 4);
+    return 1.0 / (row.told.tangent_N_per_m * (2 * power - 1) * (1 + 2 * by_beta));
   }
   return 2 * law.depth_max_m / (law.half_power * law.force_max_N * row.modulus);
 }

@@ -50,7 +50,7 @@ void add_line_terms(const TipLaw& law, const ElasticRow& row, PlacedLaw& out) PA
   const Real rho = max_of(-row.c_m_per_N, 0.0), root = math::cbrt(base);
   const Real second = 0.75 * root * root, third = 0.25 * wide / (root * root), beta = row.beta_1_per_mN;
   // At the deepest depth: 4^p times the force, 4 + 8 (p - 1) for powers p of 1 to 1.5.
-  const Real power = clamp_to(told.tangent_N_per_m * depth / told.force_N, 1.0, 1.5);
+  const Real power = row.told_power(law.depth_max_m);
   const Real held = 1.0 / (1 + max_of(-beta, 0.0) * wide * told.force_N * (8 * power - 4) / kMostByBeta);
   out.terms = {rho, second * rho * rho, beta * third * held, 0};
 }
