@@ -34,12 +34,13 @@ void LocalHandle::obey(Vec3 force_N, const LocalModel& model) noexcept {
   to_track_ = rests_on_track();
 }
 
+// Between two contacts not: what is met next may be stiff.
 bool LocalHandle::rests_on_track() const noexcept {
   const Options& o = options_;
   if (!(model_.valid_s > 0)) return false;
-  const double stiffness_N_per_m = stiffness_size(model_.along_N_per_m, model_.across_N_per_m) +
-                                   max_of(0, added_Nm_) / max_of(way_m2_, kLeastWay_m * kLeastWay_m);
-  return stiffness_N_per_m > 0 &&
+  const double told_N_per_m = stiffness_size(model_.along_N_per_m, model_.across_N_per_m);
+  const double stiffness_N_per_m = told_N_per_m + max_of(0, added_Nm_) / max_of(way_m2_, kLeastWay_m * kLeastWay_m);
+  return told_N_per_m > 0 &&
          o.friction_N >= kAskedForMore * friction_to_smooth(EncoderLaw::kMotion, kSmoothedPosition, stiffness_N_per_m,
                                                             o.encoder_m, o.mass_kg);
 }
