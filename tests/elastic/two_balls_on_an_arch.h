@@ -53,8 +53,8 @@ inline Vec3 pair_ball_m(const PairState& state, int left) {
 struct PairForces {
   Vec3 right_N, left_N;  // of the arch on the balls
 };
-// LongReport.TwoBallsOnAnArch, 6,584 nodes, one mesh (2026-11-29). The scene's mesh of 2026-11-25, 6,740 nodes, gave 0.3
-// to 0.8 % less: so much one mesh is worth. Both balls of the level states are the same but for it.
+// LongReport.TwoBallsOnAnArch, 6,584 nodes, one mesh (2026-11-29). The scene's mesh of 2026-11-25, 6,740 nodes, gave
+// 0.3 to 0.8 % less: so much one mesh is worth. Both balls of the level states are the same but for it.
 inline constexpr std::array<PairForces, kPairStates.size()> kPairReference = {
     {{{0.61939, 1.95914, -0.00048}, {-0.62007, 1.95910, -0.00002}},
      {{1.43204, 4.72643, -0.00147}, {-1.43318, 4.72635, -0.00268}},
