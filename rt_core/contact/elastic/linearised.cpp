@@ -244,7 +244,7 @@ void Linearised<Count>::let_give(const Real* before_N) PALPATE_RT {
   if (load_.n > 1) couple();
 }
 
-// Returns the share of it that is taken.
+// `delta`: the step, no longer than one may be; returns what share of the whole that is.
 template <class Count>
 Real Linearised<Count>::find_step(const Real* force_N, Real* delta) const PALPATE_RT {
   for (std::int32_t a = 0; a < n_; ++a) {  // bound: soft x kMaxRegions
