@@ -37,6 +37,19 @@ class OnSpring {
   int periods_ = 0;
 };
 
+// Where the encoder's edges have the handle, a period after the last time.
+class ByEdges {
+ public:
+  double next(double told_m) {
+    const double change_m = told_m - std::exchange(told_m_, told_m);
+    return told_m + between_edges(kStep_m, kPeriod_s, {change_m, 0, 0}, edges_).x;
+  }
+
+ private:
+  EdgeMemory edges_;
+  double told_m_ = 0;
+};
+
 // RMS second difference over a millisecond of what it is off, in a tremor: the staircase that a hand feels. A lag,
 // smooth at 9 Hz, is hardly in it.
 double roughness_m(double stiffness_N_per_m, double amplitude_m) {
@@ -62,12 +75,10 @@ TEST(LocalHandle, IsQuietOnASoftObject) {
 TEST(LocalHandle, FollowsEdgesWhereFrictionIsNotEnough) {
   for (const double stiffness : {0.0, kStiff_N_per_m}) {
     OnSpring handle(kDevice, 0);
-    EdgeMemory edges;
-    double told_before = 0;
+    ByEdges by_edges;
     for (int i = 0; i < 5000; ++i) {
       const double told = test::told_m(1e-4 * std::sin(kTwoPi * 9 * kPeriod_s * i), kStep_m);
-      const double change = told - std::exchange(told_before, told);
-      ASSERT_EQ(handle.next(told, stiffness), told + between_edges(kStep_m, kPeriod_s, {change, 0, 0}, edges).x);
+      ASSERT_EQ(handle.next(told, stiffness), by_edges.next(told));
     }
   }
   OnSpring exact({0, kPeriod_s, 0.1, 0.06}, 0);
@@ -79,16 +90,15 @@ TEST(LocalHandle, FollowsEdgesWhereFrictionIsNotEnough) {
 // went to and fro so, and gave a hand .6 mJ (2026-11-29).
 TEST(LocalHandle, FollowsEdgesBetweenContacts) {
   LocalHandle handle(kDevice, {});
-  EdgeMemory edges;
-  double told_before = 0, at_m = 0, apart_m = 0;
+  ByEdges edges;
+  double at_m = 0, apart_m = 0;
   for (int i = 0; i < 12000; ++i) {
     const bool touches = i < 10000;
     if (i % 10 == 0)
       handle.obey({touches ? 5 - kSoft_N_per_m * at_m : 0, 0, 0},
                   {{at_m, 0, 0}, {touches ? 0.8 * kSoft_N_per_m : 0, 0, 0}, {}, 5e-3});
     const double told = test::told_m(1e-4 * std::sin(kTwoPi * 9 * kPeriod_s * i), kStep_m);
-    const double change = told - std::exchange(told_before, told);
-    const double by_edges = told + between_edges(kStep_m, kPeriod_s, {change, 0, 0}, edges).x;
+    const double by_edges = edges.next(told);
     at_m = handle.next({told, 0, 0}).x;
     if (touches) apart_m = std::max(apart_m, std::abs(at_m - by_edges));
     if (i > 10110) {

@@ -97,10 +97,10 @@ struct ElasticRow {
   Vec3 c_gradient, c1_gradient, curvature_gradient, beta_gradient;
   alignas(32) Real along[kMaxLinearModes];  // m/J^1/2
 
-  // Of a line's depth, with which its force grows where it is told: 1 as flat to 1.5 as a ball's.
-  Real told_power(Real depth_max_m) const PALPATE_RT {
-    return clamp_to(told.tangent_N_per_m * (kTold * depth_max_m) / told.force_N, 1.0, 1.5);
-  }
+  // A line is told so deep, and its force, above zero, grows with that power of the depth there: 1 as flat to 1.5 as a
+  // ball's.
+  Real told_m() const PALPATE_RT { return kTold * tip.depth_max_m; }
+  Real told_power() const PALPATE_RT { return clamp_to(told.tangent_N_per_m * told_m() / told.force_N, 1.0, 1.5); }
 };
 
 // What a term of a tip's pull costs where the foot slides, and one less where it does not (Work::shapes).

@@ -74,13 +74,12 @@ Real cut(Real reach_m, Real radius_m, Real& side_m) PALPATE_RT {
   return min_of(1 + kSteeper * over / radius_m, kSteepest);
 }
 
-// How deep the line is under the force that it had, from where it is told, by the law's power there, 1 to 1.5. What the
+// How deep the line is under the force that it had, from where it is told, by the law's power there. What the
 // place and the body give is not of the dent: with the travel less c F jaws over a block's edge, where the other jaw
 // takes most of that back, swung from end to end (2026-11-26).
-Real dent_m(const LineLaw::Point& told, Real depth_m, Real force_N) PALPATE_RT {
-  const Real ratio = clamp_to(force_N / told.force_N, 1e-3, 1e3), root = math::cbrt(ratio * ratio);
-  const Real share = clamp_to(2 * (told.tangent_N_per_m * depth_m / told.force_N - 1), 0.0, 1.0);
-  return depth_m * (ratio + share * (root - ratio));
+Real dent_m(const ElasticRow& row, Real force_N) PALPATE_RT {
+  const Real ratio = clamp_to(force_N / row.told.force_N, 1e-3, 1e3), root = math::cbrt(ratio * ratio);
+  return row.told_m() * (ratio + 2 * (row.told_power() - 1) * (root - ratio));
 }
 
 // The same a Newton step nearer, for the solver to begin with: 5 % off it took a law more.
@@ -113,10 +112,9 @@ Real stand_on_line(const Model& model, const Box& box, Real bend_1_per_m, Real f
   if (row.tip.is_of_part() && row.foot.state == FootState::kEdge) line.left_m = line.right_m = line.lean = 0;
   const LineLaw law(line, row.tip.modulus_Pa * row.modulus, kHuge);
   if (row.tip.is_of_part() || row.tip.is_edge()) row.leads_m = max_of(-law.touches_at_m(), 0.0);
-  const Real told_m = kTold * row.tip.depth_max_m;
-  row.told = law.at(told_m + law.touches_at_m());
+  row.told = law.at(row.told_m() + law.touches_at_m());
   const bool had = force_N > 0 && row.told.force_N > 0;
-  row.dent_m = had ? dent_m(row.told, told_m, force_N) : 0.0;
+  row.dent_m = had ? dent_m(row, force_N) : 0.0;
   const Real deep = max_of(had ? row.dent_m : row.travel_m - law.touches_at_m(), kLeastDepth * radius);
   if (had && row.tip.is_of_part()) row.dent_m = nearer_dent_m(law, row.dent_m, force_N);
   const LineLaw::Lean stands = law.lean_at(law.touches_at_m() + deep);

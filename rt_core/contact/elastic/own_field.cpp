@@ -17,7 +17,7 @@ constexpr Real kLayer = 0.2;
 // what is there: a rod pressed an hourglass with 70,000 N (2026-11-29).
 Real dent_m_per_N(const TipLaw& law, const ElasticRow& row) PALPATE_RT {
   if (row.tip.is_line() && row.told.force_N > 0) {
-    const Real power = row.told_power(law.depth_max_m);
+    const Real power = row.told_power();
     const Real by_beta = max_of(row.beta_1_per_mN, 0.0) * row.tip.margin_m * row.told.force_N * (8 * power - 4);
     return 1.0 / (row.told.tangent_N_per_m * (2 * power - 1) * (1 + 2 * by_beta));
   }

@@ -40,7 +40,7 @@ constexpr Real kMostByBeta = 0.35;
 // rod on an arch 3.5 % at 2 mm instead of 2.5 (2026-11-26).
 void add_line_terms(const TipLaw& law, const ElasticRow& row, PlacedLaw& out) PALPATE_RT {
   const Real radius = row.tip.margin_m, square = squared_norm(row.tip.half_axis_w);
-  const Real depth = kTold * law.depth_max_m;
+  const Real depth = row.told_m();
   const LineLaw::Point& told = row.told;
   const Real base = told.force_N / (depth * square_root(depth));
   const Real equal = base / (law.coefficient * row.modulus), bent = row.line.along_1_per_m * square;
@@ -50,7 +50,7 @@ void add_line_terms(const TipLaw& law, const ElasticRow& row, PlacedLaw& out) PA
   const Real rho = max_of(-row.c_m_per_N, 0.0), root = math::cbrt(base);
   const Real second = 0.75 * root * root, third = 0.25 * wide / (root * root), beta = row.beta_1_per_mN;
   // At the deepest depth: 4^p times the force, 4 + 8 (p - 1) for powers p of 1 to 1.5.
-  const Real power = row.told_power(law.depth_max_m);
+  const Real power = row.told_power();
   const Real held = 1.0 / (1 + max_of(-beta, 0.0) * wide * told.force_N * (8 * power - 4) / kMostByBeta);
   out.terms = {rho, second * rho * rho, beta * third * held, 0};
 }
