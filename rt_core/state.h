@@ -368,7 +368,7 @@ struct SurfaceFoot {
 // What a tick finds of the other one of two tools, as Scratch has it of a hand's only one.
 struct OtherFound {
   Wrench contact_wrench_w;
-  ContactStiffness stiffness;
+  ContactStiffness stiffness, told_besides;
   Pose tool_corrected_w, grip_w;
 };
 
@@ -387,6 +387,7 @@ struct Scratch {
   RowsByRegion rows;               // points, tips: written by solve
   RegionSystem system;             // of the region solver
   ContactStiffness stiffness;      // of normal loads so far
+  ContactStiffness told_besides;   // what a device that evaluates the local model is told besides the tangent
   std::int32_t driven = 0;         // the tool's pose is given, nobody holds it by a spring
   double strain = 0;               // largest at the gauges (nodal)
   Pose tool_corrected_w;           // where the tool balances

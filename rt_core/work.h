@@ -68,8 +68,10 @@ namespace palpate {
   X(grouped, kAccount, 1550, "clusters of pushing nodes given a place")                     \
   X(joined, kAccount, 54, "pairs of pushing nodes compared, and places recalled")           \
   X(summed, kAccount, 10, "vectors multiplied and added")                                   \
+  X(told, kAccount, 4.5, "entries of a tangent that is told to a device by itself")         \
   X(landings_again, kAccount, 890, "the same where it is balanced")                         \
   X(other_balances, kAccount, 4500, "second hands' tools balanced")                         \
+  X(felt, kSafety, 2600, "stiffnesses told to a device that evaluates them")                \
   X(other_outputs, kSafety, 4700, "second hands' wrenches limited")
 
 struct Work {

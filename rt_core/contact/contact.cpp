@@ -18,6 +18,7 @@ const ContactMethod& contact_method(Method method) PALPATE_RT {
 
 void clear_contact(State& state, Scratch& scratch) PALPATE_RT {
   scratch.contact_wrench_w = scratch.other.contact_wrench_w = {};
+  scratch.told_besides = scratch.other.told_besides = {};
   scratch.palm_w = {};
   scratch.energy_J = 0;
   scratch.residual_m = 0;

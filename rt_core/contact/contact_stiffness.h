@@ -39,10 +39,10 @@ inline void add_spring(ContactStiffness& s, Real k_N_per_m, Vec3 direction, Vec3
   s.torque[5] += km.z * m.z;
 }
 
-inline void add_to(ContactStiffness& sum, const ContactStiffness& s) PALPATE_RT {
-  for (int i = 0; i < 6; ++i) sum.force[i] += s.force[i];        // bound: 6
-  for (int i = 0; i < 9; ++i) sum.coupling[i] += s.coupling[i];  // bound: 9
-  for (int i = 0; i < 6; ++i) sum.torque[i] += s.torque[i];      // bound: 6
+inline void add_to(ContactStiffness& sum, const ContactStiffness& s, Real times = 1) PALPATE_RT {
+  for (int i = 0; i < 6; ++i) sum.force[i] += times * s.force[i];        // bound: 6
+  for (int i = 0; i < 9; ++i) sum.coupling[i] += times * s.coupling[i];  // bound: 9
+  for (int i = 0; i < 6; ++i) sum.torque[i] += times * s.torque[i];      // bound: 6
 }
 
 // Stiffness against a translation along unit vector n.

@@ -215,6 +215,13 @@ Real sliding_limit_N(const FrictionParameters& parameters, Real normal_N) PALPAT
   return max_of(min_of(parameters.mu_dynamic * normal_N, static_limit_N(parameters, normal_N)), 0.0);
 }
 
+Real share_before_slip(const FrictionParameters& parameters, const FrictionForce& friction, Real normal_N,
+                       Real way_m) PALPATE_RT {
+  const Real more_N = friction.along_N_per_m * way_m;
+  const Real left_N = static_limit_N(parameters, normal_N) - norm(friction.force_w);
+  return more_N > left_N ? max_of(left_N, 0.0) / more_N : 1.0;
+}
+
 FrictionForce friction_step(const FrictionParameters& parameters, const FrictionLoad& load,
                             FrictionMemory& memory) PALPATE_RT {
   if (parameters.law == FrictionLaw::kNone) {

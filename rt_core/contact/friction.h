@@ -52,6 +52,11 @@ struct FrictionForce {
 Real static_limit_N(const FrictionParameters& parameters, Real normal_N) PALPATE_RT;
 Real sliding_limit_N(const FrictionParameters& parameters, Real normal_N) PALPATE_RT;
 
+// What sticks slips before long: the share of its stiffness along the stretch that a motion of `way_m` along the
+// surface meets on the whole, from 1 where it ends below the static limit.
+Real share_before_slip(const FrictionParameters& parameters, const FrictionForce& friction, Real normal_N,
+                       Real way_m) PALPATE_RT;
+
 // One tick of the stick/slip machine.
 // kReturnMap (default): on slip the stretch is shortened, along itself, to the length that carries the sliding limit,
 // so

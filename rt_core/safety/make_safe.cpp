@@ -129,6 +129,7 @@ Asked judge(const Model& model, State& state, Scratch& scratch, const Input& inp
     wrench = safety.last_good_w;  // ramped out below
   }
   safety.last_good_w = limited(model, wrench, scratch);
+  scratch.work.felt += model.params.local_period_s > 0 ? 1 : 0;
   return {felt_stiffness(model, state, scratch), findings(state, input, faults)};
 }
 

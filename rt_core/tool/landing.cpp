@@ -12,17 +12,20 @@ namespace {
 
 constexpr std::integral_constant<std::int32_t, 6> kDof;  // loops over it are unrolled
 
-// What holds the tool at a part of the surface that it comes to: more than the stiffest of them. With a thousand times
-// the coupling, of 237 N/m, the arms that a tube has snapped through pressed it 16 um into a seat of 7 kN/mm, and the
-// model said 110 N (2026-11-26).
-constexpr Real kLanding_N_per_m = 1e8;
+// What holds the tool at a part that it comes to is no softer than the place there, or it would be pressed in by more
+// than what it came with: with 237 kN/m the arms that a tube has snapped through pressed it 16 um into a seat of 7
+// kN/mm, and the model said 110 N (2026-11-26). Nor much stiffer: what slides over a round end goes off from the plane
+// there, by 8 nm a tick, and a tool that was held by 1e8 N/m stood off for as long as it slid, ten ticks and 0.6 N that
+// no contact knew of (2026-11-29). So much of E* and the length that it lies on: that seat's 10 mm are as stiff as it
+// is.
+constexpr Real kOfModulus = 0.35;
 // Less is no landing.
 constexpr Real kLeast_m = 1e-12;
 
 // An end of what a tool point has below it on a part.
 struct End {
   Vec3 n, turn;
-  Real gap_m;
+  Real gap_m, gives_m_per_N;
   Real along(const Twist& t) const PALPATE_RT { return dot(n, t.translation_m) + dot(turn, t.rotation_rad); }
 };
 
@@ -38,7 +41,9 @@ class Landing {
   Landing(const Model& model, const State& state, const Pose& from) PALPATE_RT
       : model_(model),
         state_(state),
-        gone_(twist_between(state.tool_w, from)) {
+        gone_(twist_between(state.tool_w, from)),
+        gives_m2_per_N_((1 - model.params.poisson_ratio * model.params.poisson_ratio) /
+                        (kOfModulus * model.params.youngs_modulus_Pa)) {
     const auto points = static_cast<std::int32_t>(model_.tool_point.size());
     for (std::int32_t i = 0; i < points && i < kMaxPieces; ++i) find_ends(i);  // bound: kMaxPieces
   }
@@ -62,6 +67,11 @@ class Landing {
     return kLandings;
   }
 
+  void add_held(ContactStiffness& sum) const PALPATE_RT {
+    for (std::int32_t k = 0; k < held_; ++k)  // bound: kLandings
+      add_spring(sum, 1.0 / hold_[k].end->gives_m_per_N, hold_[k].end->n, hold_[k].end->turn);
+  }
+
  private:
   void find_ends(std::int32_t i) PALPATE_RT {
     const ToolPoint& tool_point = model_.tool_point[static_cast<std::size_t>(i)];
@@ -74,7 +84,7 @@ class Landing {
     if (piece.shape == PieceShape::kCapsule)
       add_line(piece, point, gap, pressed);
     else if (!pressed)
-      add(point.closest_w, point.normal_w, gap);
+      add(point.closest_w, point.normal_w, gap, piece.margin_m);
   }
   // A place that was touched and has no force is come to as well.
   bool presses(const PointState& point) const PALPATE_RT {
@@ -97,7 +107,10 @@ class Landing {
     limit(axis.y, point.closest_w.y, box.lower.y, box.upper.y, from, to);
     limit(axis.z, point.closest_w.z, box.lower.z, box.upper.z, from, to);
     for (const Real way : {from, to})  // of a line that leans on one end the other
-      if (!pressed || gap_m + way * slope > 0) add(point.closest_w + way * axis, point.normal_w, gap_m + way * slope);
+      if (!pressed || gap_m + way * slope > 0) {
+        const Real length = max_of(to - from, piece.margin_m);
+        add(point.closest_w + way * axis, point.normal_w, gap_m + way * slope, length);
+      }
   }
   static void limit(Real axis, Real at_m, Real lower_m, Real upper_m, Real& from, Real& to) PALPATE_RT {
     if (!(abs_of(axis) > 1e-3)) return;
@@ -106,9 +119,9 @@ class Landing {
     to = min_of(to, max_of(up, down));
     from = max_of(from, min_of(up, down));
   }
-  void add(Vec3 place_w, Vec3 n, Real gap_m) PALPATE_RT {
+  void add(Vec3 place_w, Vec3 n, Real gap_m, Real length_m) PALPATE_RT {
     End& end = end_[ends_];
-    end = {n, cross(place_w - state_.tool_w.position_m, n), 0};
+    end = {n, cross(place_w - state_.tool_w.position_m, n), 0, gives_m2_per_N_ / length_m};
     end.gap_m = max_of(gap_m + end.along(gone_), 0.0);
     ends_ += 1;
   }
@@ -162,7 +175,7 @@ class Landing {
     Real matrix[kLandings * kLandings];
     for (std::int32_t i = 0; i < held_; ++i) {  // bound: kLandings^2
       for (std::int32_t j = 0; j <= i; ++j) matrix[i * held_ + j] = hold_[i].end->along(hold_[j].per_N);
-      matrix[i * held_ + i] += 1.0 / kLanding_N_per_m;
+      matrix[i * held_ + i] += hold_[i].end->gives_m_per_N;
       force_N[i] = hold_[i].over_m;
     }
     if (!cholesky_factor(matrix, held_)) return false;
@@ -173,6 +186,7 @@ class Landing {
   const Model& model_;
   const State& state_;
   const Twist gone_;
+  const Real gives_m2_per_N_;
   const ToolPiece* line_of_ = nullptr;
   Vec3 axis_w_, middle_w_;              // of that piece
   Box box_{};                           // of the body
@@ -183,9 +197,12 @@ class Landing {
 
 }  // namespace
 
-std::int32_t land(const Model& model, const State& state, const Pose& from, const Real* factor,
-                  Twist& motion) PALPATE_RT {
-  return Landing(model, state, from).turn_aside(factor, motion);
+std::int32_t land(const Model& model, const State& state, const Pose& from, const Real* factor, Twist& motion,
+                  ContactStiffness* held) PALPATE_RT {
+  Landing landing(model, state, from);
+  const std::int32_t taken = landing.turn_aside(factor, motion);
+  if (held != nullptr) landing.add_held(*held);
+  return taken;
 }
 
 }  // namespace palpate

@@ -27,6 +27,7 @@ void exchange_tools(State& state, Scratch& scratch) PALPATE_RT {
   OtherFound& found = scratch.other;
   exchange(scratch.contact_wrench_w, found.contact_wrench_w);
   exchange(scratch.stiffness, found.stiffness);
+  exchange(scratch.told_besides, found.told_besides);
   exchange(scratch.tool_corrected_w, found.tool_corrected_w);
   exchange(scratch.grip_w, found.grip_w);
 }

@@ -67,9 +67,10 @@ bool add_reversals(const State& state, const Twist& motion, ContactStiffness& st
 }
 
 // Motion of the tool from `from` under a wrench: the tangent is right for slipping forwards, so try that first. False,
-// `motion` untouched, when it is singular. Adds to `landings` what looking for them took (Work).
+// `motion` untouched, when it is singular. Adds to `landings` what looking for them took (Work), and to `held`, if
+// given, what holds the tool there.
 bool answer(const Model& model, const State& state, const Pose& from, const Wrench& wrench, Twist& motion,
-            std::int32_t& landings) PALPATE_RT {
+            std::int32_t& landings, ContactStiffness* held) PALPATE_RT {
   Real matrix[kDof * kDof];
   if (!factor(model, state.contact_stiffness, matrix)) return false;
   Twist answered = solved(matrix, wrench);
@@ -81,7 +82,7 @@ bool answer(const Model& model, const State& state, const Pose& from, const Wren
     if (!factor(model, stiffer, matrix)) return false;
     answered = solved(matrix, wrench);
   }
-  if (touches_in_parts(model)) landings += 1 + land(model, state, from, matrix, answered);
+  if (touches_in_parts(model)) landings += 1 + land(model, state, from, matrix, answered, held);
   motion = answered;
   return true;
 }
@@ -103,15 +104,15 @@ bool follow(const Model& model, const State& state, const Twist& handle, Twist& 
   return answer(
       model, state, state.safety.tool_corrected_w,
       {model.params.coupling_N_per_m * handle.translation_m, model.params.coupling_Nm_per_rad * handle.rotation_rad},
-      tool, landings);
+      tool, landings, nullptr);
 }
 
 bool correct(const Model& model, const State& state, const Wrench& contact_w, const Wrench& coupling_on_tool_w,
-             Twist& correction, std::int32_t& landings) PALPATE_RT {
+             Twist& correction, std::int32_t& landings, ContactStiffness* held) PALPATE_RT {
   correction = {};
   return answer(model, state, state.tool_w,
                 {contact_w.force_N + coupling_on_tool_w.force_N, contact_w.torque_Nm + coupling_on_tool_w.torque_Nm},
-                correction, landings);
+                correction, landings, held);
 }
 
 void balance_tool(const Model& model, const State& state, Scratch& scratch) PALPATE_RT {
@@ -121,7 +122,8 @@ void balance_tool(const Model& model, const State& state, Scratch& scratch) PALP
   const Wrench on_handle = coupling_wrench(model, scratch.grip_w, state.tool_w);
   const Wrench on_tool{-on_handle.force_N, -on_handle.torque_Nm};
   Twist correction;
-  if (!correct(model, state, contact_w, on_tool, correction, scratch.work.landings_again))
+  ContactStiffness* held = model.params.local_period_s > 0 ? &scratch.told_besides : nullptr;
+  if (!correct(model, state, contact_w, on_tool, correction, scratch.work.landings_again, held))
     scratch.status |= Status::kCouplingSingular;
   scratch.tool_corrected_w = moved(state.tool_w, correction);
   if (scratch.held_by_hand != 0)
@@ -172,11 +174,14 @@ Wrench coupling_wrench(const Model& model, const Pose& device_w, const Pose& too
 }
 
 FeltStiffness felt_stiffness(const Model& model, const State& state, const Scratch& scratch) PALPATE_RT {
-  if (!(model.params.local_period_s > 0) || scratch.held_by_hand == 0 || scratch.contact_count == 0) return {};
+  if (!(model.params.local_period_s > 0) || scratch.held_by_hand == 0) return {};
   // The contact was found in units of the stiffness that is set during the run (live_model.h).
+  const bool touches = scratch.contact_count > 0;
   Real matrix[kDof * kDof], contact[kDof * kDof];
+  store(scratch.told_besides, contact);
   for (std::int32_t i = 0; i < kDof * kDof; ++i)  // bound: 36
-    contact[i] = state.live.stiffness * state.contact_stiffness[i];
+    contact[i] = state.live.stiffness * (contact[i] + (touches ? state.contact_stiffness[i] : 0));
+  if (!touches && !(contact[0] + contact[7] + contact[14] > 0)) return {};
   if (!factor(model, contact, matrix)) return {};
   const Real k = model.params.coupling_N_per_m;
   Real answer[3][kDof] = {};

@@ -30,9 +30,10 @@ bool follow(const Model& model, const State& state, const Twist& handle, Twist& 
             std::int32_t& landings) PALPATE_RT;
 
 // Newton correction of the tool pose: (K_contact + K_coupling)^-1 (contact wrench + coupling wrench), with the same
-// care. Returns false, with `correction` zero, when the system is singular.
+// care. Returns false, with `correction` zero, when the system is singular. Adds to `held`, if given, what landing.h
+// holds the tool by.
 bool correct(const Model& model, const State& state, const Wrench& contact_w, const Wrench& coupling_on_tool_w,
-             Twist& correction, std::int32_t& landings) PALPATE_RT;
+             Twist& correction, std::int32_t& landings, ContactStiffness* held) PALPATE_RT;
 
 // Where the tool goes under this tick's contact wrench: scratch.tool_corrected_w. As it is when something drives it;
 // where it was when the wrench is no number. Status: kCouplingSingular.

@@ -90,6 +90,7 @@ TEST(FeltStiffness, IsCouplingAndContactInSeries) {
   const ScratchPtr scratch = roomy_scratch();
   scratch->status = 0;
   scratch->held_by_hand = scratch->contact_count = 1;
+  scratch->told_besides = {};
   const Vec3 n = unit_or({1, 2, 3}, {});
   ContactStiffness contact;
   add_spring(contact, 3000, n, {});
@@ -103,6 +104,15 @@ TEST(FeltStiffness, IsCouplingAndContactInSeries) {
   state->live.stiffness = 1;
   scratch->contact_count = 0;
   EXPECT_EQ(felt_stiffness(model, *state, *scratch).along, Vec3{});
+  scratch->contact_count = 1;
+  // What slips before long is taken off it; what a tool has come to and does not press yet holds it all the same.
+  add_spring(scratch->told_besides, -2000, n, {});
+  EXPECT_NEAR(felt_stiffness(model, *state, *scratch).along.z, 1500.0 * 1000 / 2500 * n.z * n.z, 1e-9);
+  for (double& k : state->contact_stiffness) k = 0;
+  scratch->contact_count = 0;
+  scratch->told_besides = {};
+  add_spring(scratch->told_besides, 4500, n, {});
+  EXPECT_NEAR(felt_stiffness(model, *state, *scratch).along.z, 1500.0 * 4500 / 6000 * n.z * n.z, 1e-9);
   scratch->contact_count = 1;
   model.params.local_period_s = 0;  // a device that holds forces
   EXPECT_EQ(felt_stiffness(model, *state, *scratch).along, Vec3{});

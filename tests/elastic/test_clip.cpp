@@ -16,11 +16,13 @@
 namespace palpate::test {
 namespace {
 
-std::string clip(int level) {
+std::string clip(int level, const std::string& friction = "law = \"none\"") {
   return "name = \"clip\"\n[body]\nshape = \"clip\"\n[body.fem]\nlevel = " + std::to_string(level) +
          "\n[body.elastic]\nsoft_modes = 2\nlinear_modes = 30\n[body.material]\nyoungs_modulus_Pa = 2e9\n"
          "poisson_ratio = 0\ndensity_kg_per_m3 = 1400\n[contact]\nbackend = \"elastic\"\nmax_depth_mm = 0.02\n"
-         "[friction]\nlaw = \"none\"\n[[tool.piece]]\nshape = \"capsule\"\nradius_mm = 10\nlength_mm = 60\npoints = 1\n"
+         "[friction]\n" +
+         friction +
+         "\n[[tool.piece]]\nshape = \"capsule\"\nradius_mm = 10\nlength_mm = 60\npoints = 1\n"
          "[device]\nname = \"sim-6dof\"\n[path]\npoint = [ { time_s = 0, position_mm "
          "= [0, 18, 0] } ]\n";
 }
@@ -107,6 +109,52 @@ TEST_F(ElasticClip, TheForceHasNoSteps) {
   EXPECT_LT(largest_step_N_, 0.03);
   const Vec3 held{0, kFirstContact_m - at_m_, 0};
   EXPECT_LT(change_while_held_N(bench_, {held, {}}, 20), 1e-8);
+}
+
+// A tube that rests between the arms is told as friction holds it; drawn back it slips before the next command comes,
+// and its friction is told as the secant: less along the way, never less than nothing.
+TEST(ClipFriction, WhatSlipsBeforeLongIsToldSofter) {
+  BakedScene baked(parse_scene(clip(1, "law = \"mindlin\"\nmu_ref = 0.2"), "clip.toml"));
+  baked.model().params.local_period_s = 1e-4;
+  Bench bench{baked.model()};
+  double height_m = kFirstContact_m + 1e-5;
+  const auto go = [&](double way_m) {
+    height_m += way_m;
+    bench.tick_at({{0, height_m, 0}, {}}, {});
+    double told[36];
+    store(bench.scratch->told_besides, told);
+    return std::pair{bench.state->contact_stiffness[7], told[7]};
+  };
+  for (int i = 0; i < 500; ++i) go(-2e-6);
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(go(0).second, 0);
+  EXPECT_EQ(go(2e-7).second, 0);  // a tenth of what it takes
+  const auto [holds, besides] = go(4e-6);
+  EXPECT_EQ(bench.output.regions, 2);
+  EXPECT_LT(besides, -0.2 * holds);
+  EXPECT_GE(holds + besides, 0);
+  baked.model().params.local_period_s = 0;
+  EXPECT_EQ(go(4e-6).second, 0);  // a device that holds forces is told none
+}
+
+// A tube that slides past the round end of an arm, led by a spring, goes off from every plane that it lies on by some
+// nanometres a tick: it was held off by what it had come to for ten ticks, by up to 0.6 N that no contact knew of.
+TEST_F(ElasticClip, ASlideOverARoundEndIsAContact) {
+  Input input;
+  input.drive = Drive::kHeld;
+  int held_off = 0, pressed = 0;
+  double most_N = 0;
+  for (int i = 0; i < 60; ++i) {
+    input.pose_w = {{0.02042 - 2e-5 * i, 0.00935 - 2.6e-5 * i, 0}, {}};
+    tick(model(), *bench_.state, *bench_.scratch, input, bench_.output);
+    const double pull_N = model().params.coupling_N_per_m *
+                          norm(input.pose_w.position_m - bench_.state->safety.tool_corrected_w.position_m);
+    if (bench_.output.contacts == 0) most_N = std::max(most_N, pull_N);
+    held_off += bench_.output.contacts == 0 && pull_N > 0.02 ? 1 : 0;
+    pressed += norm(bench_.output.contact_w.force_N) > 0.02 ? 1 : 0;
+  }
+  EXPECT_LE(held_off, 2);
+  EXPECT_LT(most_N, 0.1);
+  EXPECT_GT(pressed, 20);
 }
 
 }  // namespace

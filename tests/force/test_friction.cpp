@@ -43,6 +43,20 @@ FrictionLoad constant_load(const FrictionParameters& p, Vec3 step) {
   return load;
 }
 
+// Of a way that ends at the limit all of it; of one three times as long a third, which is what it meets on the whole;
+// of what slips already nothing.
+TEST(Friction, TheShareBeforeSlipIsTheSecant) {
+  const FrictionParameters p = worked_parameters();
+  FrictionForce friction;
+  friction.force_w = {1, 0, 0};
+  friction.along_N_per_m = 1000;  // 3 N are left: 3 mm
+  EXPECT_EQ(share_before_slip(p, friction, 5, 0), 1);
+  EXPECT_NEAR(share_before_slip(p, friction, 5, 3e-3), 1, 1e-12);
+  EXPECT_NEAR(share_before_slip(p, friction, 5, 9e-3), 1.0 / 3, 1e-12);
+  friction.force_w = {4.5, 0, 0};
+  EXPECT_EQ(share_before_slip(p, friction, 5, 1e-6), 0);
+}
+
 TEST(Friction, Limits) {
   const FrictionParameters p = worked_parameters();
   EXPECT_NEAR(p.k_N, 1.1962790250, 1e-9);

@@ -218,7 +218,7 @@ TEST(Duriez2003, PushThroughTheVirtualCoupling) {
       for (int j = 0; j < 6; ++j) state->contact_stiffness[6 * i + j] = 5000 * jacobian[i] * jacobian[j];
     Twist offset;
     std::int32_t landings = 0;
-    ASSERT_TRUE(correct(model, *state, {{0, 0, 5}, {0, -5 * lever_m, 0}}, {}, offset, landings));
+    ASSERT_TRUE(correct(model, *state, {{0, 0, 5}, {0, -5 * lever_m, 0}}, {}, offset, landings, nullptr));
     const Vec3 push = 2000 * offset.translation_m, torque = 0.5 * offset.rotation_rad;
     expect_worked(push, {0, 0, lever_m > 0 ? 10.0 / 9 : 10.0 / 7});
     expect_worked(offset.translation_m, {0, 0, lever_m > 0 ? 1e-2 / 18 : 1e-2 / 14});

@@ -90,7 +90,7 @@ struct ElasticLoad : TipLaws {
     const LineLaw::Lean line = law[r].line.lean_near(e);
     const Vec3 axis = unit_or(placed[r]->tip.half_axis_w, {});
     out.lever_w += line.to_pressure_m * axis;
-    out.lean_Nm_per_rad = line.arm_m * out.at.force_N;
+    out.lean_Nm_per_rad = law[r].line.arm_back_m(line, e) * out.at.force_N;
     out.lean_w = unit_or(cross(axis, placed[r]->foot.normal_w), {});
   }
   // How the energy of the far field and, the other way, that of the tip's law change with the numbers of a ball's or

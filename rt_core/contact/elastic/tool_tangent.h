@@ -36,6 +36,13 @@ struct ToolTangent {
       for (std::int32_t j = 0; j <= i; ++j) joint[j][i] = modes[i * soft + j];
     }
   }
+  // The springs that `other` has, before it is eliminated.
+  template <class Size>
+  void begin_as(Size size, const ToolTangent& other) PALPATE_RT {
+    for (std::int32_t i = 0; i < size; ++i) {  // bound: kMost^2 / 8
+      for (std::int32_t b = i / 4 * 4; b < size; b += 4) store(joint[i] + b, load4(other.joint[i] + b));
+    }
+  }
   // Adds k j j^T; k may be negative.
   template <class Size>
   void add(Size size, Real k_N_per_m, const Spring& spring) PALPATE_RT {

@@ -207,4 +207,18 @@ LineLaw::Lean LineLaw::lean_at(Real e_m) const PALPATE_RT {
   return out;
 }
 
+// A chord of the pressure's place over the lean, which bends from its ends towards the level: no step along the chord
+// goes beyond. Level, what touches is h to either side and d deep, and the arm that of a bed of springs, h^2 / 3 d, or
+// up to 1.3 times as much, for the depth changes with the lean where the force is held: no chord is steeper than 1.5.
+Real LineLaw::arm_back_m(const Lean& leans, Real e_m) const PALPATE_RT {
+  const Real deep = min_of(e_m / radius_m_, depth_max_) - touches_at_, lean = tilt_ / rise_, slope = abs_of(lean);
+  if (!(deep > 0)) return leans.arm_m;
+  const Real wet = along_ > 0 ? square_root(2 * deep / along_) : kHuge;
+  const Real left = min_of(left_, wet), right = min_of(right_, wet), half = 0.5 * (left + right);
+  const Real off = leans.to_pressure_m - 0.5 * radius_m_ * (right - left), rise = half * slope;
+  if (!(off * lean > 0)) return leans.arm_m;
+  const Real level = deep > 2 * rise ? deep - rise : deep * deep / (4 * rise);
+  return max_of(leans.arm_m, min_of(off / lean, radius_m_ * half * half / (2 * level)));
+}
+
 }  // namespace palpate

@@ -68,6 +68,9 @@ class LineLaw {
   }
   Lean lean_at(Real e_m) const PALPATE_RT;
   Lean lean_near(Real e_m) const PALPATE_RT { return lean_at(is_near(e_m) ? kept_at_m_ : e_m); }
+  // The same on the way back to where the line does not lean, at least arm_m: what is pressed at one end has next to no
+  // moment to add by leaning farther, and all of it to lose by leaning back.
+  Real arm_back_m(const Lean& leans, Real e_m) const PALPATE_RT;
   // Has Point::root_force, which is 0 otherwise.
   void tell_root() PALPATE_RT { needs_root_ = true; }
   // e at which the deepest place of the line touches.
