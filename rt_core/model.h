@@ -121,6 +121,8 @@ namespace palpate {
   X(double, encoder_step_rad, "rad", 0, 1, "and its orientation")                                                     \
   PALPATE_CHOICE_PARAM(X, EncoderLaw, encoder_law_m, "how the position is observed")                                  \
   PALPATE_CHOICE_PARAM(X, EncoderLaw, encoder_law_rad, "how the orientation is")                                      \
+  X(double, track_below_N_per_m, "N/m", 0, 1e6,                                                                       \
+    "followed by its edges, the handle is on its track while it feels less than that")                                \
   X(double, force_max_N, "N", 0, kWireForceMax_N, "magnitude limit of the rendered force")                            \
   X(double, torque_max_Nm, "N*m", 0, kWireTorqueMax_Nm, "magnitude limit of the rendered torque")                     \
   X(double, force_rate_max_N_per_s, "N/s", 1, 1e7, "fault limiter of the force change")                               \

@@ -15,6 +15,7 @@
 #include "rt_core/pool.h"
 #include "rt_core/safety/edge_observer.h"
 #include "rt_core/safety/encoder_observer.h"
+#include "rt_core/safety/handle_track.h"
 #include "rt_core/state_fields.h"
 #include "rt_core/work.h"
 
@@ -250,6 +251,8 @@ struct LateDevice {
   X(ObservedMotion, observed_rad, {}, "and turns")                                                      \
   X(EdgeMemory, edges_m, {}, "of the encoder's edges, where device_w follows them")                     \
   X(EdgeMemory, edges_rad, {}, "and where it turns by them")                                            \
+  X(HandleTrack, track, {}, "that device_w goes on to from its edges while what it feels is soft")      \
+  X(Real, feels_N_per_m, 0, "the stiffest along any line, of the last tick; 0: nothing, or not told")   \
   X(Vec3, hand_velocity_m_per_s, {}, "of the handle, smoothed: bridges lost samples")                   \
   X(std::int32_t, unseen_ticks, 0, "consecutive ticks without a sample that tells where the handle is") \
   X(std::int32_t, apart, 0, "1: samples came anew, the coupling's end does not stand at the handle")    \

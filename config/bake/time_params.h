@@ -8,6 +8,7 @@
 
 #include "config/scene/scene.h"
 #include "rt_core/model.h"
+#include "rt_core/safety/handle_track.h"
 #include "rt_core/safety/smoothing_friction.h"
 
 namespace palpate {
@@ -46,6 +47,18 @@ inline Smoothing smoothing_of(const DeviceDesc& d, double coupling_N_per_m, doub
   return s;
 }
 
+// The stiffest that a handle with that friction is held on its track at (handle_track.h): what is asked for grows with
+// the stiffness, by its three-halves' power between two shares that bound it.
+inline double track_stiffness_N_per_m(double friction_N, double step_m, double mass_kg) {
+  double below = 0, above = 1e6;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (below + above);
+    const double asked_N = friction_to_smooth(EncoderLaw::kMotion, kSmoothedPosition, middle, step_m, mass_kg);
+    (asked_N <= friction_N ? below : above) = middle;
+  }
+  return below;
+}
+
 // What rings at a touch, as the resonator that a tick steps (rt_core/safety/contact_transient.h). Of A exp(-decay t)
 // sin(w t) a tick changes at most A |1 - r exp(i w)|, w and r those of a tick: the height is lowered to where that is
 // kRingStep of the largest force, half of what an output may change, for the contact itself changes it too.
@@ -71,6 +84,8 @@ inline void set_times(const SceneDesc& scene, ModelParams& p) {
   p.encoder_step_m = smoothing.position || d.local_Hz > 0 ? d.encoder_step_m : 0;
   p.encoder_step_rad = smoothing.angle ? d.encoder_step_rad : 0;
   p.encoder_law_m = smoothing.position && !(d.local_Hz > 0) ? smoothing.of_position.law : EncoderLaw::kMotion;
+  if (p.encoder_law_m == EncoderLaw::kEdges)
+    p.track_below_N_per_m = track_stiffness_N_per_m(d.friction_N, d.encoder_step_m, d.mass_kg);
   p.encoder_law_rad = smoothing.angle ? smoothing.of_angle.law : EncoderLaw::kMotion;
   const double late_s = d.local_Hz > 0 ? 0.5 * p.local_period_s : 0.5 * d.period_s + d.delay_s;
   p.coupling_Ns_per_m = is_auto(d.coupling_Ns_per_m) ? p.coupling_N_per_m * late_s : d.coupling_Ns_per_m;

@@ -153,11 +153,16 @@ std::string profile_contradictions(const DeviceProfile& profile, const ModelPara
   if (scene.local_period_s > 0)
     compare(text, "local_kHz", 1e-3 / scene.local_period_s, 1e-3 * profile.local_Hz, "kHz",
             "evaluates the local contact model with");
-  if (!(scene.local_period_s > 0))  // else the device smooths by itself
+  if (!(scene.local_period_s > 0)) {  // else the device smooths by itself
+    const auto asked_N = [&](EncoderLaw law, double stiffness_N_per_m) {
+      return friction_to_smooth(law, kSmoothedPosition, stiffness_N_per_m, scene.encoder_step_m,
+                                profile.mass_kg / scale);
+    };
     compare_friction(text, "friction_N",
-                     friction_to_smooth(scene.encoder_law_m, kSmoothedPosition, scene.coupling_N_per_m,
-                                        scene.encoder_step_m, profile.mass_kg / scale),
+                     std::max(asked_N(scene.encoder_law_m, scene.coupling_N_per_m),
+                              asked_N(EncoderLaw::kMotion, scene.track_below_N_per_m)),
                      profile.friction_N, "N");
+  }
   // Without torque the rotational spring moves nothing.
   if (scene.torque_max_Nm > 0)
     compare(text, "coupling_Nm_per_rad", scene.coupling_Nm_per_rad, bounds.rotation.value, "N m/rad",

@@ -12,10 +12,6 @@ namespace {
 // with a tenth more 31 do not (2026-11-27).
 constexpr double kAskedForMore = 1.2;
 
-// From one to the other in a time that is not felt: a step's force within 50 ms lies below what a tremor's makes. To
-// the edges sooner, for an object that stiffens asks for their friction.
-constexpr double kToTrack_s = 50e-3, kToEdges_s = 10e-3;
-
 // What commands add along the way of their points, by least squares: a slip, or a turn of the handle, changes the force
 // as well, but not by the way. Forgotten by a fiftieth with each, half a tremor's cycle at 1 kHz; ways of less than a
 // hundredth of an encoder's step of 30 um tell no slope.
@@ -50,14 +46,8 @@ Vec3 LocalHandle::next(Vec3 told_m) noexcept {
   const Vec3 change_m = told_m - told_m_;
   told_m_ = told_m;
   if (!(o.encoder_m > 0)) return told_m;
-  // What no handle does carries the track along, and is no speed of it (as between_edges()).
-  const double fastest_m = o.encoder_m + kLocalFastest_m_per_s * o.period_s;
-  if (squared_norm(change_m) > fastest_m * fastest_m) track_m_ += change_m;
-  track_m_ += observe(gains_, told_m - track_m_, motion_);
   const Vec3 by_edges_m = told_m + between_edges(o.encoder_m, o.period_s, change_m, edges_);
-  track_share_ =
-      to_track_ ? min_of(1, track_share_ + o.period_s / kToTrack_s) : max_of(0, track_share_ - o.period_s / kToEdges_s);
-  return by_edges_m + track_share_ * (track_m_ - by_edges_m);
+  return on_track(gains_, o.encoder_m, o.period_s, told_m, change_m, by_edges_m, to_track_, motion_, track_);
 }
 
 }  // namespace palpate

@@ -9,8 +9,7 @@
 #pragma once
 
 #include "hal/device/local_model.h"
-#include "rt_core/safety/edge_observer.h"
-#include "rt_core/safety/encoder_observer.h"
+#include "rt_core/safety/handle_track.h"
 
 namespace palpate {
 
@@ -25,7 +24,7 @@ class LocalHandle {
       : options_(options),
         gains_(observer_gains(kObservedPosition, options.encoder_m, options.period_s)),
         told_m_(at_m),
-        track_m_(at_m) {}
+        track_{at_m, 0} {}
 
   // A command begins to act; {}: without a model.
   void obey(Vec3 force_N, const LocalModel& model) noexcept;
@@ -39,12 +38,12 @@ class LocalHandle {
   ObserverGains gains_;
   EdgeMemory edges_;
   ObservedMotion motion_;
-  Vec3 told_m_, track_m_;
+  Vec3 told_m_;
+  HandleTrack track_;
   Vec3 force_N_;                      // of the last command,
   LocalModel model_;                  // and its model
   double added_Nm_ = 0, way_m2_ = 0;  // against the way between commands' points beyond the model's slope; lately
   bool to_track_ = false;             // since that command
-  double track_share_ = 0;            // the handle is taken to be between where the edges and the track have it
 };
 
 }  // namespace palpate

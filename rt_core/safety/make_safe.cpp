@@ -129,8 +129,10 @@ Asked judge(const Model& model, State& state, Scratch& scratch, const Input& inp
     wrench = safety.last_good_w;  // ramped out below
   }
   safety.last_good_w = limited(model, wrench, scratch);
-  scratch.work.felt += model.params.local_period_s > 0 ? 1 : 0;
-  return {felt_stiffness(model, state, scratch), findings(state, input, faults)};
+  const FeltStiffness felt = felt_stiffness(model, state, scratch);
+  if (model.params.track_below_N_per_m > 0) state.feels_N_per_m = stiffness_size(felt.along, felt.across);
+  scratch.work.felt += model.params.local_period_s > 0 || model.params.track_below_N_per_m > 0 ? 1 : 0;
+  return {felt, findings(state, input, faults)};
 }
 
 void find_mode(const Model& model, State& state, Scratch& scratch, const Input& input,

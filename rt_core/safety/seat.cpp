@@ -98,6 +98,7 @@ void seat_anew(const Model& model, State& state, const Pose& handle_w) PALPATE_R
   state.device_w = state.device_previous_w = state.told_w = handle_w;
   state.observed_m = state.observed_rad = {};
   state.edges_m = state.edges_rad = {};
+  state.track = {handle_w.position_m, 0};
 }
 
 void ease_seat(const Model& model, State& state) PALPATE_RT {

@@ -56,9 +56,15 @@ Vec3 by_edges(double step, double elapsed_s, Vec3 change, EdgeMemory& memory) PA
 
 // Where the handle is within the encoder's steps, from what was told before and is told now, `elapsed_s` later.
 Vec3 observed_position(const ModelParams& p, State& state, double elapsed_s, Vec3 before_m, Vec3 told_m) PALPATE_RT {
-  if (p.encoder_law_m == EncoderLaw::kEdges)
-    return told_m + by_edges(p.encoder_step_m, elapsed_s, told_m - before_m, state.edges_m);
   const ObserverGains gains = observer_gains(kObservedPosition, p.encoder_step_m, p.period_s);
+  if (p.encoder_law_m == EncoderLaw::kEdges) {
+    const Vec3 change_m = told_m - before_m;
+    const Vec3 by_edges_m = told_m + by_edges(p.encoder_step_m, elapsed_s, change_m, state.edges_m);
+    // Between two contacts not: what is met next may be stiff.
+    const bool rests = state.feels_N_per_m > 0 && state.feels_N_per_m <= p.track_below_N_per_m;
+    return on_track(gains, p.encoder_step_m, elapsed_s, told_m, change_m, by_edges_m, rests, state.observed_m,
+                    state.track);
+  }
   return state.device_w.position_m + observe(gains, told_m - state.device_w.position_m, state.observed_m);
 }
 
@@ -86,6 +92,7 @@ void observe_handle(const Model& model, State& state, double elapsed_s, const Po
   if (!is_finite(pose)) {  // a state spoilt in memory
     pose = told;
     state.edges_m = state.edges_rad = {};
+    state.track = {told.position_m, 0};
   }
   for (ObservedMotion* motion : {&state.observed_m, &state.observed_rad}) {
     motion->per_s = settled(motion->per_s);
@@ -123,6 +130,7 @@ void start_at(State& state, const Pose& pose) PALPATE_RT {
   state.device_w = state.device_previous_w = state.told_w = pose;
   state.tool_w = state.tool_previous_w = pose;
   state.safety.tool_corrected_w = pose;
+  state.track = {pose.position_m, 0};
   state.started = 1;
 }
 

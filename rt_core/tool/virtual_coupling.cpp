@@ -174,7 +174,8 @@ Wrench coupling_wrench(const Model& model, const Pose& device_w, const Pose& too
 }
 
 FeltStiffness felt_stiffness(const Model& model, const State& state, const Scratch& scratch) PALPATE_RT {
-  if (!(model.params.local_period_s > 0) || scratch.held_by_hand == 0) return {};
+  const ModelParams& p = model.params;
+  if (!(p.local_period_s > 0 || p.track_below_N_per_m > 0) || scratch.held_by_hand == 0) return {};
   // The contact was found in units of the stiffness that is set during the run (live_model.h).
   const bool touches = scratch.contact_count > 0;
   Real matrix[kDof * kDof], contact[kDof * kDof];
@@ -183,7 +184,7 @@ FeltStiffness felt_stiffness(const Model& model, const State& state, const Scrat
     contact[i] = state.live.stiffness * (contact[i] + (touches ? state.contact_stiffness[i] : 0));
   if (!touches && !(contact[0] + contact[7] + contact[14] > 0)) return {};
   if (!factor(model, contact, matrix)) return {};
-  const Real k = model.params.coupling_N_per_m;
+  const Real k = p.coupling_N_per_m;
   Real answer[3][kDof] = {};
   for (std::int32_t i = 0; i < 3; ++i) {  // bound: 3
     answer[i][i] = k;

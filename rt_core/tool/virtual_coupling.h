@@ -70,7 +70,8 @@ Wrench coupling_wrench(const Model& model, const Pose& device_w, const Pose& too
 
 // How the coupling's force answers a motion of the handle's origin, its turn held: coupling and contact in series,
 // Kc - Kc^2 [(K_contact + Kc)^-1] of the translations. Symmetric, positive semi-definite and below Kc by construction;
-// zero without contact, and for a device that holds forces (ModelParams::local_period_s). Bound: one factor, three
+// zero without contact, and where nobody asks: neither a device that evaluates it (ModelParams::local_period_s) nor a
+// handle that may go on to its track (track_below_N_per_m). Bound: one factor, three
 // solves; 1,000 instructions.
 struct FeltStiffness {
   Vec3 along;   // xx, yy, zz

@@ -83,7 +83,11 @@ TEST(Landing, IsTheLeastMotionThatEndsOnThePartsAndIsPulledByNone) {
     for (int i = 0; i < 36; ++i) factor[i] = stiffness(i / 6, i % 6);
     ASSERT_TRUE(cholesky_factor(factor, 6));
     Twist motion{{wanted[0], wanted[1], wanted[2]}, {wanted[3], wanted[4], wanted[5]}};
-    land(parts.model, *parts.state, {}, factor, motion, nullptr);
+    ContactStiffness held;
+    const std::int32_t taken = land(parts.model, *parts.state, {}, factor, motion, &held);
+    const double trace_N_per_m = held.force[0] + held.force[3] + held.force[5];
+    EXPECT_GE(trace_N_per_m, 0);
+    EXPECT_TRUE(taken > 0 || trace_N_per_m == 0);
     bool found = false;
     for (unsigned chosen = 0; chosen < 1u << parts.way.rows() && !found; ++chosen) {
       Vector6 exact;

@@ -171,6 +171,11 @@ TEST(DeviceProfile, ASmoothedSceneAsksForTheFrictionThatHoldsTheHandle) {
   profile.friction_N = 0.046;  // 0.62 of 75 mN is 46.5
   EXPECT_THAT(profile_contradictions(profile, asks),
               HasSubstr("asks for 0.0465 N of friction, the device has 0.046 N"));
+  asks.track_below_N_per_m = 2000;  // and on its track 0.98 of 60 mN
+  profile.friction_N = 0.058;
+  EXPECT_THAT(profile_contradictions(profile, asks), HasSubstr("asks for 0.0588 N of friction"));
+  profile.friction_N = 0.06;
+  EXPECT_EQ(profile_contradictions(profile, asks), "");
   profile.friction_Nm = 6e-4;
   asks.encoder_law_rad = EncoderLaw::kEdges;  // 0.62 of 1 mN m, as a stiffer turn's would be less than the motion's
   EXPECT_THAT(profile_contradictions(profile, asks), HasSubstr("asks for 0.00062 N m of friction"));

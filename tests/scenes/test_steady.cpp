@@ -69,8 +69,9 @@ TEST_P(EveryScene, DoesNotBuzzInTheHand) {
   EXPECT_LT(longest, 4);
   if (GetParam() == "snap_in_paper") {
     // The clip keeps the tube: it takes 12.5 N to pull it out, and the hand pulls with 8.1 on the mean. Its handle has
-    // no friction, as what observes it between the encoder's steps asks for (150 mN in this scene; without, it swings
-    // by 0.3 N either way), so that for the force to come to rest it is held where it is.
+    // no friction, as what observes it between the encoder's steps asks for (150 mN in this scene): without, it swings
+    // by 0.8 N either way, on its track (2026-11-29; by its edges 0.3), so that for the force to come to rest it is held
+    // where it is.
     constexpr int kPulled = 1000;
     double mean_N = 0;
     for (int i = 0; i < kPulled; ++i) {
@@ -82,7 +83,7 @@ TEST_P(EveryScene, DoesNotBuzzInTheHand) {
     const Vec3 kept_N = output.device_w.force_N;
     for (int i = 0; i < 100; ++i) tick(image.model(), *state, *scratch, held, output);
     EXPECT_LT(mean_N, -8);
-    EXPECT_LT(kept_N.y, -7.7);
+    EXPECT_LT(kept_N.y, -7.2);
     EXPECT_LT(norm(output.device_w.force_N - kept_N), 1e-3);
     return;
   }

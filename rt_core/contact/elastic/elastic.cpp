@@ -173,8 +173,8 @@ std::int32_t told_entries(std::int32_t soft, std::int32_t size) PALPATE_RT { ret
 // A device that evaluates the tangent does so until the next command, a tick and the delay; in so many times as long
 // the motion of the last tick does not bring to slip what sticks, or its stiffness is told as the secant of that way.
 // Told whole, a tube that was about to slip out of a clip's arms, or touched them fast, was extrapolated 0.2 to 0.4 N
-// too far. With it, what arms_back() tells
-// and softer landings 1,260 of 1,280 drawn runs of snap_in with the local model are good; 1,236 were (2026-11-29).
+// too far. With it, LineLaw::arm_back_m() and softer landings 1,260 of 1,280 drawn runs of snap_in with the local model
+// are good; 1,236 were (2026-11-29).
 constexpr Real kSlipAhead = 3;
 
 // Friction with the stiffness of the place alone, against the surface as the soft modes moved it; then the tangent of
