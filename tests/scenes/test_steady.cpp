@@ -70,8 +70,8 @@ TEST_P(EveryScene, DoesNotBuzzInTheHand) {
   if (GetParam() == "snap_in_paper") {
     // The clip keeps the tube: it takes 12.5 N to pull it out, and the hand pulls with 8.1 on the mean. Its handle has
     // no friction, as what observes it between the encoder's steps asks for (150 mN in this scene): without, it swings
-    // by 0.8 N either way, on its track (2026-11-29; by its edges 0.3), so that for the force to come to rest it is held
-    // where it is.
+    // by 0.8 N either way, on its track (2026-11-29; by its edges 0.3), so that for the force to come to rest it is
+    // held where it is.
     constexpr int kPulled = 1000;
     double mean_N = 0;
     for (int i = 0; i < kPulled; ++i) {
