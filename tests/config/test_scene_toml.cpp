@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <iterator>
 
@@ -257,15 +258,21 @@ TEST(SceneToml, TheEncoderIsSmoothedWhereFrictionHoldsTheHandle) {
   EXPECT_EQ(smooths("encoder_step_mm = 0\n"), "angle ");
   EXPECT_EQ(smooths("holds = \"body\"\n"), "");
   // A device with a loop of its own smooths by itself: the controller is told the step alone.
-  const auto law = [](const std::string& device) {
+  const auto params = [](const std::string& device) {
     ModelParams p{};
     p.coupling_N_per_m = 2000, p.coupling_Nm_per_rad = 0.8;
     set_times(parse_scene(kSmall + ("[device]\n" + device), "s.toml"), p);
-    return p.encoder_law_m;
+    return p;
   };
+  const auto law = [&](const std::string& device) { return params(device).encoder_law_m; };
   EXPECT_EQ(law("friction_N = 0.055\n"), EncoderLaw::kEdges);
   EXPECT_EQ(law("friction_N = 0.055\nlocal_kHz = 10\n"), EncoderLaw::kMotion);
   EXPECT_EQ(law("friction_N = 0.037\n"), EncoderLaw::kMotion);
+  // By its edges it is on its track while what it feels asks for 0.98 K Delta of the friction there is, or more
+  // above 2250 N/m; a handle that always is has no such bound.
+  EXPECT_NEAR(params("friction_N = 0.055\n").track_below_N_per_m, 0.055 / (0.98 * 3e-5), 1e-6);
+  EXPECT_EQ(params("friction_N = 0.07\n").track_below_N_per_m, 0);
+  EXPECT_NEAR(track_stiffness_N_per_m(0.2, 3e-5, 0.1), std::pow(0.2 * 153 * std::sqrt(0.1) / 3e-5, 2.0 / 3), 1e-3);
 }
 
 TEST(Schema, DefaultsLieInTheirRanges) {
