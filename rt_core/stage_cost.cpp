@@ -5,6 +5,7 @@
 #include "rt_core/surface/overlap.h"
 #include "rt_core/tool/landing.h"
 #include "rt_core/tool/two_tools.h"
+#include "rt_core/tool/virtual_coupling.h"
 
 namespace palpate {
 
@@ -74,7 +75,7 @@ Work most_work(const Model& model) noexcept {
   work.pieces = 2 * n.pieces;
   if (has_two_tools(model)) work.joints = n.pieces, work.other_samples = work.other_balances = work.other_outputs = 1;
   if (touches_in_parts(model)) work.landings = work.landings_again = (has_two_tools(model) ? 2 : 1) * (1 + kLandings);
-  if (model.params.local_period_s > 0 || model.params.track_below_N_per_m > 0) work.felt = has_two_tools(model) ? 2 : 1;
+  if (asks_what_is_felt(model.params)) work.felt = has_two_tools(model) ? 2 : 1;
   contact_method(method_of(model)).add_most_work(model, n, work);
   return work;
 }

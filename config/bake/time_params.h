@@ -8,7 +8,6 @@
 
 #include "config/scene/scene.h"
 #include "rt_core/model.h"
-#include "rt_core/safety/handle_track.h"
 #include "rt_core/safety/smoothing_friction.h"
 
 namespace palpate {
@@ -47,8 +46,8 @@ inline Smoothing smoothing_of(const DeviceDesc& d, double coupling_N_per_m, doub
   return s;
 }
 
-// The stiffest that a handle with that friction is held on its track at (handle_track.h): what is asked for grows with
-// the stiffness, by its three-halves' power between two shares that bound it.
+// The stiffest that a handle with that friction is held on its track at (rt_core/safety/handle_track.h): what is asked
+// for grows with the stiffness, by its three-halves' power between two shares that bound it.
 inline double track_stiffness_N_per_m(double friction_N, double step_m, double mass_kg) {
   double below = 0, above = 1e6;
   for (int i = 0; i < 60; ++i) {

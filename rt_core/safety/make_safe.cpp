@@ -131,7 +131,7 @@ Asked judge(const Model& model, State& state, Scratch& scratch, const Input& inp
   safety.last_good_w = limited(model, wrench, scratch);
   const FeltStiffness felt = felt_stiffness(model, state, scratch);
   if (model.params.track_below_N_per_m > 0) state.feels_N_per_m = stiffness_size(felt.along, felt.across);
-  scratch.work.felt += model.params.local_period_s > 0 || model.params.track_below_N_per_m > 0 ? 1 : 0;
+  scratch.work.felt += asks_what_is_felt(model.params) ? 1 : 0;
   return {felt, findings(state, input, faults)};
 }
 

@@ -175,7 +175,7 @@ Wrench coupling_wrench(const Model& model, const Pose& device_w, const Pose& too
 
 FeltStiffness felt_stiffness(const Model& model, const State& state, const Scratch& scratch) PALPATE_RT {
   const ModelParams& p = model.params;
-  if (!(p.local_period_s > 0 || p.track_below_N_per_m > 0) || scratch.held_by_hand == 0) return {};
+  if (!asks_what_is_felt(p) || scratch.held_by_hand == 0) return {};
   // The contact was found in units of the stiffness that is set during the run (live_model.h).
   const bool touches = scratch.contact_count > 0;
   Real matrix[kDof * kDof], contact[kDof * kDof];

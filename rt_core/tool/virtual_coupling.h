@@ -70,9 +70,8 @@ Wrench coupling_wrench(const Model& model, const Pose& device_w, const Pose& too
 
 // How the coupling's force answers a motion of the handle's origin, its turn held: coupling and contact in series,
 // Kc - Kc^2 [(K_contact + Kc)^-1] of the translations. Symmetric, positive semi-definite and below Kc by construction;
-// zero without contact, and where nobody asks: neither a device that evaluates it (ModelParams::local_period_s) nor a
-// handle that may go on to its track (track_below_N_per_m). Bound: one factor, three
-// solves; 1,000 instructions.
+// with what is told besides contact's tangent (Scratch::told_besides); zero where the tool touches nothing and has come
+// to nothing, and where nobody asks. Bound: one factor, three solves; price in work.h.
 struct FeltStiffness {
   Vec3 along;   // xx, yy, zz
   Vec3 across;  // yz, xz, xy
@@ -83,6 +82,10 @@ inline Vec3 operator*(const FeltStiffness& felt, Vec3 way_m) PALPATE_RT {
 }
 inline FeltStiffness operator*(Real share, const FeltStiffness& felt) PALPATE_RT {
   return {share * felt.along, share * felt.across};
+}
+// A device that evaluates it, or a handle that may go on to its track.
+inline bool asks_what_is_felt(const ModelParams& p) PALPATE_RT {
+  return p.local_period_s > 0 || p.track_below_N_per_m > 0;
 }
 FeltStiffness felt_stiffness(const Model& model, const State& state, const Scratch& scratch) PALPATE_RT;
 

@@ -426,7 +426,7 @@ void add_most_work(const Model& model, const SceneSizes& n, Work& work) noexcept
   work.linked += n.regions * (n.regions + 1) / 2 * (model.params.elastic_linear + soft);
   work.soft_pairs_again += soft_work(pair) / 2;
   if (model.params.local_period_s > 0)
-    work.told += told_entries(soft, soft + (has_two_tools(model) ? 2 : 1) * ToolTangent::kTwist);
+    with_tangent_size(model, soft, [&](std::int32_t size) PALPATE_RT { work.told += told_entries(soft, size); });
 }
 
 }  // namespace
